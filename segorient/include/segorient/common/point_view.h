@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the segorient authors
+#pragma once
+
+#include <cmath>
+#include <cstddef>
+
+namespace segorient {
+
+/// Read-only view of points (or normals) in memory that belongs to somebody else: row i is three
+/// consecutive floats at `data + i * stride`.
+///
+/// This is what every stage computes on. A PCL cloud whose point type has x, y, z in a row is viewed
+/// without a copy (see `pointView` in common/cloud_access.h).
+struct PointView {
+  const float* data = nullptr;  ///< first row
+  std::size_t stride = 4;       ///< floats from one row to the next
+  std::size_t size = 0;         ///< number of rows
+
+  const float* operator[](std::size_t i) const { return data + i * stride; }
+};
+
+/// Whether all three coordinates of a row are finite.
+inline bool isFinite(const float* p) {
+  return std::isfinite(p[0]) && std::isfinite(p[1]) && std::isfinite(p[2]);
+}
+
+}  // namespace segorient

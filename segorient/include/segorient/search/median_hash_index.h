@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the segorient authors
+#pragma once
+
+#include <pcl/types.h>
+#include <segorient/common/neighborhoods.h>
+#include <segorient/common/point_view.h>
+
+#include <memory>
+#include <vector>
+
+namespace segorient::search {
+
+/// The search structure behind MedianHash, on plain arrays: regions by median subdivision, in each a
+/// hash of the points into cells (paper, section 2.1). Exact unless epsilon is set.
+///
+/// Distances are those of a plain float evaluation of dx*dx + dy*dy + dz*dz in that order, without
+/// fused operations; ties are settled by index. Queries are const and may run concurrently.
+/// A query with a NaN or infinite coordinate finds nothing.
+class MedianHashIndex {
+ public:
+  struct Options {
+    std::size_t region_size = 2048;  ///< most points in a region
+    int threads = 0;                 ///< 0 = all cores
+    float epsilon = 0.0F;            ///< distances at most (1 + epsilon) times the true ones; 0 = exact
+  };
+
+  MedianHashIndex();
+  ~MedianHashIndex();
+  MedianHashIndex(MedianHashIndex&&) noexcept;
+  MedianHashIndex& operator=(MedianHashIndex&&) noexcept;
+  MedianHashIndex(const MedianHashIndex&) = delete;
+  MedianHashIndex& operator=(const MedianHashIndex&) = delete;
+
+  /// Copies the points; those with NaN or infinite coordinates are left out.
+  /// \param indices rows of `points` to use, or null for all; repeated ones are found repeatedly,
+  ///        out of range ones are left out
+  void build(const PointView& points, const std::vector<pcl::index_t>* indices,
+             const Options& options);
+
+  std::size_t size() const;    ///< points that can be found
+  std::size_t memory() const;  ///< bytes in use
+
+  /// The k nearest, ascending. Room for k entries each is the caller's.
+  /// \return how many were found: min(k, size()), 0 for k <= 0
+  int nearestK(const float* query, int k, pcl::index_t* indices, float* sqr_distances) const;
+
+  /// All points nearer than `radius` (strictly, as FLANN).
+  /// \param max_nn keeps the closest max_nn only; 0 = all
+  /// \param sorted ascending order; otherwise any
+  int radius(const float* query, double radius, std::vector<pcl::index_t>& indices,
+             std::vector<float>& sqr_distances, unsigned int max_nn, bool sorted) const;
+
+  /// The k nearest of every row that build() was given: row i of `out` belongs to row i (or to the
+  /// i-th index) and begins with that point itself. Rows of points left out are empty.
+  void nearestKAll(int k, Neighborhoods& out, bool with_distances = true) const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace segorient::search
