@@ -164,6 +164,14 @@ void MedianHashIndex::build(const PointView& points, const std::vector<pcl::inde
   }
 }
 
+float MedianHashIndex::epsilon() const {
+  return impl_->options.epsilon;
+}
+
+void MedianHashIndex::setNumberOfThreads(int threads) {
+  impl_->options.threads = threads;
+}
+
 std::size_t MedianHashIndex::size() const {
   return impl_->row.size();
 }
@@ -174,7 +182,7 @@ std::size_t MedianHashIndex::memory() const {
 }
 
 int MedianHashIndex::nearestK(const float* query, int k, pcl::index_t* indices,
-                              float* sqr_distances) const {
+                              float* sqr_distances, float /*epsilon*/) const {
   if (k <= 0 || size() == 0 || !isFinite(query)) return 0;
   const std::size_t wanted = std::min(static_cast<std::size_t>(k), size());
   std::vector<Found> best;
@@ -205,7 +213,8 @@ int MedianHashIndex::radius(const float* query, double radius, std::vector<pcl::
   return static_cast<int>(found.size());
 }
 
-void MedianHashIndex::nearestKAll(int k, Neighborhoods& out, bool with_distances) const {
+void MedianHashIndex::nearestKAll(int k, Neighborhoods& out, bool with_distances,
+                                  float /*epsilon*/) const {
   const Impl& self = *impl_;
   const std::size_t wanted = std::min(static_cast<std::size_t>(std::max(k, 0)), size());
   out.reset(self.rows, k, with_distances);

@@ -11,8 +11,8 @@
 
 namespace segorient::search {
 
-/// The search structure behind MedianHash, on plain arrays: regions by median subdivision, in each a
-/// hash of the points into cells (paper, section 2.1). Exact unless epsilon is set.
+/// The search structure behind MedianHash, on plain arrays: regions by median subdivision, in each
+/// a hash of the points into cells (paper, section 2.1). Exact unless epsilon is set.
 ///
 /// Distances are those of a plain float evaluation of dx*dx + dy*dy + dz*dz in that order, without
 /// fused operations; ties are settled by index. Queries are const and may run concurrently.
@@ -22,7 +22,7 @@ class MedianHashIndex {
   struct Options {
     std::size_t region_size = 2048;  ///< most points in a region
     int threads = 0;                 ///< 0 = all cores
-    float epsilon = 0.0F;            ///< distances at most (1 + epsilon) times the true ones; 0 = exact
+    float epsilon = 0.0F;  ///< distances at most (1 + epsilon) times the true ones; 0 = exact
   };
 
   MedianHashIndex();
@@ -41,9 +41,14 @@ class MedianHashIndex {
   std::size_t size() const;    ///< points that can be found
   std::size_t memory() const;  ///< bytes in use
 
-  /// The k nearest, ascending. Room for k entries each is the caller's.
+  /// The k nearest, ascending. Room for min(k, size()) entries each is the caller's.
   /// \return how many were found: min(k, size()), 0 for k <= 0
-  int nearestK(const float* query, int k, pcl::index_t* indices, float* sqr_distances) const;
+  int nearestK(const float* query, int k, pcl::index_t* indices, float* sqr_distances) const {
+    return nearestK(query, k, indices, sqr_distances, epsilon());
+  }
+  /// \param epsilon instead of the one of build()
+  int nearestK(const float* query, int k, pcl::index_t* indices, float* sqr_distances,
+               float epsilon) const;
 
   /// All points nearer than `radius` (strictly, as FLANN).
   /// \param max_nn keeps the closest max_nn only; 0 = all
@@ -53,7 +58,14 @@ class MedianHashIndex {
 
   /// The k nearest of every row that build() was given: row i of `out` belongs to row i (or to the
   /// i-th index) and begins with that point itself. Rows of points left out are empty.
-  void nearestKAll(int k, Neighborhoods& out, bool with_distances = true) const;
+  void nearestKAll(int k, Neighborhoods& out, bool with_distances = true) const {
+    nearestKAll(k, out, with_distances, epsilon());
+  }
+  /// \param epsilon instead of the one of build()
+  void nearestKAll(int k, Neighborhoods& out, bool with_distances, float epsilon) const;
+
+  float epsilon() const;                 ///< as given to build()
+  void setNumberOfThreads(int threads);  ///< 0 = all cores; results do not depend on it
 
  private:
   struct Impl;
