@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the segorient authors
+#pragma once
+
+#include <segorient/common/neighborhoods.h>
+#include <segorient/common/point_view.h>
+#include <segorient/segmentation/segmentation.h>
+
+#include <cstddef>
+
+namespace segorient {
+
+/// Settings of segmentByNormals(). Angles in radians, lengths in multiples of the local spacing, so
+/// nothing depends on the unit or the size of a cloud.
+struct SegmentationOptions {
+  float alpha = 0.2617994F;  ///< largest angle between the normals of two neighbours (15 degrees)
+  float beta =
+      0.5235988F;  ///< largest angle between a normal and the reference normal (30 degrees)
+  float epsilon = 0.1745329F;   ///< by how much the clean-up may exceed beta (10 degrees)
+  std::size_t small_size = 20;  ///< segments with fewer points are small
+  int neighbors = 0;  ///< neighbours of each row to use, the point itself not counted; 0 = all
+  /// Pass 1: share of the points around a small segment that another one must hold to take it in.
+  float neighbor_share = 0.4F;
+  /// Two points farther apart than this are no neighbours: growing does not jump gaps. 0 = no
+  /// limit.
+  float max_gap = 2.5F;
+  /// Two points are refused if one lies this far off the other's tangent plane: the sides of a thin
+  /// wall stay apart. Raised on noisy clouds, see offsetLimit(). 0 = no limit (the paper).
+  float max_offset = 0.5F;
+  bool absorb_small = true;  ///< clean-up pass 1: small segments join a neighbouring segment
+  bool extract_edges =
+      true;  ///< clean-up pass 2: points of small segments join regular ones singly
+  bool connect_small = true;  ///< clean-up pass 3: small segments that touch become connected ones
+  int threads = 0;            ///< see resolveThreads()
+};
+
+/// What the stages of segmentByNormals() did.
+struct SegmentationReport {
+  std::size_t grown = 0;      ///< segments after growing
+  std::size_t small = 0;      ///< small ones among them
+  std::size_t absorbed = 0;   ///< small segments that pass 1 joined with another one
+  std::size_t extracted = 0;  ///< points that pass 2 moved to regular segments
+  std::size_t regular = 0;    ///< segments of each kind at the end
+  std::size_t connected = 0;
+  std::size_t isolated = 0;
+  float offset_limit = 0.F;  ///< the limit in use, in local spacings
+};
+
+/// Cuts a cloud into segments of similar normals (paper, section 2.3): region growing by alpha and
+/// beta, then the three clean-up passes.
+///
+/// Seeds are taken flattest first (curvature, then index); growing is breadth-first; normals are
+/// compared without their signs, and each accepted one is given the sign that agrees with the
+/// segment. The local spacing of a point is the side of the square that it stands for, from its six
+/// nearest neighbours.
+///
+/// \param points all rows finite where the normal is finite
+/// \param normals row = unit normal and curvature (4 floats); points with a NaN normal get label -1
+/// \param neighborhoods of every point; rows without distances are measured anew
+/// \return empty if the sizes of the three do not agree
+Segmentation segmentByNormals(const PointView& points, const PointView& normals,
+                              const Neighborhoods& neighborhoods,
+                              const SegmentationOptions& options,
+                              SegmentationReport* report = nullptr);
+
+}  // namespace segorient

@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the segorient authors
+#pragma once
+
+#include <segorient/common/neighborhoods.h>
+#include <segorient/common/point_view.h>
+#include <segorient/segmentation/region_growing.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <vector>
+
+namespace segorient::segmentation {
+
+/// What one comparison of two neighbours needs, in half a cache line. Coordinates are scaled to the
+/// unit cube by a power of two; the normal takes on its segment's sign when the point is accepted.
+struct alignas(32) Node {
+  float x, y, z;
+  float spacing;  ///< 0 where unknown
+  float nx, ny, nz;
+  float curvature;
+};
+
+/// Sum of signed normals; in double, so that millions of points do not wear it out.
+struct NormalSum {
+  double x = 0, y = 0, z = 0;
+
+  void add(const Node& p, double sign = 1.0) {
+    x += sign * static_cast<double>(p.nx);
+    y += sign * static_cast<double>(p.ny);
+    z += sign * static_cast<double>(p.nz);
+  }
+  void add(const NormalSum& o, double sign) {
+    x += sign * o.x;
+    y += sign * o.y;
+    z += sign * o.z;
+  }
+  double dot(const NormalSum& o) const { return x * o.x + y * o.y + z * o.z; }
+  double dot(const Node& p) const {
+    return x * static_cast<double>(p.nx) + y * static_cast<double>(p.ny) +
+           z * static_cast<double>(p.nz);
+  }
+  double squaredNorm() const { return dot(*this); }
+};
+
+/// A segment in the making.
+struct Cluster {
+  NormalSum normal;
+  std::uint32_t size = 0;
+};
+
+inline float dotNormals(const Node& p, const Node& q) {
+  return p.nx * q.nx + p.ny * q.ny + p.nz * q.nz;
+}
+
+/// The two geometric conditions on neighbours; both are symmetric.
+struct PairLimits {
+  float gap_sqr = 0.F;  ///< squared, in units of the product of both spacings
+  float offset = 0.F;   ///< in units of the mean spacing
+
+  bool near(const Node& p, const Node& q) const {
+    const float dx = q.x - p.x;
+    const float dy = q.y - p.y;
+    const float dz = q.z - p.z;
+    return dx * dx + dy * dy + dz * dz <= gap_sqr * p.spacing * q.spacing;
+  }
+  bool admissible(const Node& p, const Node& q) const {
+    const float dx = q.x - p.x;
+    const float dy = q.y - p.y;
+    const float dz = q.z - p.z;
+    const float limit = offset * 0.5F * (p.spacing + q.spacing);
+    return dx * dx + dy * dy + dz * dz <= gap_sqr * p.spacing * q.spacing &&
+           std::abs(dx * p.nx + dy * p.ny + dz * p.nz) <= limit &&
+           std::abs(dx * q.nx + dy * q.ny + dz * q.nz) <= limit;
+  }
+};
+
+/// The state that growing and the clean-up passes work on.
+struct GrowthState {
+  const Neighborhoods* neighborhoods = nullptr;
+  int neighbors = 0;  ///< entries of each row to use, the first one (the point itself) included
+  float scale = 1.F;  ///< coordinates of the nodes for one unit of the cloud
+  PairLimits limits;
+  std::vector<Node> nodes;
+  std::vector<std::int32_t> labels;  ///< -1 = none
+  std::vector<std::int8_t> signs;
+  std::vector<std::uint8_t> on_border;  ///< 0 = surely no neighbour in another segment
+  std::vector<Cluster> clusters;
+  std::vector<SegmentKind> kinds;  ///< by cluster, after the clean-up
+
+  int rowSize(std::size_t row) const { return std::min(neighborhoods->count(row), neighbors); }
+};
+
+/// Scales and packs the points, finds the local spacing and the limits.
+void prepare(const PointView& points, const PointView& normals, const SegmentationOptions& options,
+             GrowthState& state);
+
+/// Region growing.
+void grow(const SegmentationOptions& options, GrowthState& state);
+
+/// The three clean-up passes; sets the kinds.
+void cleanUp(const SegmentationOptions& options, GrowthState& state, SegmentationReport& report);
+
+/// Final labels and segment data.
+Segmentation finish(const PointView& points, const GrowthState& state);
+
+}  // namespace segorient::segmentation

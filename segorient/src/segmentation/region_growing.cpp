@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the segorient authors
+#include <segorient/segmentation/region_growing.h>
+
+#include "growth_state.h"
+
+namespace segorient {
+
+Segmentation segmentByNormals(const PointView& points, const PointView& normals,
+                              const Neighborhoods& neighborhoods,
+                              const SegmentationOptions& options, SegmentationReport* report) {
+  SegmentationReport counts;
+  Segmentation result;
+  if (points.size > 0 && points.size == normals.size && points.size == neighborhoods.size()) {
+    segmentation::GrowthState state;
+    state.neighborhoods = &neighborhoods;
+    state.neighbors = neighborhoods.k();
+    if (options.neighbors > 0) state.neighbors = std::min(state.neighbors, options.neighbors + 1);
+    segmentation::prepare(points, normals, options, state);
+    counts.offset_limit = state.limits.offset;
+    segmentation::grow(options, state);
+    counts.grown = state.clusters.size();
+    for (const auto& cluster : state.clusters) counts.small += cluster.size < options.small_size;
+    segmentation::cleanUp(options, state, counts);
+    result = segmentation::finish(points, state);
+    for (const Segment& segment : result.segments) {
+      counts.regular += segment.kind == SegmentKind::Regular;
+      counts.connected += segment.kind == SegmentKind::Connected;
+      counts.isolated += segment.kind == SegmentKind::Isolated;
+    }
+  }
+  if (report != nullptr) *report = counts;
+  return result;
+}
+
+}  // namespace segorient

@@ -1,0 +1,243 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the segorient authors
+#include <numeric>
+
+#include "small_adjacency.h"
+
+namespace segorient::segmentation {
+namespace {
+
+constexpr float kRightAngle = 1.5707963F;
+
+/// The clean-up of section 2.3. Small segments are lists of points, so that joining them is cheap.
+class CleanUp {
+ public:
+  CleanUp(const SegmentationOptions& options, GrowthState& state)
+      : options_(options),
+        state_(state),
+        small_size_(static_cast<std::uint32_t>(
+            std::min<std::size_t>(options.small_size, std::numeric_limits<std::int32_t>::max()))),
+        adjacency_(state, small_size_),
+        cos_join_(std::cos(std::min(options.beta + options.epsilon, kRightAngle))),
+        cos_alpha_(std::cos(std::min(options.alpha, kRightAngle))) {}
+
+  void absorbSmall(SegmentationReport& report);
+  void extractEdges(SegmentationReport& report);
+  void connectSmall();
+
+ private:
+  struct Count {
+    std::int32_t label;
+    std::uint32_t points;
+  };
+
+  bool isSmall(std::int32_t label) const {
+    return state_.clusters[static_cast<std::size_t>(label)].size < small_size_;
+  }
+  std::int32_t bestHost(std::int32_t label);
+  void join(std::int32_t from, std::int32_t into);
+  bool tryExtract(std::uint32_t slot);
+  void flip(std::size_t p);
+
+  const SegmentationOptions& options_;
+  GrowthState& state_;
+  std::uint32_t small_size_;
+  SmallAdjacency adjacency_;
+  float cos_join_;
+  float cos_alpha_;
+  std::vector<Count> counts_;
+};
+
+void CleanUp::flip(std::size_t p) {
+  Node& node = state_.nodes[p];
+  node.nx = -node.nx;
+  node.ny = -node.ny;
+  node.nz = -node.nz;
+  state_.signs[p] = static_cast<std::int8_t>(-state_.signs[p]);
+}
+
+// Pass 1, one segment: the neighbouring segment of the smallest angle among those that hold enough
+// of the points around, or -1.
+std::int32_t CleanUp::bestHost(std::int32_t label) {
+  counts_.clear();
+  std::uint32_t total = 0;
+  adjacency_.forEachAround(label, [&](std::size_t q, bool admissible) {
+    ++total;
+    if (!admissible) return;
+    const std::int32_t other = state_.labels[q];
+    const auto it = std::find_if(counts_.begin(), counts_.end(),
+                                 [&](const Count& c) { return c.label == other; });
+    if (it == counts_.end()) {
+      counts_.push_back({other, 1});
+    } else {
+      ++it->points;
+    }
+  });
+  const NormalSum& own = state_.clusters[static_cast<std::size_t>(label)].normal;
+  std::int32_t best = -1;
+  double best_cosine = cos_join_;
+  for (const Count& c : counts_) {
+    if (static_cast<float>(c.points) <= options_.neighbor_share * static_cast<float>(total))
+      continue;
+    const NormalSum& other = state_.clusters[static_cast<std::size_t>(c.label)].normal;
+    const double cosine =
+        std::abs(own.dot(other)) / std::sqrt(own.squaredNorm() * other.squaredNorm());
+    if (cosine > best_cosine || (cosine == best_cosine && best >= 0 && c.label < best)) {
+      best_cosine = cosine;
+      best = c.label;
+    }
+  }
+  return best;
+}
+
+void CleanUp::join(std::int32_t from, std::int32_t into) {
+  Cluster& source = state_.clusters[static_cast<std::size_t>(from)];
+  Cluster& target = state_.clusters[static_cast<std::size_t>(into)];
+  const double sign = target.normal.dot(source.normal) < 0.0 ? -1.0 : 1.0;
+  adjacency_.forEachPoint(from, [&](std::size_t p) {
+    state_.labels[p] = into;
+    if (sign < 0.0) flip(p);
+  });
+  target.normal.add(source.normal, sign);
+  target.size += source.size;
+  source = Cluster{};
+  adjacency_.append(from, into);
+}
+
+// Ascending size; a small segment that has taken in another one has its turn again at its new size.
+void CleanUp::absorbSmall(SegmentationReport& report) {
+  std::vector<std::vector<std::int32_t>> by_size(small_size_);
+  for (std::size_t s = 0; s < state_.clusters.size(); ++s) {
+    const std::uint32_t size = state_.clusters[s].size;
+    if (size < small_size_) by_size[size].push_back(static_cast<std::int32_t>(s));
+  }
+  for (std::uint32_t size = 1; size < small_size_; ++size) {
+    for (std::size_t i = 0; i < by_size[size].size(); ++i) {
+      const std::int32_t label = by_size[size][i];
+      if (state_.clusters[static_cast<std::size_t>(label)].size != size) continue;
+      const std::int32_t host = bestHost(label);
+      if (host < 0) continue;
+      join(label, host);
+      ++report.absorbed;
+      const std::uint32_t new_size = state_.clusters[static_cast<std::size_t>(host)].size;
+      if (new_size < small_size_) by_size[new_size].push_back(host);
+    }
+  }
+}
+
+// Pass 2, one point: into the regular segment whose reference normal is nearest to its own.
+bool CleanUp::tryExtract(std::uint32_t slot) {
+  const std::size_t p = adjacency_.point(slot);
+  const std::int32_t own = state_.labels[p];
+  std::int32_t best = -1;
+  double best_cosine = cos_join_;
+  double best_sign = 1.0;
+  adjacency_.forEachNeighbor(slot, [&](std::size_t q) {
+    const std::int32_t label = state_.labels[q];
+    if (label == own || isSmall(label)) return;
+    const Node& node = state_.nodes[p];
+    if (!(std::abs(dotNormals(node, state_.nodes[q])) > cos_alpha_)) return;
+    if (!state_.limits.admissible(node, state_.nodes[q])) return;
+    const NormalSum& reference = state_.clusters[static_cast<std::size_t>(label)].normal;
+    const double along = reference.dot(node) / std::sqrt(reference.squaredNorm());
+    const double cosine = std::abs(along);
+    if (cosine > best_cosine || (cosine == best_cosine && best >= 0 && label < best)) {
+      best_cosine = cosine;
+      best = label;
+      best_sign = along < 0.0 ? -1.0 : 1.0;
+    }
+  });
+  if (best < 0) return false;
+  Cluster& source = state_.clusters[static_cast<std::size_t>(own)];
+  Cluster& target = state_.clusters[static_cast<std::size_t>(best)];
+  source.normal.add(state_.nodes[p], -1.0);
+  --source.size;
+  if (best_sign < 0.0) flip(p);
+  target.normal.add(state_.nodes[p]);
+  ++target.size;
+  state_.labels[p] = best;
+  return true;
+}
+
+// A point is tried again whenever a neighbour of it has moved, until nothing moves.
+void CleanUp::extractEdges(SegmentationReport& report) {
+  std::vector<std::uint32_t> queue;
+  std::vector<std::uint8_t> queued(adjacency_.size(), 0);
+  for (std::uint32_t slot = 0; slot < adjacency_.size(); ++slot) {
+    if (!isSmall(state_.labels[adjacency_.point(slot)])) continue;
+    queue.push_back(slot);
+    queued[slot] = 1;
+  }
+  for (std::size_t head = 0; head < queue.size(); ++head) {
+    const std::uint32_t slot = queue[head];
+    queued[slot] = 0;
+    if (!isSmall(state_.labels[adjacency_.point(slot)]) || !tryExtract(slot)) continue;
+    ++report.extracted;
+    adjacency_.forEachNeighbor(slot, [&](std::size_t q) {
+      const std::uint32_t other = adjacency_.slot(q);
+      if (other == SmallAdjacency::kNone || queued[other] != 0 || !isSmall(state_.labels[q]))
+        return;
+      queue.push_back(other);
+      queued[other] = 1;
+    });
+  }
+}
+
+// Pass 3: union-find over the small segments that touch.
+void CleanUp::connectSmall() {
+  std::vector<std::int32_t> parent(state_.clusters.size());
+  std::iota(parent.begin(), parent.end(), 0);
+  const auto find = [&](std::int32_t s) {
+    while (parent[static_cast<std::size_t>(s)] != s) {
+      auto& up = parent[static_cast<std::size_t>(s)];
+      up = parent[static_cast<std::size_t>(up)];
+      s = up;
+    }
+    return s;
+  };
+  for (std::uint32_t slot = 0; slot < adjacency_.size(); ++slot) {
+    const std::int32_t own = state_.labels[adjacency_.point(slot)];
+    if (!isSmall(own)) continue;
+    adjacency_.forEachNeighbor(slot, [&](std::size_t q) {
+      const std::int32_t other = state_.labels[q];
+      if (other == own || !isSmall(other)) return;
+      const std::int32_t a = find(own);
+      const std::int32_t b = find(other);
+      // The smaller label stays the root: the result does not depend on the order of the unions.
+      if (a != b) parent[static_cast<std::size_t>(std::max(a, b))] = std::min(a, b);
+    });
+  }
+  std::vector<std::int8_t> sign(state_.clusters.size(), 1);
+  for (std::size_t s = 0; s < state_.clusters.size(); ++s) {
+    Cluster& cluster = state_.clusters[s];
+    const auto root = static_cast<std::size_t>(find(static_cast<std::int32_t>(s)));
+    if (root == s || cluster.size == 0) continue;
+    Cluster& target = state_.clusters[root];
+    if (target.normal.dot(cluster.normal) < 0.0) sign[s] = -1;
+    target.normal.add(cluster.normal, sign[s]);
+    target.size += cluster.size;
+    state_.kinds[root] = SegmentKind::Connected;
+    cluster = Cluster{};
+  }
+  for (std::uint32_t slot = 0; slot < adjacency_.size(); ++slot) {
+    const std::size_t p = adjacency_.point(slot);
+    const std::int32_t own = state_.labels[p];
+    if (sign[static_cast<std::size_t>(own)] < 0) flip(p);
+    state_.labels[p] = find(own);
+  }
+}
+
+}  // namespace
+
+void cleanUp(const SegmentationOptions& options, GrowthState& state, SegmentationReport& report) {
+  CleanUp passes(options, state);
+  if (options.absorb_small) passes.absorbSmall(report);
+  if (options.extract_edges) passes.extractEdges(report);
+  state.kinds.assign(state.clusters.size(), SegmentKind::Regular);
+  for (std::size_t s = 0; s < state.clusters.size(); ++s) {
+    if (state.clusters[s].size < options.small_size) state.kinds[s] = SegmentKind::Isolated;
+  }
+  if (options.connect_small) passes.connectSmall();
+}
+
+}  // namespace segorient::segmentation

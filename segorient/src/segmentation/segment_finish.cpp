@@ -1,0 +1,142 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the segorient authors
+#include <Eigen/Eigenvalues>
+#include <numeric>
+
+#include "growth_state.h"
+
+namespace segorient::segmentation {
+namespace {
+
+/// Moments of a segment's points about one of them: far from the origin nothing is lost.
+struct Moments {
+  std::array<double, 3> origin{0, 0, 0};
+  std::array<double, 3> sum{0, 0, 0};
+  std::array<double, 6> products{0, 0, 0, 0, 0, 0};  ///< xx xy xz yy yz zz
+  double area = 0;
+
+  void add(const float* point) {
+    std::array<double, 3> d;
+    for (std::size_t c = 0; c < 3; ++c) {
+      d[c] = static_cast<double>(point[c]) - origin[c];
+      sum[c] += d[c];
+    }
+    std::size_t at = 0;
+    for (std::size_t r = 0; r < 3; ++r) {
+      for (std::size_t c = r; c < 3; ++c) products[at++] += d[r] * d[c];
+    }
+  }
+};
+
+// New label of each cluster, -1 for those that are empty now: descending size, then smallest
+// member.
+std::vector<std::int32_t> rankClusters(const GrowthState& state, std::size_t& count) {
+  const std::size_t clusters = state.clusters.size();
+  std::vector<std::size_t> smallest(clusters, state.nodes.size());
+  for (std::size_t p = state.nodes.size(); p-- > 0;) {
+    if (state.labels[p] >= 0) smallest[static_cast<std::size_t>(state.labels[p])] = p;
+  }
+  std::vector<std::int32_t> order(clusters);
+  std::iota(order.begin(), order.end(), 0);
+  const auto empty = [&](std::int32_t s) {
+    return state.clusters[static_cast<std::size_t>(s)].size == 0;
+  };
+  order.erase(std::remove_if(order.begin(), order.end(), empty), order.end());
+  std::sort(order.begin(), order.end(), [&](std::int32_t s, std::int32_t t) {
+    const auto a = static_cast<std::size_t>(s);
+    const auto b = static_cast<std::size_t>(t);
+    if (state.clusters[a].size != state.clusters[b].size) {
+      return state.clusters[a].size > state.clusters[b].size;
+    }
+    return smallest[a] < smallest[b];
+  });
+  std::vector<std::int32_t> rank(clusters, -1);
+  for (std::size_t r = 0; r < order.size(); ++r) {
+    rank[static_cast<std::size_t>(order[r])] = static_cast<std::int32_t>(r);
+  }
+  count = order.size();
+  return rank;
+}
+
+void fillMembers(Segmentation& result) {
+  std::uint32_t first = 0;
+  for (Segment& segment : result.segments) {
+    segment.first = first;
+    first += segment.size;
+  }
+  result.members.resize(first);
+  std::vector<std::uint32_t> next(result.segments.size());
+  for (std::size_t s = 0; s < next.size(); ++s) next[s] = result.segments[s].first;
+  for (std::size_t p = 0; p < result.labels.size(); ++p) {
+    const std::int32_t label = result.labels[p];
+    if (label < 0) continue;
+    result.members[next[static_cast<std::size_t>(label)]++] = static_cast<pcl::index_t>(p);
+  }
+}
+
+void setShape(const Moments& m, Segment& segment) {
+  const double n = segment.size;
+  Eigen::Vector3d mean(m.sum[0] / n, m.sum[1] / n, m.sum[2] / n);
+  for (std::size_t c = 0; c < 3; ++c) {
+    segment.centroid[c] = static_cast<float>(m.origin[c] + mean[static_cast<Eigen::Index>(c)]);
+  }
+  segment.area = static_cast<float>(m.area);
+  if (segment.size < 4) return;  // three points lie in their plane
+  const auto& s = m.products;
+  Eigen::Matrix3d covariance;
+  covariance << s[0], s[1], s[2], s[1], s[3], s[4], s[2], s[4], s[5];
+  covariance = covariance / n - mean * mean.transpose();
+  Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver;
+  solver.computeDirect(covariance, Eigen::EigenvaluesOnly);
+  segment.rms = static_cast<float>(std::sqrt(std::max(0.0, solver.eigenvalues()[0])));
+}
+
+void measure(const PointView& points, const GrowthState& state, Segmentation& result) {
+  std::vector<Moments> moments(result.segments.size());
+  for (std::size_t s = 0; s < moments.size(); ++s) {
+    const float* origin = points[static_cast<std::size_t>(*result.begin(s))];
+    for (std::size_t c = 0; c < 3; ++c) moments[s].origin[c] = static_cast<double>(origin[c]);
+  }
+  const double scale = 1.0 / static_cast<double>(state.scale);
+  for (std::size_t p = 0; p < result.labels.size(); ++p) {
+    if (result.labels[p] < 0) continue;
+    Moments& m = moments[static_cast<std::size_t>(result.labels[p])];
+    const double side = static_cast<double>(state.nodes[p].spacing) * scale;
+    m.area += side * side;
+    m.add(points[p]);
+  }
+  for (std::size_t s = 0; s < moments.size(); ++s) setShape(moments[s], result.segments[s]);
+}
+
+}  // namespace
+
+Segmentation finish(const PointView& points, const GrowthState& state) {
+  std::size_t count = 0;
+  const std::vector<std::int32_t> rank = rankClusters(state, count);
+  Segmentation result;
+  result.segments.resize(count);
+  for (std::size_t s = 0; s < rank.size(); ++s) {
+    if (rank[s] < 0) continue;
+    Segment& segment = result.segments[static_cast<std::size_t>(rank[s])];
+    const NormalSum& n = state.clusters[s].normal;
+    const double length = std::sqrt(n.squaredNorm());
+    if (length > 0.0) {
+      segment.reference_normal = {static_cast<float>(n.x / length),
+                                  static_cast<float>(n.y / length),
+                                  static_cast<float>(n.z / length)};
+    }
+    segment.kind = state.kinds[s];
+    segment.size = state.clusters[s].size;
+  }
+  result.labels.resize(state.labels.size());
+  for (std::size_t p = 0; p < state.labels.size(); ++p) {
+    const std::int32_t label = state.labels[p];
+    result.labels[p] = label < 0 ? -1 : rank[static_cast<std::size_t>(label)];
+  }
+  result.signs = state.signs;
+  fillMembers(result);
+  measure(points, state, result);
+  return result;
+}
+
+}  // namespace segorient::segmentation

@@ -1,0 +1,170 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the segorient authors
+#include <segorient/common/threads.h>
+
+#include <array>
+#include <limits>
+
+#include "growth_state.h"
+
+namespace segorient::segmentation {
+namespace {
+
+/// Neighbours that the local spacing is averaged over: the first ring.
+constexpr int kRing = 6;
+/// On a surface with one random sample per square of side 1 the squared distance to the i-th
+/// neighbour is i / pi in the mean, so over the first six it is 3.5 / pi.
+constexpr float kSqrSpacingPerMean = 3.14159265F / 3.5F;
+/// Points that the noise is estimated from.
+constexpr std::size_t kNoiseSamples = 4096;
+
+struct Scaling {
+  std::array<float, 3> center{0.F, 0.F, 0.F};
+  float scale = 1.F;
+};
+
+// To the unit cube: squares of coordinates then neither overflow nor vanish.
+Scaling scalingOf(const PointView& points) {
+  std::array<float, 3> low;
+  std::array<float, 3> high;
+  low.fill(std::numeric_limits<float>::max());
+  high.fill(std::numeric_limits<float>::lowest());
+  for (std::size_t i = 0; i < points.size; ++i) {
+    const float* p = points[i];
+    if (!isFinite(p)) continue;
+    for (std::size_t c = 0; c < 3; ++c) {
+      low[c] = std::min(low[c], p[c]);
+      high[c] = std::max(high[c], p[c]);
+    }
+  }
+  Scaling scaling;
+  float extent = 0.F;
+  for (std::size_t c = 0; c < 3; ++c) {
+    if (high[c] < low[c]) return scaling;
+    scaling.center[c] = 0.5F * low[c] + 0.5F * high[c];
+    extent = std::max(extent, 0.5F * high[c] - 0.5F * low[c]);
+  }
+  int exponent = 0;
+  std::frexp(extent, &exponent);
+  // Both factors of a scale beyond 2^127 would not fit: such clouds are points for us anyway.
+  if (extent > 0.F) scaling.scale = std::ldexp(1.F, std::clamp(-exponent, -126, 127));
+  return scaling;
+}
+
+// Mean squared distance to the first ring, duplicates left out.
+float sqrSpacing(const Node* nodes, const pcl::index_t* row, std::size_t p, int count) {
+  float sum = 0.F;
+  int found = 0;
+  for (int j = 1; j < count && found < kRing; ++j) {
+    const Node& q = nodes[row[j]];
+    const float dx = q.x - nodes[p].x;
+    const float dy = q.y - nodes[p].y;
+    const float dz = q.z - nodes[p].z;
+    const float d = dx * dx + dy * dy + dz * dz;
+    if (d > 0.F) {
+      sum += d;
+      ++found;
+    }
+  }
+  return found > 0 ? sum / static_cast<float>(found) : 0.F;
+}
+
+float sqrSpacing(const float* sqr_distances, int count) {
+  float sum = 0.F;
+  int found = 0;
+  for (int j = 1; j < count && found < kRing; ++j) {
+    if (sqr_distances[j] > 0.F) {
+      sum += sqr_distances[j];
+      ++found;
+    }
+  }
+  return found > 0 ? sum / static_cast<float>(found) : 0.F;
+}
+
+void packNodes(const PointView& points, const PointView& normals, const Scaling& scaling,
+               int threads, GrowthState& state) {
+  const auto n = static_cast<std::ptrdiff_t>(points.size);
+  state.nodes.resize(points.size);
+  Node* nodes = state.nodes.data();
+#pragma omp parallel for num_threads(threads) schedule(static)
+  for (std::ptrdiff_t i = 0; i < n; ++i) {
+    const auto row = static_cast<std::size_t>(i);
+    const float* p = points[row];
+    const float* m = normals[row];
+    Node& node = nodes[row];
+    node.x = (p[0] - scaling.center[0]) * scaling.scale;
+    node.y = (p[1] - scaling.center[1]) * scaling.scale;
+    node.z = (p[2] - scaling.center[2]) * scaling.scale;
+    // A zero normal becomes NaN: not usable.
+    const float length = std::sqrt(m[0] * m[0] + m[1] * m[1] + m[2] * m[2]);
+    node.nx = m[0] / length;
+    node.ny = m[1] / length;
+    node.nz = m[2] / length;
+    node.curvature = m[3];
+  }
+}
+
+void measureSpacing(const Scaling& scaling, int threads, GrowthState& state) {
+  const Neighborhoods& hood = *state.neighborhoods;
+  const auto n = static_cast<std::ptrdiff_t>(state.nodes.size());
+  Node* nodes = state.nodes.data();
+  const float square = scaling.scale * scaling.scale;
+  // The table's own distances save the look-up of the neighbours, but may have over- or
+  // underflowed.
+  const bool use_table = hood.hasDistances() && square > 1e-24F && square < 1e24F;
+#pragma omp parallel for num_threads(threads) schedule(static)
+  for (std::ptrdiff_t i = 0; i < n; ++i) {
+    const auto row = static_cast<std::size_t>(i);
+    const int count = hood.count(row);
+    const float mean = use_table ? sqrSpacing(hood.sqrDistances(row), count) * square
+                                 : sqrSpacing(nodes, hood.indices(row), row, count);
+    nodes[row].spacing = std::sqrt(mean * kSqrSpacingPerMean);
+  }
+}
+
+// Root mean square offset of the first ring from a point's tangent plane, in spacings: the median
+// over the cloud. It is the noise, times a factor near the square root of two.
+float medianOffset(const GrowthState& state) {
+  const std::size_t n = state.nodes.size();
+  const std::size_t step = std::max<std::size_t>(1, n / kNoiseSamples);
+  std::vector<float> offsets;
+  for (std::size_t i = 0; i < n; i += step) {
+    const Node& p = state.nodes[i];
+    const pcl::index_t* row = state.neighborhoods->indices(i);
+    const int count = std::min(state.neighborhoods->count(i), kRing + 1);
+    if (count < 2 || !(p.spacing > 0.F) || !std::isfinite(p.nx)) continue;
+    float sum = 0.F;
+    for (int j = 1; j < count; ++j) {
+      const Node& q = state.nodes[static_cast<std::size_t>(row[j])];
+      const float offset = (q.x - p.x) * p.nx + (q.y - p.y) * p.ny + (q.z - p.z) * p.nz;
+      sum += offset * offset;
+    }
+    offsets.push_back(std::sqrt(sum / static_cast<float>(count - 1)) / p.spacing);
+  }
+  if (offsets.empty()) return 0.F;
+  const auto middle = offsets.begin() + static_cast<std::ptrdiff_t>(offsets.size() / 2);
+  std::nth_element(offsets.begin(), middle, offsets.end());
+  return *middle;
+}
+
+}  // namespace
+
+void prepare(const PointView& points, const PointView& normals, const SegmentationOptions& options,
+             GrowthState& state) {
+  const int threads = resolveThreads(options.threads);
+  const Scaling scaling = scalingOf(points);
+  state.scale = scaling.scale;
+  packNodes(points, normals, scaling, threads, state);
+  measureSpacing(scaling, threads, state);
+
+  constexpr float kNoLimit = std::numeric_limits<float>::max();
+  state.limits.gap_sqr = options.max_gap > 0.F ? options.max_gap * options.max_gap : kNoLimit;
+  state.limits.offset = kNoLimit;
+  if (options.max_offset > 0.F) {
+    // Two deviations of a noisy neighbour, and never so much that a wall of one spacing would leak.
+    const float noise = 2.F * medianOffset(state);
+    state.limits.offset = std::clamp(noise, options.max_offset, std::max(0.9F, options.max_offset));
+  }
+}
+
+}  // namespace segorient::segmentation

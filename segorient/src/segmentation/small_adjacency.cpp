@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the segorient authors
+#include "small_adjacency.h"
+
+namespace segorient::segmentation {
+
+SmallAdjacency::SmallAdjacency(const GrowthState& state, std::uint32_t small_size)
+    : state_(state),
+      slots_(state.nodes.size(), kNone),
+      heads_(state.clusters.size(), kNone),
+      tails_(state.clusters.size(), kNone),
+      stamps_(state.nodes.size()) {
+  for (std::size_t p = 0; p < state.nodes.size(); ++p) {
+    const std::int32_t label = state.labels[p];
+    if (label < 0 || state.clusters[static_cast<std::size_t>(label)].size >= small_size) continue;
+    const auto slot = static_cast<std::uint32_t>(points_.size());
+    slots_[p] = slot;
+    points_.push_back(static_cast<pcl::index_t>(p));
+    next_.push_back(kNone);
+    const auto segment = static_cast<std::size_t>(label);
+    if (heads_[segment] == kNone) {
+      heads_[segment] = slot;
+    } else {
+      next_[tails_[segment]] = slot;
+    }
+    tails_[segment] = slot;
+  }
+  listReverse();
+}
+
+// Only points on a border can have a neighbour in another segment, and only those of other segments
+// are of interest: a segment's own points do not count as neighbours of it.
+void SmallAdjacency::listReverse() {
+  reverse_starts_.assign(points_.size() + 1, 0);
+  if (points_.empty()) return;
+  const auto forEachReverse = [&](auto&& visit) {
+    for (std::size_t p = 0; p < state_.nodes.size(); ++p) {
+      if (state_.on_border[p] == 0 || state_.labels[p] < 0) continue;
+      const pcl::index_t* row = state_.neighborhoods->indices(p);
+      const int count = state_.rowSize(p);
+      for (int j = 1; j < count; ++j) {
+        const auto q = static_cast<std::size_t>(row[j]);
+        if (slots_[q] != kNone && state_.labels[q] != state_.labels[p]) visit(slots_[q], p);
+      }
+    }
+  };
+  forEachReverse([&](std::uint32_t slot, std::size_t) { ++reverse_starts_[slot + 1]; });
+  for (std::size_t s = 0; s < points_.size(); ++s) reverse_starts_[s + 1] += reverse_starts_[s];
+  reverse_.resize(reverse_starts_.back());
+  std::vector<std::size_t> next(reverse_starts_.begin(), reverse_starts_.end() - 1);
+  forEachReverse([&](std::uint32_t slot, std::size_t p) {
+    reverse_[next[slot]++] = static_cast<pcl::index_t>(p);
+  });
+}
+
+void SmallAdjacency::append(std::int32_t from, std::int32_t into) {
+  const auto a = static_cast<std::size_t>(from);
+  const auto b = static_cast<std::size_t>(into);
+  if (heads_[b] != kNone) {
+    next_[tails_[b]] = heads_[a];
+    tails_[b] = tails_[a];
+  }
+  heads_[a] = kNone;
+  tails_[a] = kNone;
+}
+
+}  // namespace segorient::segmentation

@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the segorient authors
+#pragma once
+
+#include <limits>
+
+#include "growth_state.h"
+
+namespace segorient::segmentation {
+
+/// The points of small segments ("slots"), their neighbours in both directions (two points are
+/// neighbours if either is among the other's), and the small segments as lists of points.
+class SmallAdjacency {
+ public:
+  static constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
+
+  SmallAdjacency(const GrowthState& state, std::uint32_t small_size);
+
+  std::uint32_t size() const { return static_cast<std::uint32_t>(points_.size()); }
+  std::size_t point(std::uint32_t slot) const { return static_cast<std::size_t>(points_[slot]); }
+  /// Slot of a point, kNone for points of segments that were regular from the start.
+  std::uint32_t slot(std::size_t point) const { return slots_[point]; }
+
+  /// visit(point) for each labelled neighbour of a slot's point that no gap parts from it.
+  /// Neighbours in both directions come twice.
+  template <typename Visit>
+  void forEachNeighbor(std::uint32_t slot, Visit&& visit) const {
+    const std::size_t p = point(slot);
+    const auto visitNear = [&](pcl::index_t index) {
+      const auto q = static_cast<std::size_t>(index);
+      if (state_.labels[q] >= 0 && state_.limits.near(state_.nodes[p], state_.nodes[q])) visit(q);
+    };
+    const pcl::index_t* row = state_.neighborhoods->indices(p);
+    const int count = state_.rowSize(p);
+    for (int j = 1; j < count; ++j) visitNear(row[j]);
+    for (std::size_t i = reverse_starts_[slot]; i < reverse_starts_[slot + 1]; ++i) {
+      visitNear(reverse_[i]);
+    }
+  }
+
+  /// visit(point) for the points of a small segment.
+  template <typename Visit>
+  void forEachPoint(std::int32_t label, Visit&& visit) const {
+    for (std::uint32_t s = heads_[static_cast<std::size_t>(label)]; s != kNone; s = next_[s]) {
+      visit(point(s));
+    }
+  }
+
+  /// visit(point, admissible) once for each point around a small segment; `admissible` if it lies
+  /// in the surface of at least one point of the segment.
+  template <typename Visit>
+  void forEachAround(std::int32_t label, Visit&& visit) {
+    around_.clear();
+    ++stamp_;
+    for (std::uint32_t s = heads_[static_cast<std::size_t>(label)]; s != kNone; s = next_[s]) {
+      const Node& node = state_.nodes[point(s)];
+      forEachNeighbor(s, [&](std::size_t q) {
+        if (state_.labels[q] == label) return;
+        if (stamps_[q].id != stamp_) {
+          stamps_[q] = {stamp_, static_cast<std::uint32_t>(around_.size())};
+          around_.push_back({q, false});
+        }
+        Around& entry = around_[stamps_[q].position];
+        entry.admissible = entry.admissible || state_.limits.admissible(node, state_.nodes[q]);
+      });
+    }
+    for (const Around& a : around_) visit(a.point, a.admissible);
+  }
+
+  /// The points of one small segment become another one's; nothing to do for a regular one.
+  void append(std::int32_t from, std::int32_t into);
+
+ private:
+  struct Around {
+    std::size_t point;
+    bool admissible;
+  };
+  struct Stamp {
+    std::uint32_t id = 0;
+    std::uint32_t position = 0;
+  };
+
+  void listReverse();
+
+  const GrowthState& state_;
+  std::vector<pcl::index_t> points_;
+  std::vector<std::uint32_t> slots_;
+  std::vector<std::uint32_t> heads_, tails_, next_;
+  std::vector<std::size_t> reverse_starts_;
+  std::vector<pcl::index_t> reverse_;
+  std::vector<Stamp> stamps_;
+  std::uint32_t stamp_ = 0;
+  std::vector<Around> around_;
+};
+
+}  // namespace segorient::segmentation
