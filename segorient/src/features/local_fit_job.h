@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the segorient authors
+#pragma once
+
+#include <segorient/features/local_normals.h>
+
+#include <cstddef>
+
+namespace segorient::detail {
+
+/// What a kernel works on; see estimateNormals().
+struct LocalFitJob {
+  PointView queries;
+  const float* xyz = nullptr;  ///< the neighbours' coordinates, 4 floats a point
+  const Neighborhoods* neighborhoods = nullptr;
+  const pcl::index_t* rows = nullptr;  ///< rows to do, or null for all
+  NormalEstimator estimator = NormalEstimator::Plane;
+  NormalEstimator first_guess = NormalEstimator::Plane;
+  int entries = 0;  ///< most entries of a row to use, the point itself included
+  float* normals = nullptr;
+  LocalCurvature* curvatures = nullptr;
+
+  std::size_t row(std::size_t i) const { return rows ? static_cast<std::size_t>(rows[i]) : i; }
+  int count(std::size_t r) const {
+    const int c = neighborhoods->count(r);
+    return c < entries ? c : entries;
+  }
+};
+
+/// Plane of one row in double precision, for neighbourhoods that are too slim for float.
+/// \return false, and NaN in `normal` (nx, ny, nz, curvature), where there is no plane
+bool fitPlaneExactly(const LocalFitJob& job, std::size_t row, float* normal);
+
+}  // namespace segorient::detail

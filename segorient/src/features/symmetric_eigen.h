@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the segorient authors
+#pragma once
+
+namespace segorient::detail {
+
+struct SymmetricMatrix3 {
+  double xx, xy, xz, yy, yz, zz;
+};
+
+struct SymmetricEigen3 {
+  double values[3];      ///< ascending
+  double vectors[3][3];  ///< vectors[i] is the unit vector of values[i]; right-handed
+};
+
+/// All eigenvalues and eigenvectors by Jacobi rotations: slower than a closed form, and accurate to
+/// the last bits for any spread of eigenvalues. A matrix with NaN or infinite entries gives NaN
+/// values.
+SymmetricEigen3 symmetricEigen(const SymmetricMatrix3& m);
+
+}  // namespace segorient::detail
