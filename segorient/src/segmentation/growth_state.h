@@ -54,7 +54,7 @@ inline float dotNormals(const Node& p, const Node& q) {
   return p.nx * q.nx + p.ny * q.ny + p.nz * q.nz;
 }
 
-/// The two geometric conditions on neighbours; both are symmetric.
+/// The two geometric conditions on neighbours.
 struct PairLimits {
   float gap_sqr = 0.F;  ///< squared, in units of the product of both spacings
   float offset = 0.F;   ///< in units of the mean spacing
@@ -65,14 +65,15 @@ struct PairLimits {
     const float dz = q.z - p.z;
     return dx * dx + dy * dy + dz * dz <= gap_sqr * p.spacing * q.spacing;
   }
+  /// Whether q lies in the surface around p: p's tangent plane alone, as the normal of a candidate
+  /// near an edge leans over.
   bool admissible(const Node& p, const Node& q) const {
     const float dx = q.x - p.x;
     const float dy = q.y - p.y;
     const float dz = q.z - p.z;
     const float limit = offset * 0.5F * (p.spacing + q.spacing);
     return dx * dx + dy * dy + dz * dz <= gap_sqr * p.spacing * q.spacing &&
-           std::abs(dx * p.nx + dy * p.ny + dz * p.nz) <= limit &&
-           std::abs(dx * q.nx + dy * q.ny + dz * q.nz) <= limit;
+           std::abs(dx * p.nx + dy * p.ny + dz * p.nz) <= limit;
   }
 };
 

@@ -137,7 +137,7 @@ bool CleanUp::tryExtract(std::uint32_t slot) {
     if (label == own || isSmall(label)) return;
     const Node& node = state_.nodes[p];
     if (!(std::abs(dotNormals(node, state_.nodes[q])) > cos_alpha_)) return;
-    if (!state_.limits.admissible(node, state_.nodes[q])) return;
+    if (!state_.limits.admissible(state_.nodes[q], node)) return;
     const NormalSum& reference = state_.clusters[static_cast<std::size_t>(label)].normal;
     const double along = reference.dot(node) / std::sqrt(reference.squaredNorm());
     const double cosine = std::abs(along);

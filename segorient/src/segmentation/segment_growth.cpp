@@ -70,7 +70,8 @@ class Grower {
       : state_(state),
         cos_alpha_(options.alpha < kRightAngle ? std::cos(options.alpha) : 0.F),
         cos_beta_(options.beta < kRightAngle ? std::cos(options.beta) : -1.F),
-        sqr_cos_beta_(static_cast<double>(cos_beta_) * static_cast<double>(cos_beta_)) {}
+        sqr_cos_beta_(static_cast<double>(cos_beta_) * static_cast<double>(cos_beta_)),
+        max_curvature_(options.max_curvature) {}
 
   void grow(std::size_t seed) {
     label_ = static_cast<std::int32_t>(state_.clusters.size());
@@ -103,6 +104,7 @@ class Grower {
     cluster_.normal.add(node);
     ++cluster_.size;
     threshold_ = sqr_cos_beta_ * cluster_.normal.squaredNorm();
+    if (node.curvature > max_curvature_ && cluster_.size > 1) return;
     queue_.push_back(static_cast<pcl::index_t>(q));
   }
 
@@ -136,9 +138,10 @@ class Grower {
   float cos_alpha_;
   float cos_beta_;  ///< negative = no condition on the reference normal
   double sqr_cos_beta_;
+  float max_curvature_;
   std::int32_t label_ = 0;
   Cluster cluster_;
-  double threshold_ = 0.0;
+  double threshold_ = 0.0;  ///< squared length that the sum must have along a candidate
   std::vector<pcl::index_t> queue_;
 };
 

@@ -122,9 +122,11 @@ void measureSpacing(const Scaling& scaling, int threads, GrowthState& state) {
   }
 }
 
-// Root mean square offset of the first ring from a point's tangent plane, in spacings: the median
-// over the cloud. It is the noise, times a factor near the square root of two.
-float medianOffset(const GrowthState& state) {
+// Typical offset of a neighbour from a tangent plane in spacings, as a standard deviation: medians
+// of the first ring and over the cloud, which neither edges nor the far side of a thin wall pull
+// up.
+float typicalOffset(const GrowthState& state) {
+  constexpr float kDeviationPerMedian = 1.4826F;
   const std::size_t n = state.nodes.size();
   const std::size_t step = std::max<std::size_t>(1, n / kNoiseSamples);
   std::vector<float> offsets;
@@ -132,19 +134,20 @@ float medianOffset(const GrowthState& state) {
     const Node& p = state.nodes[i];
     const pcl::index_t* row = state.neighborhoods->indices(i);
     const int count = std::min(state.neighborhoods->count(i), kRing + 1);
-    if (count < 2 || !(p.spacing > 0.F) || !std::isfinite(p.nx)) continue;
-    float sum = 0.F;
+    if (count < kRing || !(p.spacing > 0.F) || !std::isfinite(p.nx)) continue;
+    std::array<float, kRing> ring{};
     for (int j = 1; j < count; ++j) {
       const Node& q = state.nodes[static_cast<std::size_t>(row[j])];
-      const float offset = (q.x - p.x) * p.nx + (q.y - p.y) * p.ny + (q.z - p.z) * p.nz;
-      sum += offset * offset;
+      ring[static_cast<std::size_t>(j - 1)] =
+          std::abs((q.x - p.x) * p.nx + (q.y - p.y) * p.ny + (q.z - p.z) * p.nz);
     }
-    offsets.push_back(std::sqrt(sum / static_cast<float>(count - 1)) / p.spacing);
+    std::sort(ring.begin(), ring.begin() + (count - 1));
+    offsets.push_back(ring[static_cast<std::size_t>((count - 1) / 2)] / p.spacing);
   }
   if (offsets.empty()) return 0.F;
   const auto middle = offsets.begin() + static_cast<std::ptrdiff_t>(offsets.size() / 2);
   std::nth_element(offsets.begin(), middle, offsets.end());
-  return *middle;
+  return kDeviationPerMedian * *middle;
 }
 
 }  // namespace
@@ -162,8 +165,8 @@ void prepare(const PointView& points, const PointView& normals, const Segmentati
   state.limits.offset = kNoLimit;
   if (options.max_offset > 0.F) {
     // Two deviations of a noisy neighbour, and never so much that a wall of one spacing would leak.
-    const float noise = 2.F * medianOffset(state);
-    state.limits.offset = std::clamp(noise, options.max_offset, std::max(0.9F, options.max_offset));
+    state.limits.offset = std::clamp(2.F * typicalOffset(state), options.max_offset,
+                                     std::max(0.9F, options.max_offset));
   }
 }
 

@@ -61,7 +61,7 @@ class SmallAdjacency {
           around_.push_back({q, false});
         }
         Around& entry = around_[stamps_[q].position];
-        entry.admissible = entry.admissible || state_.limits.admissible(node, state_.nodes[q]);
+        entry.admissible = entry.admissible || state_.limits.admissible(state_.nodes[q], node);
       });
     }
     for (const Around& a : around_) visit(a.point, a.admissible);

@@ -7,13 +7,14 @@
 #include <segorient/segmentation/segmentation.h>
 
 #include <cstddef>
+#include <limits>
 
 namespace segorient {
 
 /// Settings of segmentByNormals(). Angles in radians, lengths in multiples of the local spacing, so
 /// nothing depends on the unit or the size of a cloud.
 struct SegmentationOptions {
-  float alpha = 0.2617994F;  ///< largest angle between the normals of two neighbours (15 degrees)
+  float alpha = 0.3490659F;  ///< largest angle between the normals of two neighbours (20 degrees)
   float beta =
       0.5235988F;  ///< largest angle between a normal and the reference normal (30 degrees)
   float epsilon = 0.1745329F;   ///< by how much the clean-up may exceed beta (10 degrees)
@@ -24,9 +25,12 @@ struct SegmentationOptions {
   /// Two points farther apart than this are no neighbours: growing does not jump gaps. 0 = no
   /// limit.
   float max_gap = 2.5F;
-  /// Two points are refused if one lies this far off the other's tangent plane: the sides of a thin
-  /// wall stay apart. Raised on noisy clouds, see offsetLimit(). 0 = no limit (the paper).
+  /// A point is refused if it lies farther than this off the tangent plane of the point that it
+  /// would be reached from: the sides of a thin wall stay apart. On noisy clouds the limit is
+  /// raised to what the noise asks for, to at most 0.9. 0 = no limit (the paper).
   float max_offset = 0.5F;
+  /// Points of higher curvature join a segment but do not pass it on. Default: no limit.
+  float max_curvature = std::numeric_limits<float>::max();
   bool absorb_small = true;  ///< clean-up pass 1: small segments join a neighbouring segment
   bool extract_edges =
       true;  ///< clean-up pass 2: points of small segments join regular ones singly
