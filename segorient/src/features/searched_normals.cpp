@@ -1,0 +1,196 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the segorient authors
+#include <segorient/common/compact_cloud.h>
+#include <segorient/common/threads.h>
+#include <segorient/features/searched_normals.h>
+#include <segorient/search/median_hash_index.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace segorient {
+namespace {
+
+constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
+
+bool isRow(pcl::index_t index, std::size_t size) {
+  return index >= 0 && static_cast<std::size_t>(index) < size;
+}
+
+/// Coordinates in rows of 4 floats; a copy only where they are not so already.
+PointView packed(const PointView& points, std::vector<float>& copy) {
+  if (points.stride == 4) return points;
+  copy.resize(4 * points.size);
+  for (std::size_t i = 0; i < points.size; ++i) {
+    std::copy_n(points[i], 3, &copy[4 * i]);
+    copy[4 * i + 3] = 0.0F;
+  }
+  return {copy.data(), 4, points.size};
+}
+
+void setUndefined(float* normal, LocalCurvature* curvature) {
+  std::fill_n(normal, 4, kNaN);
+  if (curvature) *curvature = {{kNaN, kNaN, kNaN}, kNaN, kNaN};
+}
+
+/// The neighbours of some queries as one table, filled row by row.
+class TableBuilder {
+ public:
+  void clear() {
+    flat_.clear();
+    counts_.clear();
+    queries_.clear();
+  }
+  void add(const float* query, const pcl::index_t* neighbors, std::size_t count) {
+    flat_.insert(flat_.end(), neighbors, neighbors + count);
+    counts_.push_back(count);
+    queries_.insert(queries_.end(), {query[0], query[1], query[2], 0.0F});
+  }
+  PointView queries() const { return {queries_.data(), 4, counts_.size()}; }
+  const Neighborhoods& table() {
+    const std::size_t most =
+        counts_.empty() ? 0 : *std::max_element(counts_.begin(), counts_.end());
+    table_.reset(counts_.size(), static_cast<int>(most), false);
+    const pcl::index_t* from = flat_.data();
+    for (std::size_t i = 0; i < counts_.size(); ++i) {
+      std::copy_n(from, counts_[i], table_.mutableIndices(i));
+      table_.setCount(i, static_cast<int>(counts_[i]));
+      from += counts_[i];
+    }
+    return table_;
+  }
+
+ private:
+  std::vector<pcl::index_t> flat_;
+  std::vector<std::size_t> counts_;
+  std::vector<float> queries_;
+  Neighborhoods table_;
+};
+
+/// All normals from the neighbours among the distinct points themselves.
+void estimateAll(const CompactCloud& cloud, const search::MedianHashIndex& index, int k,
+                 const pcl::Indices& indices, const LocalNormalOptions& options, float* normals,
+                 LocalCurvature* curvatures) {
+  Neighborhoods table;
+  index.nearestKAll(k, table, false);
+  std::vector<float> compact(4 * cloud.size());
+  std::vector<LocalCurvature> compact_curvatures(curvatures ? cloud.size() : 0);
+  estimateNormals(cloud.view(), cloud.view(), table, options, compact.data(),
+                  curvatures ? compact_curvatures.data() : nullptr);
+  for (std::size_t i = 0; i < indices.size(); ++i) {
+    const pcl::index_t row = isRow(indices[i], cloud.row_of.size())
+                                 ? cloud.row_of[static_cast<std::size_t>(indices[i])]
+                                 : -1;
+    if (row < 0) {
+      setUndefined(normals + 4 * i, curvatures ? curvatures + i : nullptr);
+      continue;
+    }
+    std::copy_n(&compact[4 * static_cast<std::size_t>(row)], 4, normals + 4 * i);
+    if (curvatures) curvatures[i] = compact_curvatures[static_cast<std::size_t>(row)];
+  }
+}
+
+}  // namespace
+
+void searchAndEstimateNormals(const PointView& input, const pcl::Indices& indices,
+                              const PointView* surface, const NeighborhoodSize& size,
+                              const LocalNormalOptions& options, float* normals,
+                              LocalCurvature* curvatures) {
+  const CompactCloud cloud = compactCloud(surface ? *surface : input, nullptr, options.threads);
+  search::MedianHashIndex index;
+  search::MedianHashIndex::Options search_options;
+  search_options.threads = options.threads;
+  index.build(cloud.view(), nullptr, search_options);
+  const int k =
+      static_cast<int>(std::min(static_cast<std::size_t>(std::max(size.k, 0)), index.size()));
+
+  // Searching for all points at once costs a fraction of as many single queries.
+  if (!surface && size.k > 0 && indices.size() > input.size / 4) {
+    estimateAll(cloud, index, k, indices, options, normals, curvatures);
+    return;
+  }
+  const NeighborSearch search = [&](pcl::index_t i, pcl::Indices& found, std::vector<float>& sqr) {
+    const float* query = input[static_cast<std::size_t>(i)];
+    if (size.k <= 0) return index.radius(query, size.radius, found, sqr, 0, true);
+    found.resize(static_cast<std::size_t>(k));
+    sqr.resize(static_cast<std::size_t>(k));
+    return index.nearestK(query, k, found.data(), sqr.data());
+  };
+  searchAndEstimateNormals(input, indices, cloud.view(), search, options, normals, curvatures);
+}
+
+void searchAndEstimateNormals(const PointView& input, const pcl::Indices& indices,
+                              const PointView& surface, const NeighborSearch& search,
+                              const LocalNormalOptions& options, float* normals,
+                              LocalCurvature* curvatures) {
+  std::vector<float> copy;
+  const PointView points = packed(surface, copy);
+  LocalNormalOptions block_options = options;
+  block_options.threads = 1;
+  constexpr std::size_t kBlock = 256;
+  const auto blocks = static_cast<std::ptrdiff_t>((indices.size() + kBlock - 1) / kBlock);
+#pragma omp parallel num_threads(resolveThreads(options.threads))
+  {
+    TableBuilder builder;
+    pcl::Indices found;
+    std::vector<float> sqr_distances;
+#pragma omp for schedule(dynamic)
+    for (std::ptrdiff_t b = 0; b < blocks; ++b) {
+      const std::size_t begin = static_cast<std::size_t>(b) * kBlock;
+      const std::size_t end = std::min(indices.size(), begin + kBlock);
+      builder.clear();
+      for (std::size_t i = begin; i < end; ++i) {
+        const float undefined[3] = {kNaN, kNaN, kNaN};
+        const bool usable =
+            isRow(indices[i], input.size) && isFinite(input[static_cast<std::size_t>(indices[i])]);
+        const int count = usable ? search(indices[i], found, sqr_distances) : 0;
+        builder.add(usable ? input[static_cast<std::size_t>(indices[i])] : undefined, found.data(),
+                    static_cast<std::size_t>(std::max(count, 0)));
+      }
+      estimateNormals(builder.queries(), points, builder.table(), block_options,
+                      normals + 4 * begin, curvatures ? curvatures + begin : nullptr);
+    }
+  }
+}
+
+bool estimateNormalsFromTable(const PointView& input, const pcl::Indices& indices,
+                              const PointView& surface, const Neighborhoods& neighborhoods,
+                              const LocalNormalOptions& options, float* normals,
+                              LocalCurvature* curvatures) {
+  const std::size_t rows = neighborhoods.size();
+  if (rows != indices.size() && rows != input.size) return false;
+  for (std::size_t r = 0; r < rows; ++r) {
+    const pcl::index_t* row = neighborhoods.indices(r);
+    for (int j = 0; j < neighborhoods.count(r); ++j) {
+      if (!isRow(row[j], surface.size)) return false;
+    }
+  }
+  const bool by_index = rows == indices.size();
+  std::vector<float> copy;
+  const PointView points = packed(surface, copy);
+  bool identity = indices.size() == input.size;
+  for (std::size_t i = 0; identity && i < indices.size(); ++i) {
+    identity = static_cast<std::size_t>(indices[i]) == i;
+  }
+  if (identity) {
+    estimateNormals(input, points, neighborhoods, options, normals, curvatures);
+    return true;
+  }
+  TableBuilder builder;
+  for (std::size_t i = 0; i < indices.size(); ++i) {
+    const float undefined[3] = {kNaN, kNaN, kNaN};
+    const bool usable = isRow(indices[i], input.size);
+    const std::size_t row = by_index ? i : static_cast<std::size_t>(indices[i]);
+    if (usable) {
+      builder.add(input[static_cast<std::size_t>(indices[i])], neighborhoods.indices(row),
+                  static_cast<std::size_t>(neighborhoods.count(row)));
+    } else {
+      builder.add(undefined, nullptr, 0);
+    }
+  }
+  estimateNormals(builder.queries(), points, builder.table(), options, normals, curvatures);
+  return true;
+}
+
+}  // namespace segorient
