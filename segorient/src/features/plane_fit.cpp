@@ -36,10 +36,10 @@ bool fitPlaneExactly(const LocalFitJob& job, std::size_t row, float* normal) {
     cov.zz += d[2] * d[2];
   }
   const SymmetricEigen3 eigen = symmetricEigen(cov);
-  // A second direction counts if it is wider than the coordinates' own rounding (half a unit in the
-  // last place) and than what is left of a line in arbitrary direction.
+  // A second direction counts if it is wider than the coordinates' own rounding (a unit in the last
+  // place) and than what is left of a line in arbitrary direction.
   const double size = std::max({std::abs(p[0]), std::abs(p[1]), std::abs(p[2])});
-  const double rounding = size * 0.5 * std::numeric_limits<float>::epsilon();
+  const double rounding = size * std::numeric_limits<float>::epsilon();
   const double width = eigen.values[1] / count;
   if (!(width > rounding * rounding) || !(eigen.values[1] > 1e-12 * eigen.values[2])) return false;
   for (int a = 0; a < 3; ++a) normal[a] = static_cast<float>(eigen.vectors[0][a]);

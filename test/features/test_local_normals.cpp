@@ -1,0 +1,197 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the segorient authors
+#include <gtest/gtest.h>
+#include <segorient/features/local_normals.h>
+
+#include <Eigen/Eigenvalues>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "feature_clouds.h"
+
+namespace segorient::test {
+namespace {
+
+std::vector<float> normalsOf(const PointView& points, const Neighborhoods& table,
+                             const LocalNormalOptions& options) {
+  std::vector<float> normals(4 * points.size);
+  estimateNormals(points, table, options, normals.data());
+  return normals;
+}
+
+Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> planeOracle(const PointView& points,
+                                                           const pcl::index_t* row, int count) {
+  const auto point = [&](int j) {
+    const float* p = points[static_cast<std::size_t>(row[j])];
+    return Eigen::Vector3d(p[0], p[1], p[2]);
+  };
+  Eigen::Vector3d mean = Eigen::Vector3d::Zero();
+  for (int j = 0; j < count; ++j) mean += point(j) / count;
+  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
+  for (int j = 0; j < count; ++j) {
+    covariance += (point(j) - mean) * (point(j) - mean).transpose();
+  }
+  return Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(covariance);
+}
+
+/// Difference from the double-precision plane, weighted by how well the plane is determined.
+double worstPlaneError(const PointView& points, const Neighborhoods& table, int k,
+                       const std::vector<float>& normals) {
+  double worst = 0;
+  for (std::size_t i = 0; i < points.size; ++i) {
+    const auto oracle = planeOracle(points, table.indices(i), std::min(table.count(i), k + 1));
+    const Eigen::Vector3d values = oracle.eigenvalues();
+    const Eigen::Vector3f normal = oracle.eigenvectors().col(0).cast<float>();
+    const double angle = angleBetween(normal, &normals[4 * i]);
+    worst = std::max(worst, angle * (values[1] - values[0]) / values[1]);
+    worst = std::max(worst, std::abs(values[0] / values.sum() - normals[4 * i + 3]));
+  }
+  return worst;
+}
+
+TEST(PlaneFit, AgreesWithDoublePrecision) {
+  const Sample smooth = torus(20000, 1);
+  const Sample edges = cube(20000, 2);
+  const Sample noisy = torus(20000, 3, 1.5F * torusSpacing(20000));
+  for (const Sample* sample : {&smooth, &edges, &noisy}) {
+    const Neighborhoods table = neighborsOf(sample->view(), 30);
+    for (const int k : {3, 10, 30}) {
+      LocalNormalOptions options;
+      options.k = k;
+      EXPECT_LT(
+          worstPlaneError(sample->view(), table, k, normalsOf(sample->view(), table, options)),
+          2e-5);
+    }
+  }
+}
+
+// Scan lines: the points of a neighbourhood lie almost on one line.
+TEST(PlaneFit, SlimNeighborhoods) {
+  Sample lines;
+  std::mt19937 generator(5);
+  std::normal_distribution<float> gauss(0.F, 1.F);
+  for (int i = 0; i < 4000; ++i) {
+    const float along = 0.01F * static_cast<float>(i);
+    lines.add({along, 1e-4F * gauss(generator), 2e-6F * gauss(generator)},
+              Eigen::Vector3f::UnitZ());
+  }
+  const Neighborhoods table = neighborsOf(lines.view(), 12);
+  const std::vector<float> normals = normalsOf(lines.view(), table, {});
+  EXPECT_LT(worstPlaneError(lines.view(), table, 12, normals), 1e-6);
+}
+
+TEST(PlaneFit, CurvatureOfPlaneAndSphere) {
+  const Sample flat = plane(5000, 3, Eigen::Vector3f(1, 2, 3).normalized());
+  const Sample ball = sphere(5000, 3);
+  const std::vector<float> a = normalsOf(flat.view(), neighborsOf(flat.view(), 20), {});
+  const std::vector<float> b = normalsOf(ball.view(), neighborsOf(ball.view(), 20), {});
+  EXPECT_LT(rmsDegrees(flat, a), 1e-3);
+  EXPECT_LT(rmsDegrees(ball, b), 1.5);
+  for (std::size_t i = 0; i < flat.normals.size(); ++i) {
+    ASSERT_GE(a[4 * i + 3], 0.F);
+    ASSERT_LT(a[4 * i + 3], 1e-6F);
+    ASSERT_GT(b[4 * i + 3], 0.F);
+    ASSERT_LT(b[4 * i + 3], 0.01F);
+  }
+}
+
+class AnyEstimator : public testing::TestWithParam<NormalEstimator> {
+ protected:
+  LocalNormalOptions options() const {
+    LocalNormalOptions o;
+    o.estimator = GetParam();
+    return o;
+  }
+};
+
+TEST_P(AnyEstimator, SameBitsForAnyThreadsAndInstructionSet) {
+  const Sample sample = torus(10007, 4, 0.3F * torusSpacing(10007));
+  const Neighborhoods table = neighborsOf(sample.view(), 13);
+  LocalNormalOptions o = options();
+  o.k = 12;
+  o.threads = 1;
+  const std::vector<float> reference = normalsOf(sample.view(), table, o);
+  for (const int threads : {2, 4}) {
+    o.threads = threads;
+    EXPECT_EQ(normalsOf(sample.view(), table, o), reference);
+  }
+  o.portable = true;
+  EXPECT_EQ(normalsOf(sample.view(), table, o), reference);
+}
+
+TEST_P(AnyEstimator, FarFromTheOrigin) {
+  const Eigen::Vector3f far(1e6F, -1e6F, 1e6F);
+  // Coordinates that 1e6 more can still represent: multiples of 1/16, in a cloud 4,000 wide.
+  Sample near = torus(5000, 6);
+  Sample moved;
+  for (std::size_t i = 0; i < near.normals.size(); ++i) {
+    for (float& c : near.points[i].data) c = std::round(c * 2000.F * 16.F) / 16.F;
+    near.points[i].data[3] = 1.F;
+    moved.add(near.points[i].getVector3fMap() + far, near.normals[i]);
+  }
+  const Neighborhoods table = neighborsOf(near.view(), 12);
+  EXPECT_EQ(normalsOf(near.view(), table, options()), normalsOf(moved.view(), table, options()));
+}
+
+TEST_P(AnyEstimator, ScaleDoesNotMatter) {
+  const Sample sample = torus(3000, 8);
+  const Neighborhoods table = neighborsOf(sample.view(), 12);
+  const std::vector<float> reference = normalsOf(sample.view(), table, options());
+  for (const float scale : {1e-30F, 1e-18F, 1e-10F, 1e10F, 1e18F, 1e30F}) {
+    Sample scaled;
+    for (std::size_t i = 0; i < sample.normals.size(); ++i) {
+      scaled.add(scale * sample.points[i].getVector3fMap(), sample.normals[i]);
+    }
+    const std::vector<float> normals = normalsOf(scaled.view(), table, options());
+    for (std::size_t i = 0; i < sample.normals.size(); ++i) {
+      const Eigen::Vector3f n(reference[4 * i], reference[4 * i + 1], reference[4 * i + 2]);
+      ASSERT_LT(angleBetween(n, &normals[4 * i]), 1e-3) << scale;
+    }
+  }
+}
+
+TEST_P(AnyEstimator, NoPlane) {
+  constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
+  const auto allUndefined = [&](const Sample& sample, int k) {
+    const std::vector<float> n = normalsOf(sample.view(), neighborsOf(sample.view(), k), options());
+    return std::all_of(n.begin(), n.end(), [](float x) { return std::isnan(x); });
+  };
+  Sample one, two, same, line, bad;
+  one.add({1, 2, 3}, Eigen::Vector3f::Zero());
+  two.add({1, 2, 3}, Eigen::Vector3f::Zero());
+  two.add({1, 2, 4}, Eigen::Vector3f::Zero());
+  for (int i = 0; i < 100; ++i) {
+    same.add({1, 2, 3}, Eigen::Vector3f::Zero());
+    line.add((0.1F + 0.013F * static_cast<float>(i)) * Eigen::Vector3f(0.3F, 0.7F, -0.2F),
+             Eigen::Vector3f::Zero());
+    bad.add({kNaN, 1, 2}, Eigen::Vector3f::Zero());
+  }
+  EXPECT_TRUE(allUndefined(one, 5));
+  EXPECT_TRUE(allUndefined(two, 5));
+  EXPECT_TRUE(allUndefined(same, 5));
+  EXPECT_TRUE(allUndefined(line, 9));
+  EXPECT_TRUE(allUndefined(bad, 5));
+}
+
+TEST_P(AnyEstimator, UnevenRows) {
+  const Sample sample = torus(2000, 9);
+  Neighborhoods table = neighborsOf(sample.view(), 20);
+  std::vector<float> expected(4 * sample.normals.size());
+  for (std::size_t i = 0; i < sample.normals.size(); ++i) {
+    LocalNormalOptions o = options();
+    o.k = 7 + static_cast<int>(i % 13);
+    const std::vector<pcl::index_t> row{static_cast<pcl::index_t>(i)};
+    estimateNormals(sample.view(), sample.view(), table, o, expected.data(), nullptr, &row);
+  }
+  for (std::size_t i = 0; i < sample.normals.size(); ++i) {
+    table.setCount(i, 8 + static_cast<int>(i % 13));
+  }
+  const std::vector<float> normals = normalsOf(sample.view(), table, options());
+  for (std::size_t i = 0; i < normals.size(); ++i) ASSERT_EQ(normals[i], expected[i]) << i;
+}
+
+INSTANTIATE_TEST_SUITE_P(Estimators, AnyEstimator, testing::Values(NormalEstimator::Plane));
+
+}  // namespace
+}  // namespace segorient::test

@@ -1,0 +1,284 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the segorient authors
+#include <gtest/gtest.h>
+#include <pcl/features/normal_3d_omp.h>
+#include <pcl/search/kdtree.h>
+#include <segorient/features/lct_normal_estimation.h>
+#include <segorient/features/ldt_normal_estimation.h>
+#include <segorient/features/plane_normal_estimation.h>
+
+#include <cmath>
+#include <limits>
+
+#include "feature_clouds.h"
+
+namespace segorient::test {
+namespace {
+
+using Cloud = pcl::PointCloud<pcl::PointXYZ>;
+using Normals = pcl::PointCloud<pcl::Normal>;
+using Plane = PlaneNormalEstimation<pcl::PointXYZ, pcl::Normal>;
+using PclPlane = pcl::NormalEstimationOMP<pcl::PointXYZ, pcl::Normal>;
+
+constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
+
+/// PCL's normals are single precision throughout: a few of them are off by more than its rounding.
+void expectSameAsPcl(const Normals& ours, const Normals& theirs) {
+  ASSERT_EQ(ours.size(), theirs.size());
+  EXPECT_EQ(ours.width, theirs.width);
+  EXPECT_EQ(ours.height, theirs.height);
+  EXPECT_EQ(ours.is_dense, theirs.is_dense);
+  std::size_t different = 0;
+  for (std::size_t i = 0; i < ours.size(); ++i) {
+    if (std::isnan(theirs[i].normal_x)) {
+      EXPECT_TRUE(std::isnan(ours[i].normal_x) && std::isnan(ours[i].curvature));
+      continue;
+    }
+    const float same = ours[i].getNormalVector3fMap().dot(theirs[i].getNormalVector3fMap());
+    different += same < 0.9999F || std::abs(ours[i].curvature - theirs[i].curvature) > 1e-4F;
+  }
+  EXPECT_LE(different, ours.size() / 200);
+}
+
+template <typename Estimation>
+Normals computed(Estimation&& estimation) {
+  Normals normals;
+  estimation.compute(normals);
+  return normals;
+}
+
+TEST(PlaneNormalEstimation, DropInForPcl) {
+  const Cloud::Ptr cloud = Cloud(torus(6000, 1).points).makeShared();
+  Plane ours;
+  PclPlane theirs;
+  ours.setInputCloud(cloud);
+  theirs.setInputCloud(cloud);
+  for (const int k : {5, 11, 30}) {
+    ours.setKSearch(k);
+    theirs.setKSearch(k);
+    expectSameAsPcl(computed(ours), computed(theirs));
+  }
+  ours.setKSearch(0);
+  theirs.setKSearch(0);
+  ours.setRadiusSearch(0.12);
+  theirs.setRadiusSearch(0.12);
+  expectSameAsPcl(computed(ours), computed(theirs));
+
+  for (const std::size_t step : {2U, 50U}) {  // many and few indices take different ways
+    const auto indices = pcl::make_shared<pcl::Indices>();
+    for (std::size_t i = 0; i < cloud->size(); i += step) {
+      indices->push_back(static_cast<pcl::index_t>(cloud->size() - 1 - i));
+    }
+    ours.setIndices(indices);
+    theirs.setIndices(indices);
+    expectSameAsPcl(computed(ours), computed(theirs));
+    ours.setRadiusSearch(0);
+    theirs.setRadiusSearch(0);
+    ours.setKSearch(15);
+    theirs.setKSearch(15);
+    expectSameAsPcl(computed(ours), computed(theirs));
+  }
+}
+
+TEST(PlaneNormalEstimation, SearchSurfaceAndViewpoint) {
+  const Cloud::Ptr surface = Cloud(torus(6000, 1).points).makeShared();
+  const Cloud::Ptr queries = Cloud(torus(500, 2).points).makeShared();
+  Plane ours;
+  PclPlane theirs;
+  ours.setInputCloud(queries);
+  theirs.setInputCloud(queries);
+  ours.setSearchSurface(surface);
+  theirs.setSearchSurface(surface);
+  ours.setViewPoint(1, 2, 30);
+  theirs.setViewPoint(1, 2, 30);
+  ours.setKSearch(12);
+  theirs.setKSearch(12);
+  const Normals expected = computed(theirs);
+  expectSameAsPcl(computed(ours), expected);
+  ours.setSearchMethod(pcl::make_shared<pcl::search::KdTree<pcl::PointXYZ>>());
+  expectSameAsPcl(computed(ours), expected);
+}
+
+TEST(PlaneNormalEstimation, SearchMethodOfAnotherCloudIsRebuilt) {
+  const Cloud::Ptr cloud = Cloud(torus(2000, 1).points).makeShared();
+  const auto tree = pcl::make_shared<pcl::search::KdTree<pcl::PointXYZ>>();
+  tree->setInputCloud(Cloud(sphere(50, 1).points).makeShared());
+  Plane ours;
+  ours.setInputCloud(cloud);
+  ours.setKSearch(10);
+  const Normals expected = computed(ours);
+  ours.setSearchMethod(tree);
+  expectSameAsPcl(computed(ours), expected);
+  EXPECT_EQ(tree->getInputCloud(), cloud);
+}
+
+TEST(PlaneNormalEstimation, OrganizedWithHoles) {
+  Cloud cloud(40, 30);
+  cloud.is_dense = false;
+  for (unsigned u = 0; u < 40; ++u) {
+    for (unsigned v = 0; v < 30; ++v) {
+      const float x = 0.1F * static_cast<float>(u);
+      const float y = 0.1F * static_cast<float>(v);
+      cloud(u, v) = {x, y, 2.F + 0.05F * x * x};
+      if ((u + 3 * v) % 17 == 0) cloud(u, v).z = kNaN;
+    }
+  }
+  const Cloud::Ptr shared = cloud.makeShared();
+  Plane ours;
+  PclPlane theirs;
+  ours.setInputCloud(shared);
+  theirs.setInputCloud(shared);
+  theirs.setSearchMethod(pcl::make_shared<pcl::search::KdTree<pcl::PointXYZ>>());
+  ours.setKSearch(9);
+  theirs.setKSearch(9);
+  const Normals a = computed(ours);
+  const Normals b = computed(theirs);
+  EXPECT_EQ(a.width, 40U);
+  EXPECT_EQ(a.height, 30U);
+  EXPECT_FALSE(a.is_dense);
+  // On a grid the ninth neighbour is one of several equally far: only the holes must agree.
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    EXPECT_EQ(std::isnan(a[i].normal_x), std::isnan(b[i].normal_x));
+  }
+}
+
+TEST(PlaneNormalEstimation, ReadyTable) {
+  const Sample sample = torus(3000, 5);
+  const Cloud::Ptr cloud = Cloud(sample.points).makeShared();
+  const auto table = pcl::make_shared<Neighborhoods>(neighborsOf(sample.view(), 19));
+  Plane by_search;
+  Plane by_table;
+  by_search.setInputCloud(cloud);
+  by_table.setInputCloud(cloud);
+  by_table.setNeighborhoods(table);
+  EXPECT_EQ(by_table.getNeighborhoods(), table);
+  const auto expectEqual = [](const Normals& a, const Normals& b) {
+    ASSERT_EQ(a.size(), b.size());
+    for (std::size_t i = 0; i < a.size(); ++i) {
+      ASSERT_EQ(a[i].getNormalVector3fMap(), b[i].getNormalVector3fMap());
+    }
+  };
+  by_search.setKSearch(20);
+  expectEqual(computed(by_search), computed(by_table));
+  by_search.setKSearch(12);
+  by_table.setKSearch(12);
+  expectEqual(computed(by_search), computed(by_table));
+  const auto indices = pcl::make_shared<pcl::Indices>(pcl::Indices{5, 4, 2000, 5});
+  by_search.setIndices(indices);
+  by_table.setIndices(indices);
+  expectEqual(computed(by_search), computed(by_table));
+
+  by_table.setInputCloud(Cloud(sphere(77, 1).points).makeShared());
+  by_table.setIndices(pcl::IndicesPtr());
+  EXPECT_TRUE(computed(by_table).empty());  // a table of another cloud
+}
+
+TEST(PlaneNormalEstimation, PointNormalOutputCarriesThePoint) {
+  const Cloud::Ptr cloud = Cloud(torus(500, 5).points).makeShared();
+  PlaneNormalEstimation<pcl::PointXYZ, pcl::PointNormal> estimation;
+  estimation.setInputCloud(cloud);
+  estimation.setKSearch(8);
+  pcl::PointCloud<pcl::PointNormal> out;
+  estimation.compute(out);
+  ASSERT_EQ(out.size(), cloud->size());
+  for (std::size_t i = 0; i < out.size(); ++i) {
+    EXPECT_EQ(out[i].getVector3fMap(), (*cloud)[i].getVector3fMap());
+  }
+}
+
+TEST(PlaneNormalEstimation, DuplicatesDoNotFillNeighborhoods) {
+  const Sample sample = torus(2000, 3);
+  Cloud cloud;
+  for (int copy = 0; copy < 12; ++copy) cloud += sample.points;
+  Plane single;
+  Plane repeated;
+  single.setInputCloud(Cloud(sample.points).makeShared());
+  repeated.setInputCloud(cloud.makeShared());
+  single.setKSearch(10);
+  repeated.setKSearch(10);
+  const Normals a = computed(single);
+  const Normals b = computed(repeated);
+  ASSERT_EQ(b.size(), cloud.size());
+  for (std::size_t i = 0; i < b.size(); ++i) {
+    ASSERT_EQ(a[i % a.size()].getNormalVector3fMap(), b[i].getNormalVector3fMap());
+  }
+}
+
+template <typename T>
+class BadInput : public testing::Test {};
+using Estimations = testing::Types<PlaneNormalEstimation<pcl::PointXYZ, pcl::Normal>>;
+TYPED_TEST_SUITE(BadInput, Estimations);
+
+TYPED_TEST(BadInput, GivesAnEmptyOrUndefinedResult) {
+  const Cloud::Ptr cloud = Cloud(torus(300, 1).points).makeShared();
+  Normals out(10, 1);
+  TypeParam none;
+  none.setKSearch(5);
+  none.compute(out);
+  EXPECT_TRUE(out.empty());
+  none.setInputCloud(nullptr);
+  none.compute(out);
+  EXPECT_TRUE(out.empty());
+  none.setInputCloud(pcl::make_shared<Cloud>());
+  none.compute(out);
+  EXPECT_TRUE(out.empty());
+
+  struct Setting {
+    int k;
+    double radius;
+  };
+  for (const Setting s : {Setting{0, 0}, {-3, 0}, {0, -1}, {5, 0.1}, {0, kNaN}}) {
+    TypeParam estimation;
+    estimation.setInputCloud(cloud);
+    estimation.setKSearch(s.k);
+    estimation.setRadiusSearch(s.radius);
+    estimation.compute(out);
+    EXPECT_TRUE(out.empty()) << s.k << " " << s.radius;
+  }
+  for (const Setting s : {Setting{1, 0},
+                          {2, 0},
+                          {1000000000, 0},
+                          {0, 1e20},
+                          {0, 1e-20},
+                          {0, std::numeric_limits<double>::infinity()}}) {
+    TypeParam estimation;
+    estimation.setInputCloud(cloud);
+    estimation.setKSearch(s.k);
+    estimation.setRadiusSearch(s.radius);
+    estimation.compute(out);
+    EXPECT_EQ(out.size(), cloud->size());
+    const bool few = s.k == 1 || s.k == 2 || s.radius == 1e-20;
+    EXPECT_EQ(out.is_dense, !few);
+    EXPECT_EQ(std::isnan(out[0].normal_x), few);
+  }
+  TypeParam indexed;
+  indexed.setInputCloud(cloud);
+  indexed.setKSearch(9);
+  indexed.setIndices(pcl::make_shared<pcl::Indices>(pcl::Indices{-1, 3, 300, 3, 2147483647}));
+  indexed.compute(out);
+  ASSERT_EQ(out.size(), 5U);
+  EXPECT_TRUE(std::isnan(out[0].normal_x) && std::isnan(out[2].normal_x) &&
+              std::isnan(out[4].normal_x));
+  EXPECT_FALSE(std::isnan(out[1].normal_x));
+  EXPECT_EQ(out[1].normal_x, out[3].normal_x);
+  EXPECT_FALSE(out.is_dense);
+}
+
+// A cloud that says it is dense and is not.
+TYPED_TEST(BadInput, FalseDense) {
+  Cloud cloud(torus(300, 1).points);
+  cloud[7].x = kNaN;
+  cloud[9].y = std::numeric_limits<float>::infinity();
+  cloud.is_dense = true;
+  TypeParam estimation;
+  estimation.setInputCloud(cloud.makeShared());
+  estimation.setKSearch(9);
+  const Normals out = computed(estimation);
+  for (std::size_t i = 0; i < out.size(); ++i) {
+    EXPECT_EQ(std::isnan(out[i].normal_x), i == 7 || i == 9);
+  }
+  EXPECT_FALSE(out.is_dense);
+}
+
+}  // namespace
+}  // namespace segorient::test
