@@ -38,7 +38,12 @@ bool fitPlaneExactly(const LocalFitJob& job, std::size_t row, float* normal) {
   const SymmetricEigen3 eigen = symmetricEigen(cov);
   // A second direction counts if it is wider than the coordinates' own rounding (a unit in the last
   // place) and than what is left of a line in arbitrary direction.
-  const double size = std::max({std::abs(p[0]), std::abs(p[1]), std::abs(p[2])});
+  double size = 0;
+  for (int j = 0; j < count; ++j) {
+    for (int a = 0; a < 3; ++a) {
+      size = std::max(size, std::abs(offset(j, a) + static_cast<double>(p[a])));
+    }
+  }
   const double rounding = size * std::numeric_limits<float>::epsilon();
   const double width = eigen.values[1] / count;
   if (!(width > rounding * rounding) || !(eigen.values[1] > 1e-12 * eigen.values[2])) return false;
