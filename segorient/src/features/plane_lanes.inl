@@ -156,13 +156,16 @@ inline Plane fitPlanes(const LocalFitJob& job, const Batch& batch) {
   const Lanes half = larger(zero, smaller(all(1.0F), 0.5F - 0.25F * r));
   Lanes lambda = third - 2.0F * p * cosTwoThirdsOfArc(squareRoot(half));
 
-  Lanes3 normal = unit(adjugate(xx - lambda, xy, xz, yy - lambda, yz, zz - lambda).largestColumn());
+  Adjugate adj = adjugate(xx - lambda, xy, xz, yy - lambda, yz, zz - lambda);
+  // (lambda1 - lambda0) (lambda2 - lambda0) of trace 1: how well the vector is determined.
+  const Lanes gap = adj.xx + adj.yy + adj.zz;
+  Lanes3 normal = unit(adj.largestColumn());
   const auto image = [&](const Lanes3& v) __attribute__((always_inline)) {
     return Lanes3{xx * v.x + xy * v.y + xz * v.z, xy * v.x + yy * v.y + yz * v.z,
                   xz * v.x + yz * v.y + zz * v.z};
   };
   lambda = dot(normal, image(normal));
-  const Adjugate adj = adjugate(xx - lambda, xy, xz, yy - lambda, yz, zz - lambda);
+  adj = adjugate(xx - lambda, xy, xz, yy - lambda, yz, zz - lambda);
   normal = unit(adj.largestColumn());
   lambda = dot(normal, image(normal));
 
@@ -170,9 +173,7 @@ inline Plane fitPlanes(const LocalFitJob& job, const Batch& batch) {
   plane.size = squareRoot(second * weight);
   plane.normal = normal;
   plane.curvature = larger(zero, lambda);
-  // (lambda1 - lambda0) (lambda2 - lambda0) of trace 1 says how well the vector is determined;
-  // below 1 % float leaves errors of 1e-5 rad. Under- and overflow of the squares end here as well.
-  const Lanes gap = adj.xx + adj.yy + adj.zz;
+  // Below 1 % float leaves errors of 1e-5 rad. Under- and overflow of the squares end here as well.
   const Mask good = (gap > 0.01F) & (trace > 1e-30F) & (trace < 1e30F) & (count >= 3.0F) &
                     (dot(normal, normal) > 0.5F);
   plane.valid = good;
