@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the segorient authors
+#pragma once
+
+#include <pcl/types.h>
+#include <segorient/common/point_view.h>
+#include <segorient/segmentation/segmentation.h>
+
+#include <vector>
+
+namespace segorient {
+
+/// A point that nothing of the object lies beyond in a direction of an axis, as far as a
+/// subdivision of space can tell, and what its normal says about its segment.
+struct ExtremalPoint {
+  pcl::index_t point = 0;
+  std::int8_t sign = 0;  ///< +1: its input normal points out of the object, -1: into it
+  float angle = 0.F;     ///< between normal line and direction, radians in [0, pi/2]
+};
+
+/// What the extremal points say about one segment.
+struct ExtremalEvidence {
+  float angle = 0.F;     ///< M_CA of the paper: the smallest angle seen; gamma where there was none
+  std::int8_t sign = 0;  ///< of the reference normal by that point; 0 = not reached
+  float agreement = 0.F;  ///< |signed votes| / votes of all the segment's extremal points
+  int votes = 0;          ///< number of extremal points within gamma
+};
+
+/// One extremal point per box and free direction, ties by index (paper, 3.3). Holds for closed
+/// objects: at the rim of an open one, the inside is taken for outside.
+/// \param rows points to subdivide; those with label -1 must not be among them
+/// \param max_box_points m of the paper
+/// \return in order of the boxes; a point can occur in several directions
+std::vector<ExtremalPoint> findExtremalPoints(const PointView& points, const PointView& normals,
+                                              std::vector<pcl::index_t> rows,
+                                              std::size_t max_box_points);
+
+/// M_CA and votes per segment; only regular segments get evidence, as only they are oriented in
+/// themselves.
+/// \param gamma radians; extremal points with a larger angle say nothing
+std::vector<ExtremalEvidence> gatherExtremalEvidence(const std::vector<ExtremalPoint>& extremal,
+                                                     const Segmentation& segmentation, float gamma);
+
+}  // namespace segorient

@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the segorient authors
+#pragma once
+
+#include <segorient/common/neighborhoods.h>
+#include <segorient/common/point_view.h>
+#include <segorient/orientation/method.h>
+#include <segorient/orientation/orientation_result.h>
+#include <segorient/orientation/segment_relations.h>
+#include <segorient/segmentation/segmentation.h>
+
+#include <cstddef>
+
+namespace segorient {
+
+/// Settings of orientSegments(). Angles in radians.
+struct OrientationOptions {
+  OrientationMethod method = OrientationMethod::AUTO;
+  /// Paper's gamma: angles up to here, and from pi - gamma on, decide; extremal points must be as
+  /// near.
+  float gamma = 0.6108652F;
+  SegmentAngle angle = SegmentAngle::ACROSS_BORDER;
+  bool point_tree = false;  ///< PROPAGATION over points instead of segments (Hoppe et al. 1992)
+  float min_margin = 0.5F;  ///< majority that a boundary needs to decide, see BoundaryVote
+  std::size_t max_box_points =
+      120;  ///< most points in a box of the subdivision for extremal points
+  /// Whether each connected component is turned outward; otherwise its largest segment keeps its
+  /// sign.
+  bool turn_outward = true;
+  int threads = 0;  ///< see resolveThreads()
+};
+
+/// Orients a segmented cloud: segments by the chosen method, every other point that has a normal
+/// from what surrounds it, and every connected component outward (paper, section 3).
+///
+/// \param normals 4 floats a row; the sign of each is arbitrary
+/// \param neighborhoods of every point
+/// \param graph of the segmentation, see buildSegmentGraph()
+/// \return all signs 0 if the sizes do not agree
+OrientationResult orientSegments(const PointView& points, const PointView& normals,
+                                 const Neighborhoods& neighborhoods,
+                                 const Segmentation& segmentation, const SegmentGraph& graph,
+                                 const OrientationOptions& options);
+
+}  // namespace segorient

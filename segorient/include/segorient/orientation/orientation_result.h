@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the segorient authors
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace segorient {
+
+/// What an orientation rests on.
+enum class DecidedBy : std::uint8_t {
+  NOTHING,       ///< no evidence; the sign is arbitrary
+  SEED,          ///< the segment that its component started from
+  PROPAGATION,   ///< angle to an oriented neighbour
+  BOUNDARY,      ///< direction of the boundary shared with an oriented neighbour
+  EXTREMAL,      ///< extremal points of the object
+  ENCLOSURE,     ///< extremal points, and lying inside other components
+  SURROUNDINGS,  ///< votes of the oriented points around
+  GLOBAL         ///< an energy over the whole component or cloud
+};
+
+/// nothing, seed, propagation, boundary, extremal, enclosure, surroundings or global.
+const char* toString(DecidedBy by);
+
+/// The orientation of one segment.
+struct SegmentOrientationResult {
+  std::int8_t sign = 0;  ///< +1 keeps the reference normal, -1 inverts everything in it
+  DecidedBy by = DecidedBy::NOTHING;
+  float confidence = 0.F;       ///< 0 a guess, 1 all evidence agrees
+  std::int32_t component = -1;  ///< into OrientationResult::components
+  bool hard = false;            ///< no method decided it: the sign is the best evidence there is
+};
+
+/// The orientation of one connected component: which way is out.
+struct ComponentOrientationResult {
+  DecidedBy by = DecidedBy::NOTHING;
+  std::int8_t sign = 1;    ///< what its relative orientation was multiplied by
+  float evidence = 0.F;    ///< sum of signed votes before that, in points that voted
+  float confidence = 0.F;  ///< |sum of votes| / sum of |votes|
+  std::size_t points = 0;
+};
+
+/// What every method of orientation returns. The oriented normal of point i is
+/// point_signs[i] times its input normal.
+struct OrientationResult {
+  std::vector<SegmentOrientationResult> segments;      ///< by label
+  std::vector<ComponentOrientationResult> components;  ///< by descending number of points
+  std::vector<std::int8_t> point_signs;        ///< +1 or -1; 0 only where there is no normal
+  std::vector<float> point_confidences;        ///< 0 to 1
+  std::vector<std::int32_t> point_components;  ///< -1 where there is no normal
+};
+
+}  // namespace segorient

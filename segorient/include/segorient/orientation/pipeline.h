@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the segorient authors
+#pragma once
+
+#include <pcl/types.h>
+#include <segorient/common/point_view.h>
+#include <segorient/features/local_normals.h>
+#include <segorient/orientation/orient_segments.h>
+#include <segorient/orientation/orientation_result.h>
+#include <segorient/segmentation/region_growing.h>
+#include <segorient/segmentation/segmentation.h>
+
+#include <cstddef>
+#include <functional>
+#include <string>
+#include <vector>
+
+namespace segorient {
+
+/// Settings of orientCloud(). The defaults need no tuning.
+struct PipelineOptions {
+  int k = 0;  ///< neighbours of a point, itself not counted; <= 0 = from the cloud's noise
+  LocalNormalOptions normals;        ///< its k and threads are not used
+  SegmentationOptions segmentation;  ///< its threads and neighbors are not used
+  OrientationOptions orientation;    ///< its threads are not used
+  int threads = 0;                   ///< see resolveThreads()
+};
+
+/// Called when a stage begins and as it goes on, from the calling thread.
+/// \param stage search, normals, segmentation, orientation or output
+/// \param fraction of the whole work that is done, 0 to 1
+using PipelineProgress = std::function<void(const char* stage, double fraction)>;
+
+struct StageTime {
+  std::string stage;
+  double seconds = 0.0;
+};
+
+/// What orientCloud() did.
+struct PipelineReport {
+  std::size_t points = 0;      ///< input rows
+  std::size_t non_finite = 0;  ///< rows with NaN or infinite coordinates, or invalid indices
+  std::size_t duplicates = 0;  ///< rows that repeat another one's coordinates
+  std::size_t without_normal =
+      0;  ///< rows that got none: all non-finite, or without a plane around
+  std::size_t regular_segments = 0;
+  std::size_t connected_segments = 0;
+  std::size_t isolated_segments = 0;
+  std::size_t hard_segments = 0;  ///< regular ones that no method decided
+  int k = 0;                      ///< neighbours used, the point itself not counted
+  NormalEstimator estimator = NormalEstimator::Plane;
+  OrientationMethod method = OrientationMethod::AUTO;
+  float spacing = 0.F;  ///< h: median over points of the mean distance to the 6 nearest
+  float noise = 0.F;    ///< rms distance of a neighbourhood from its plane, in spacings, median
+  std::vector<StageTime> stages;
+  double seconds = 0.0;                                ///< all stages
+  std::size_t peak_memory = 0;                         ///< of the process so far, bytes
+  std::vector<ComponentOrientationResult> components;  ///< by descending size, in distinct points
+};
+
+/// A segmented, oriented cloud; everything is by input row (by position in the indices, if given).
+struct OrientedCloud {
+  std::vector<float> normals;  ///< 4 floats a row: oriented normal, curvature; NaN where none
+  Segmentation segmentation;   ///< label -1 where there is no normal; signs as `normals` has them
+  std::vector<float> confidences;        ///< of the orientation, 0 to 1
+  std::vector<std::int32_t> components;  ///< connected component, -1 where there is no normal
+  std::vector<SegmentOrientationResult> segments;  ///< how each segment was oriented, by label
+  PipelineReport report;
+};
+
+/// The whole way: distinct points, neighbours, normals, segments, orientation (paper, sections 2
+/// and 3). Rows that repeat a point get that point's result. The result does not depend on the
+/// order of the rows nor on the number of threads.
+///
+/// \param indices rows to use, or null for all
+/// \param progress may be empty
+/// \return rows of NaN where there is nothing to go by (fewer than three distinct points, all in a
+///         line); empty vectors for an empty cloud
+OrientedCloud orientCloud(const PointView& points, const std::vector<pcl::index_t>* indices,
+                          const PipelineOptions& options, const PipelineProgress& progress = {});
+
+/// The result for some rows of a cloud. Segments keep their labels and data; their members are
+/// those among `rows`, so sizes may be 0. Invalid rows get NaN.
+OrientedCloud selectRows(const OrientedCloud& cloud, const std::vector<pcl::index_t>& rows);
+
+}  // namespace segorient

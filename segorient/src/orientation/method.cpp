@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the segorient authors
+#include <segorient/orientation/method.h>
+
+#include <array>
+
+namespace segorient {
+namespace {
+
+constexpr std::array<const char*, 5> kNames{"auto", "propagation", "boundary", "combined",
+                                            "extremal"};
+
+}  // namespace
+
+const char* toString(OrientationMethod method) {
+  const auto i = static_cast<std::size_t>(method);
+  return i < kNames.size() ? kNames[i] : "unknown";
+}
+
+bool fromString(const std::string& name, OrientationMethod& method) {
+  for (std::size_t i = 0; i < kNames.size(); ++i) {
+    if (name == kNames[i]) {
+      method = static_cast<OrientationMethod>(i);
+      return true;
+    }
+  }
+  return false;
+}
+
+}  // namespace segorient

@@ -1,0 +1,129 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the segorient authors
+#include <segorient/orientation/completion.h>
+#include <segorient/orientation/component_sign.h>
+#include <segorient/orientation/extremal.h>
+#include <segorient/orientation/orient_segments.h>
+#include <segorient/orientation/point_tree.h>
+#include <segorient/orientation/segment_links.h>
+#include <segorient/orientation/segment_methods.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+#include <vector>
+
+namespace segorient {
+namespace {
+
+std::vector<pcl::index_t> usableRows(const PointView& points, const PointView& normals) {
+  std::vector<pcl::index_t> rows;
+  for (std::size_t i = 0; i < points.size; ++i) {
+    if (isFinite(points[i]) && isFinite(normals[i])) rows.push_back(static_cast<pcl::index_t>(i));
+  }
+  return rows;
+}
+
+std::vector<SegmentOrientationResult> runMethod(const SegmentEvidence& evidence,
+                                                const OrientationOptions& options) {
+  SegmentMethodOptions method_options;
+  method_options.gamma = options.gamma;
+  method_options.min_margin = options.min_margin;
+  switch (options.method) {
+    case OrientationMethod::PROPAGATION:
+      return propagateOrientation(evidence, method_options);
+    case OrientationMethod::BOUNDARY:
+      return orientByBoundaries(evidence, method_options);
+    case OrientationMethod::EXTREMAL:
+      return orientByExtremalPoints(evidence, method_options);
+    case OrientationMethod::AUTO:
+    case OrientationMethod::COMBINED:
+      break;
+  }
+  return orientCombined(evidence, method_options);
+}
+
+// Signs of the points of regular segments; the others stay open.
+void spreadToPoints(const Segmentation& segmentation, OrientationResult& result) {
+  const std::size_t n = segmentation.labels.size();
+  result.point_signs.assign(n, 0);
+  result.point_confidences.assign(n, 0.F);
+  result.point_components.assign(n, -1);
+  std::int32_t components = 0;
+  for (const SegmentOrientationResult& segment : result.segments) {
+    components = std::max(components, segment.component + 1);
+  }
+  result.components.resize(static_cast<std::size_t>(components));
+  for (std::size_t i = 0; i < n; ++i) {
+    if (segmentation.labels[i] < 0) continue;
+    const SegmentOrientationResult& segment =
+        result.segments[static_cast<std::size_t>(segmentation.labels[i])];
+    if (segment.sign == 0) continue;
+    result.point_signs[i] = static_cast<std::int8_t>(segment.sign * segmentation.signs[i]);
+    result.point_confidences[i] = segment.confidence;
+    result.point_components[i] = segment.component;
+  }
+}
+
+// Connected and isolated segments, or all where points were oriented one by one: what the majority
+// of a segment's points says.
+void summarizeSegments(const Segmentation& segmentation, DecidedBy by, OrientationResult& result) {
+  result.segments.resize(segmentation.segments.size());
+  for (std::size_t s = 0; s < result.segments.size(); ++s) {
+    SegmentOrientationResult& segment = result.segments[s];
+    if (segment.sign != 0 || segmentation.segments[s].size == 0) continue;
+    int balance = 0;
+    for (const pcl::index_t* p = segmentation.begin(s); p != segmentation.end(s); ++p) {
+      const auto i = static_cast<std::size_t>(*p);
+      balance += result.point_signs[i] * segmentation.signs[i];
+    }
+    segment.sign = balance < 0 ? std::int8_t{-1} : std::int8_t{1};
+    segment.by = by;
+    segment.confidence =
+        static_cast<float>(std::abs(balance)) / static_cast<float>(segmentation.segments[s].size);
+    segment.component = result.point_components[static_cast<std::size_t>(*segmentation.begin(s))];
+  }
+}
+
+}  // namespace
+
+OrientationResult orientSegments(const PointView& points, const PointView& normals,
+                                 const Neighborhoods& neighborhoods,
+                                 const Segmentation& segmentation, const SegmentGraph& graph,
+                                 const OrientationOptions& options) {
+  OrientationResult result;
+  if (normals.size != points.size || neighborhoods.size() != points.size ||
+      segmentation.labels.size() != points.size) {
+    result.point_signs.assign(points.size, 0);
+    result.point_confidences.assign(points.size, 0.F);
+    result.point_components.assign(points.size, -1);
+    return result;
+  }
+  if (options.method == OrientationMethod::PROPAGATION && options.point_tree) {
+    result = orientByPointTree(points, normals, neighborhoods);
+    summarizeSegments(segmentation, DecidedBy::PROPAGATION, result);
+    return result;
+  }
+
+  const SegmentLinks links = linkRegularSegments(segmentation, graph, neighborhoods);
+  const std::vector<float> cosines = segmentCosines(normals, segmentation, links, options.angle);
+  const std::vector<BoundaryVote> boundary =
+      localBoundaryVotes(points, normals, neighborhoods, segmentation, links, options.threads);
+  const std::vector<ExtremalEvidence> extremal = gatherExtremalEvidence(
+      findExtremalPoints(points, normals, usableRows(points, normals), options.max_box_points),
+      segmentation, options.gamma);
+  result.segments = runMethod({segmentation, links, cosines, boundary, extremal}, options);
+
+  spreadToPoints(segmentation, result);
+  completeOrientation(points, normals, neighborhoods, result);
+  summarizeSegments(segmentation, DecidedBy::SURROUNDINGS, result);
+  if (options.turn_outward) {
+    orientComponents(points, normals, neighborhoods, {options.gamma, options.max_box_points},
+                     result);
+  } else {
+    sortComponents(result);
+  }
+  return result;
+}
+
+}  // namespace segorient

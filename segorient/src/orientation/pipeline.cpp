@@ -1,0 +1,247 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the segorient authors
+#include <segorient/common/compact_cloud.h>
+#include <segorient/orientation/pipeline.h>
+#include <segorient/search/median_hash_index.h>
+#include <sys/resource.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <limits>
+
+#include "cloud_scale.h"
+
+namespace segorient {
+namespace {
+
+constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
+
+// Says which stage is running, and keeps the time of each.
+class Stages {
+ public:
+  Stages(const PipelineProgress& progress, PipelineReport& report)
+      : progress_(progress), report_(report) {}
+
+  void begin(const char* stage, double fraction) {
+    end();
+    stage_ = stage;
+    start_ = Clock::now();
+    if (progress_) progress_(stage, fraction);
+  }
+
+  void end() {
+    if (stage_ == nullptr) return;
+    const double seconds = std::chrono::duration<double>(Clock::now() - start_).count();
+    report_.stages.push_back({stage_, seconds});
+    report_.seconds += seconds;
+    stage_ = nullptr;
+  }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  const PipelineProgress& progress_;
+  PipelineReport& report_;
+  const char* stage_ = nullptr;
+  Clock::time_point start_;
+};
+
+// The distinct points with all that the stages find out about them.
+struct Working {
+  CompactCloud cloud;
+  Neighborhoods neighborhoods;
+  std::vector<float> normals;
+  Segmentation segmentation;
+  OrientationResult orientation;
+
+  PointView normalView() const { return {normals.data(), 4, cloud.size()}; }
+};
+
+std::size_t peakMemory() {
+  rusage usage{};
+  if (getrusage(RUSAGE_SELF, &usage) != 0) return 0;
+  return static_cast<std::size_t>(usage.ru_maxrss) * 1024;
+}
+
+void findNeighbors(const PipelineOptions& options, Working& work, PipelineReport& report) {
+  search::MedianHashIndex index;
+  search::MedianHashIndex::Options search_options;
+  search_options.threads = options.threads;
+  index.build(work.cloud.view(), nullptr, search_options);
+  const CloudScale scale = measureScale(work.cloud.view(), index);
+  report.spacing = scale.spacing;
+  report.noise = scale.noise;
+  report.k = options.k > 0 ? options.k : neighborsForNoise(scale.noise);
+  index.nearestKAll(report.k + 1, work.neighborhoods);
+}
+
+void findNormals(const PipelineOptions& options, Working& work) {
+  work.normals.resize(4 * work.cloud.size());
+  LocalNormalOptions normal_options = options.normals;
+  normal_options.k = 0;
+  normal_options.threads = options.threads;
+  estimateNormals(work.cloud.view(), work.neighborhoods, normal_options, work.normals.data());
+}
+
+void findSegments(const PipelineOptions& options, Working& work) {
+  SegmentationOptions segmentation_options = options.segmentation;
+  segmentation_options.neighbors = 0;
+  segmentation_options.threads = options.threads;
+  work.segmentation = segmentByNormals(work.cloud.view(), work.normalView(), work.neighborhoods,
+                                       segmentation_options);
+}
+
+void findOrientation(const PipelineOptions& options, Working& work) {
+  OrientationOptions orientation_options = options.orientation;
+  orientation_options.threads = options.threads;
+  const SegmentGraph graph = buildSegmentGraph(work.segmentation, work.neighborhoods);
+  work.orientation = orientSegments(work.cloud.view(), work.normalView(), work.neighborhoods,
+                                    work.segmentation, graph, orientation_options);
+}
+
+// Members and sizes of the segments from the labels of the rows.
+void collectMembers(Segmentation& segmentation) {
+  std::vector<Segment>& segments = segmentation.segments;
+  for (Segment& segment : segments) segment.size = 0;
+  std::size_t labelled = 0;
+  for (const std::int32_t label : segmentation.labels) {
+    if (label < 0) continue;
+    ++segments[static_cast<std::size_t>(label)].size;
+    ++labelled;
+  }
+  std::uint32_t first = 0;
+  for (Segment& segment : segments) {
+    segment.first = first;
+    first += segment.size;
+  }
+  segmentation.members.resize(labelled);
+  std::vector<std::uint32_t> cursor(segments.size());
+  for (std::size_t s = 0; s < segments.size(); ++s) cursor[s] = segments[s].first;
+  for (std::size_t i = 0; i < segmentation.labels.size(); ++i) {
+    const std::int32_t label = segmentation.labels[i];
+    if (label < 0) continue;
+    segmentation.members[cursor[static_cast<std::size_t>(label)]++] = static_cast<pcl::index_t>(i);
+  }
+}
+
+// Turns the distinct points' normals and segments as they were oriented. The normals' own signs now
+// say it all, so a point's sign in its segment is what is left: -1 where it disagrees with it.
+void applyOrientation(Working& work) {
+  const OrientationResult& orientation = work.orientation;
+  for (std::size_t i = 0; i < work.cloud.size(); ++i) {
+    const auto sign = static_cast<float>(orientation.point_signs[i]);
+    for (std::size_t a = 0; a < 3; ++a) work.normals[4 * i + a] *= sign == 0.F ? kNaN : sign;
+    if (sign == 0.F) work.normals[4 * i + 3] = kNaN;
+    const std::int32_t label = work.segmentation.labels[i];
+    if (label < 0) continue;
+    const int segment_sign = orientation.segments[static_cast<std::size_t>(label)].sign;
+    work.segmentation.signs[i] = static_cast<std::int8_t>(
+        work.segmentation.signs[i] * orientation.point_signs[i] * segment_sign);
+  }
+  for (std::size_t s = 0; s < work.segmentation.segments.size(); ++s) {
+    for (float& c : work.segmentation.segments[s].reference_normal) {
+      c *= static_cast<float>(orientation.segments[s].sign);
+    }
+  }
+}
+
+// From distinct points to input rows.
+void scatter(const Working& work, OrientedCloud& out) {
+  const std::size_t rows = work.cloud.row_of.size();
+  out.normals.assign(4 * rows, kNaN);
+  out.confidences.assign(rows, 0.F);
+  out.components.assign(rows, -1);
+  out.segmentation.labels.assign(rows, -1);
+  out.segmentation.signs.assign(rows, 0);
+  for (std::size_t row = 0; row < rows; ++row) {
+    if (work.cloud.row_of[row] < 0) continue;
+    const auto i = static_cast<std::size_t>(work.cloud.row_of[row]);
+    std::copy_n(&work.normals[4 * i], 4, &out.normals[4 * row]);
+    out.confidences[row] = work.orientation.point_confidences[i];
+    out.components[row] = work.orientation.point_components[i];
+    out.segmentation.labels[row] = work.segmentation.labels[i];
+    out.segmentation.signs[row] = work.segmentation.signs[i];
+  }
+  out.segmentation.segments = work.segmentation.segments;
+  collectMembers(out.segmentation);
+  out.segments = work.orientation.segments;
+}
+
+void fillReport(const Working& work, const OrientedCloud& cloud, PipelineReport& report) {
+  report.points = work.cloud.row_of.size();
+  report.non_finite = static_cast<std::size_t>(
+      std::count(work.cloud.row_of.begin(), work.cloud.row_of.end(), pcl::index_t{-1}));
+  report.duplicates = report.points - report.non_finite - work.cloud.size();
+  for (std::size_t row = 0; row < report.points; ++row) {
+    if (!std::isfinite(cloud.normals[4 * row])) ++report.without_normal;
+  }
+  for (std::size_t s = 0; s < cloud.segments.size(); ++s) {
+    switch (cloud.segmentation.segments[s].kind) {
+      case SegmentKind::Regular:
+        ++report.regular_segments;
+        break;
+      case SegmentKind::Connected:
+        ++report.connected_segments;
+        break;
+      case SegmentKind::Isolated:
+        ++report.isolated_segments;
+        break;
+    }
+    if (cloud.segments[s].hard) ++report.hard_segments;
+  }
+  report.components = work.orientation.components;
+  report.peak_memory = peakMemory();
+}
+
+}  // namespace
+
+OrientedCloud orientCloud(const PointView& points, const std::vector<pcl::index_t>* indices,
+                          const PipelineOptions& options, const PipelineProgress& progress) {
+  OrientedCloud out;
+  out.report.method = options.orientation.method;
+  out.report.estimator = options.normals.estimator;
+  Stages stages(progress, out.report);
+  Working work;
+  // Fractions: shares of the time on clouds of a million points.
+  stages.begin("search", 0.0);
+  work.cloud = compactCloud(points, indices, options.threads);
+  findNeighbors(options, work, out.report);
+  stages.begin("normals", 0.4);
+  findNormals(options, work);
+  stages.begin("segmentation", 0.5);
+  findSegments(options, work);
+  stages.begin("orientation", 0.75);
+  findOrientation(options, work);
+  stages.begin("output", 0.95);
+  applyOrientation(work);
+  scatter(work, out);
+  fillReport(work, out, out.report);
+  stages.end();
+  if (progress) progress("output", 1.0);
+  return out;
+}
+
+OrientedCloud selectRows(const OrientedCloud& cloud, const std::vector<pcl::index_t>& rows) {
+  OrientedCloud out;
+  out.report = cloud.report;
+  out.segments = cloud.segments;
+  out.segmentation.segments = cloud.segmentation.segments;
+  out.normals.assign(4 * rows.size(), kNaN);
+  out.confidences.assign(rows.size(), 0.F);
+  out.components.assign(rows.size(), -1);
+  out.segmentation.labels.assign(rows.size(), -1);
+  out.segmentation.signs.assign(rows.size(), 0);
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    if (rows[i] < 0 || static_cast<std::size_t>(rows[i]) >= cloud.confidences.size()) continue;
+    const auto row = static_cast<std::size_t>(rows[i]);
+    std::copy_n(&cloud.normals[4 * row], 4, &out.normals[4 * i]);
+    out.confidences[i] = cloud.confidences[row];
+    out.components[i] = cloud.components[row];
+    out.segmentation.labels[i] = cloud.segmentation.labels[row];
+    out.segmentation.signs[i] = cloud.segmentation.signs[row];
+  }
+  collectMembers(out.segmentation);
+  return out;
+}
+
+}  // namespace segorient

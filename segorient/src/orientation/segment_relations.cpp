@@ -1,0 +1,145 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the segorient authors
+#include <segorient/common/threads.h>
+#include <segorient/orientation/segment_relations.h>
+
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+
+namespace segorient {
+namespace {
+
+using Eigen::Vector3f;
+
+Vector3f vectorAt(const PointView& view, pcl::index_t row) {
+  const float* v = view[static_cast<std::size_t>(row)];
+  return {v[0], v[1], v[2]};
+}
+
+// The normal of a point as its segment has it.
+Vector3f segmentNormal(const PointView& normals, const Segmentation& segmentation,
+                       pcl::index_t row) {
+  return vectorAt(normals, row) *
+         static_cast<float>(segmentation.signs[static_cast<std::size_t>(row)]);
+}
+
+float referenceCosine(const Segmentation& segmentation, const SegmentLink& link) {
+  const auto& a = segmentation.segments[static_cast<std::size_t>(link.a)].reference_normal;
+  const auto& b = segmentation.segments[static_cast<std::size_t>(link.b)].reference_normal;
+  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+float borderCosine(const PointView& normals, const Segmentation& segmentation,
+                   const SegmentLinks& links, const SegmentLink& link) {
+  float sum = 0.F;
+  for (std::uint32_t i = link.first; i < link.first + link.size; ++i) {
+    const BorderPair& pair = links.pairs[i];
+    sum += segmentNormal(normals, segmentation, pair.in_a)
+               .dot(segmentNormal(normals, segmentation, pair.in_b));
+  }
+  return sum / static_cast<float>(std::max(1U, link.size));
+}
+
+class LocalBoundary {
+ public:
+  LocalBoundary(const PointView& points, const PointView& normals,
+                const Neighborhoods& neighborhoods, const Segmentation& segmentation)
+      : points_(points),
+        normals_(normals),
+        neighborhoods_(neighborhoods),
+        segmentation_(segmentation) {}
+
+  // Direction of the walk along the border at p, towards the segment of q. Shorter than 1 where the
+  // way across the border leaves the tangent plane; zero where there is none.
+  Vector3f walk(pcl::index_t p, pcl::index_t q) const {
+    const std::int32_t own_label = segmentation_.labels[static_cast<std::size_t>(p)];
+    const std::int32_t other_label = segmentation_.labels[static_cast<std::size_t>(q)];
+    const Vector3f origin = vectorAt(points_, p);
+    Vector3f own = Vector3f::Zero();
+    Vector3f other = vectorAt(points_, q) - origin;
+    float own_count = 1.F;
+    float other_count = 1.F;
+    const auto row = static_cast<std::size_t>(p);
+    const pcl::index_t* neighbors = neighborhoods_.indices(row);
+    for (int j = 1; j < neighborhoods_.count(row); ++j) {
+      const std::int32_t label = segmentation_.labels[static_cast<std::size_t>(neighbors[j])];
+      if (label == own_label) {
+        own += vectorAt(points_, neighbors[j]) - origin;
+        own_count += 1.F;
+      } else if (label == other_label) {
+        other += vectorAt(points_, neighbors[j]) - origin;
+        other_count += 1.F;
+      }
+    }
+    const Vector3f across = other / other_count - own / own_count;
+    const float length = across.norm();
+    if (!(length > 0.F)) return Vector3f::Zero();
+    return segmentNormal(normals_, segmentation_, p).cross(across / length);
+  }
+
+ private:
+  const PointView& points_;
+  const PointView& normals_;
+  const Neighborhoods& neighborhoods_;
+  const Segmentation& segmentation_;
+};
+
+std::uint32_t distinct(std::vector<pcl::index_t>& rows) {
+  std::sort(rows.begin(), rows.end());
+  return static_cast<std::uint32_t>(std::unique(rows.begin(), rows.end()) - rows.begin());
+}
+
+BoundaryVote voteOf(const LocalBoundary& boundary, const SegmentLinks& links,
+                    const SegmentLink& link) {
+  float balance = 0.F;
+  float total = 0.F;
+  std::vector<pcl::index_t> in_a;
+  std::vector<pcl::index_t> in_b;
+  for (std::uint32_t i = link.first; i < link.first + link.size; ++i) {
+    const BorderPair& pair = links.pairs[i];
+    const float vote =
+        -boundary.walk(pair.in_a, pair.in_b).dot(boundary.walk(pair.in_b, pair.in_a));
+    balance += vote;
+    total += std::abs(vote);
+    in_a.push_back(pair.in_a);
+    in_b.push_back(pair.in_b);
+  }
+  BoundaryVote out;
+  if (total > 0.F) out.margin = balance / total;
+  out.points = std::min(distinct(in_a), distinct(in_b));
+  return out;
+}
+
+}  // namespace
+
+std::vector<float> segmentCosines(const PointView& normals, const Segmentation& segmentation,
+                                  const SegmentLinks& links, SegmentAngle angle) {
+  std::vector<float> out;
+  out.reserve(links.links.size());
+  for (const SegmentLink& link : links.links) {
+    const float cosine = angle == SegmentAngle::REFERENCE_NORMALS
+                             ? referenceCosine(segmentation, link)
+                             : borderCosine(normals, segmentation, links, link);
+    out.push_back(std::clamp(cosine, -1.F, 1.F));
+  }
+  return out;
+}
+
+std::vector<BoundaryVote> localBoundaryVotes(const PointView& points, const PointView& normals,
+                                             const Neighborhoods& neighborhoods,
+                                             const Segmentation& segmentation,
+                                             const SegmentLinks& links, int threads) {
+  const LocalBoundary boundary(points, normals, neighborhoods, segmentation);
+  std::vector<BoundaryVote> out(links.links.size());
+  const auto count = static_cast<std::ptrdiff_t>(links.links.size());
+#pragma omp parallel for schedule(dynamic, 64) num_threads(resolveThreads(threads))
+  for (std::ptrdiff_t i = 0; i < count; ++i) {
+    const auto l = static_cast<std::size_t>(i);
+    out[l] = voteOf(boundary, links, links.links[l]);
+  }
+  return out;
+}
+
+}  // namespace segorient
