@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026, the segorient authors
 #include <Eigen/Eigenvalues>
-#include <numeric>
+#include <array>
 
 #include "growth_state.h"
+#include "segment_order.h"
 
 namespace segorient::segmentation {
 namespace {
@@ -27,52 +28,6 @@ struct Moments {
     }
   }
 };
-
-// New label of each cluster, -1 for those that are empty now: descending size, then smallest
-// member.
-std::vector<std::int32_t> rankClusters(const GrowthState& state, std::size_t& count) {
-  const std::size_t clusters = state.clusters.size();
-  std::vector<std::size_t> smallest(clusters, state.nodes.size());
-  for (std::size_t p = state.nodes.size(); p-- > 0;) {
-    if (state.labels[p] >= 0) smallest[static_cast<std::size_t>(state.labels[p])] = p;
-  }
-  std::vector<std::int32_t> order(clusters);
-  std::iota(order.begin(), order.end(), 0);
-  const auto empty = [&](std::int32_t s) {
-    return state.clusters[static_cast<std::size_t>(s)].size == 0;
-  };
-  order.erase(std::remove_if(order.begin(), order.end(), empty), order.end());
-  std::sort(order.begin(), order.end(), [&](std::int32_t s, std::int32_t t) {
-    const auto a = static_cast<std::size_t>(s);
-    const auto b = static_cast<std::size_t>(t);
-    if (state.clusters[a].size != state.clusters[b].size) {
-      return state.clusters[a].size > state.clusters[b].size;
-    }
-    return smallest[a] < smallest[b];
-  });
-  std::vector<std::int32_t> rank(clusters, -1);
-  for (std::size_t r = 0; r < order.size(); ++r) {
-    rank[static_cast<std::size_t>(order[r])] = static_cast<std::int32_t>(r);
-  }
-  count = order.size();
-  return rank;
-}
-
-void fillMembers(Segmentation& result) {
-  std::uint32_t first = 0;
-  for (Segment& segment : result.segments) {
-    segment.first = first;
-    first += segment.size;
-  }
-  result.members.resize(first);
-  std::vector<std::uint32_t> next(result.segments.size());
-  for (std::size_t s = 0; s < next.size(); ++s) next[s] = result.segments[s].first;
-  for (std::size_t p = 0; p < result.labels.size(); ++p) {
-    const std::int32_t label = result.labels[p];
-    if (label < 0) continue;
-    result.members[next[static_cast<std::size_t>(label)]++] = static_cast<pcl::index_t>(p);
-  }
-}
 
 void setShape(const Moments& m, Segment& segment) {
   const double n = segment.size;
@@ -112,7 +67,10 @@ void measure(const PointView& points, const GrowthState& state, Segmentation& re
 
 Segmentation finish(const PointView& points, const GrowthState& state) {
   std::size_t count = 0;
-  const std::vector<std::int32_t> rank = rankClusters(state, count);
+  std::vector<std::uint32_t> sizes;
+  sizes.reserve(state.clusters.size());
+  for (const Cluster& cluster : state.clusters) sizes.push_back(cluster.size);
+  const std::vector<std::int32_t> rank = rankLabels(state.labels, sizes, count);
   Segmentation result;
   result.segments.resize(count);
   for (std::size_t s = 0; s < rank.size(); ++s) {

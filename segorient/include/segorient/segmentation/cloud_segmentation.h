@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the segorient authors
+#pragma once
+
+#include <segorient/common/neighborhoods.h>
+#include <segorient/common/point_view.h>
+#include <segorient/segmentation/region_growing.h>
+#include <segorient/segmentation/segmentation.h>
+
+#include <functional>
+#include <vector>
+
+namespace segorient {
+
+/// Segmentation of a cloud as it comes: with NaN points, duplicates, indices. The part of
+/// NormalSegmentation that does not depend on the point type.
+class CloudSegmentation {
+ public:
+  /// k nearest of one of the cloud's points, as indices into the cloud, itself included.
+  using Search = std::function<int(pcl::index_t point, int k, pcl::Indices& indices,
+                                   std::vector<float>& sqr_distances)>;
+
+  struct Input {
+    PointView points;            ///< the whole cloud
+    std::vector<float> normals;  ///< of the whole cloud, 4 floats a point: normal and curvature
+    const pcl::Indices* indices =
+        nullptr;                           ///< points to segment, null = all; bad ones are left out
+    const Neighborhoods* table = nullptr;  ///< of the whole cloud, or null to search; outlives this
+    Search search;                         ///< empty = search::MedianHashIndex
+    int neighbors = 12;                    ///< neighbours of each point, itself not counted
+  };
+
+  /// \return false if sizes do not agree or the table is not of this cloud; the result is empty
+  /// then
+  bool compute(const Input& input, const SegmentationOptions& options);
+  void clear();
+
+  /// Of the whole cloud: points that were not to be segmented have label -1. Exact duplicates share
+  /// their label.
+  const Segmentation& segmentation() const { return result_; }
+  const SegmentationReport& report() const { return report_; }
+  /// Pairs are indices into the cloud; of duplicates only the first is in a pair.
+  SegmentGraph graph() const;
+
+ private:
+  bool computeWithTable(const Input& input, const SegmentationOptions& options);
+  void computeCompact(const Input& input, const SegmentationOptions& options);
+
+  Segmentation result_;
+  SegmentationReport report_;
+  const Neighborhoods* table_ = nullptr;
+  Neighborhoods own_table_;
+  std::vector<pcl::index_t> source_;  ///< row of own_table_ to index into the cloud
+  int neighbors_ = 0;
+};
+
+}  // namespace segorient

@@ -1,0 +1,272 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the segorient authors
+#pragma once
+
+#include <pcl/common/colors.h>
+#include <pcl/console/print.h>
+#include <segorient/common/cloud_access.h>
+#include <segorient/segmentation/normal_segmentation.h>
+
+#include <algorithm>
+
+namespace segorient {
+
+template <typename PointT, typename NormalT>
+void NormalSegmentation<PointT, NormalT>::outdated() {
+  if (!done_) return;
+  result_.clear();
+  done_ = false;
+}
+
+template <typename PointT, typename NormalT>
+void NormalSegmentation<PointT, NormalT>::setInputCloud(const PointCloudConstPtr& cloud) {
+  Base::setInputCloud(cloud);
+  outdated();
+}
+
+template <typename PointT, typename NormalT>
+void NormalSegmentation<PointT, NormalT>::setIndices(const pcl::IndicesPtr& indices) {
+  Base::setIndices(indices);
+  outdated();
+}
+
+template <typename PointT, typename NormalT>
+void NormalSegmentation<PointT, NormalT>::setIndices(const pcl::IndicesConstPtr& indices) {
+  // The base class copies without a look.
+  Base::setIndices(indices ? pcl::IndicesPtr(new pcl::Indices(*indices)) : pcl::IndicesPtr());
+  outdated();
+}
+
+template <typename PointT, typename NormalT>
+void NormalSegmentation<PointT, NormalT>::setIndices(const pcl::PointIndicesConstPtr& indices) {
+  Base::setIndices(indices ? pcl::IndicesPtr(new pcl::Indices(indices->indices))
+                           : pcl::IndicesPtr());
+  outdated();
+}
+
+template <typename PointT, typename NormalT>
+void NormalSegmentation<PointT, NormalT>::setIndices(std::size_t row_start, std::size_t col_start,
+                                                     std::size_t nb_rows, std::size_t nb_cols) {
+  Base::setIndices(row_start, col_start, nb_rows, nb_cols);
+  outdated();
+}
+
+template <typename PointT, typename NormalT>
+void NormalSegmentation<PointT, NormalT>::setInputNormals(const NormalConstPtr& normals) {
+  normals_ = normals;
+  outdated();
+}
+
+template <typename PointT, typename NormalT>
+void NormalSegmentation<PointT, NormalT>::setSearchMethod(const KdTreePtr& search) {
+  search_ = search;
+  outdated();
+}
+
+template <typename PointT, typename NormalT>
+void NormalSegmentation<PointT, NormalT>::setNeighborhoods(
+    const std::shared_ptr<const Neighborhoods>& neighborhoods) {
+  result_.clear();  // it may refer to the old table
+  done_ = false;
+  neighborhoods_ = neighborhoods;
+}
+
+template <typename PointT, typename NormalT>
+void NormalSegmentation<PointT, NormalT>::setNumberOfNeighbours(unsigned int neighbors) {
+  constexpr auto kMost = static_cast<unsigned int>(std::numeric_limits<int>::max() - 1);
+  neighbors_ = std::clamp(neighbors, 1U, kMost);
+  outdated();
+}
+
+template <typename PointT, typename NormalT>
+void NormalSegmentation<PointT, NormalT>::setSmoothnessThreshold(float alpha) {
+  options_.alpha = alpha;
+  outdated();
+}
+
+template <typename PointT, typename NormalT>
+void NormalSegmentation<PointT, NormalT>::setReferenceThreshold(float beta) {
+  options_.beta = beta;
+  outdated();
+}
+
+template <typename PointT, typename NormalT>
+void NormalSegmentation<PointT, NormalT>::setReferenceTolerance(float epsilon) {
+  options_.epsilon = epsilon;
+  outdated();
+}
+
+template <typename PointT, typename NormalT>
+void NormalSegmentation<PointT, NormalT>::setCurvatureThreshold(float curvature) {
+  options_.max_curvature = curvature;
+  outdated();
+}
+
+template <typename PointT, typename NormalT>
+void NormalSegmentation<PointT, NormalT>::setCurvatureTestFlag(bool value) {
+  curvature_test_ = value;
+  outdated();
+}
+
+template <typename PointT, typename NormalT>
+void NormalSegmentation<PointT, NormalT>::setSmallSegmentSize(std::size_t points) {
+  options_.small_size = points;
+  outdated();
+}
+
+template <typename PointT, typename NormalT>
+void NormalSegmentation<PointT, NormalT>::setNeighborShare(float share) {
+  options_.neighbor_share = share;
+  outdated();
+}
+
+template <typename PointT, typename NormalT>
+void NormalSegmentation<PointT, NormalT>::setMaximumGap(float spacings) {
+  options_.max_gap = spacings;
+  outdated();
+}
+
+template <typename PointT, typename NormalT>
+void NormalSegmentation<PointT, NormalT>::setMaximumOffset(float spacings) {
+  options_.max_offset = spacings;
+  outdated();
+}
+
+template <typename PointT, typename NormalT>
+void NormalSegmentation<PointT, NormalT>::setAbsorbSmall(bool value) {
+  options_.absorb_small = value;
+  outdated();
+}
+
+template <typename PointT, typename NormalT>
+void NormalSegmentation<PointT, NormalT>::setExtractEdges(bool value) {
+  options_.extract_edges = value;
+  outdated();
+}
+
+template <typename PointT, typename NormalT>
+void NormalSegmentation<PointT, NormalT>::setConnectSmall(bool value) {
+  options_.connect_small = value;
+  outdated();
+}
+
+template <typename PointT, typename NormalT>
+CloudSegmentation::Search NormalSegmentation<PointT, NormalT>::searchFunction() {
+  if (!search_) return {};
+  // Unless it is on this cloud already, possibly on more of it than our indices.
+  if (search_->getInputCloud() != input_) {
+    search_->setInputCloud(input_, fake_indices_ ? pcl::IndicesConstPtr() : indices_);
+  }
+  return [this](pcl::index_t point, int k, pcl::Indices& indices, std::vector<float>& distances) {
+    return search_->nearestKSearch((*input_)[static_cast<std::size_t>(point)], k, indices,
+                                   distances);
+  };
+}
+
+template <typename PointT, typename NormalT>
+bool NormalSegmentation<PointT, NormalT>::segment() {
+  result_.clear();
+  done_ = false;
+  if (!initCompute()) {
+    PCL_ERROR("[segorient::NormalSegmentation] no input cloud\n");
+    return false;
+  }
+  bool good = false;
+  if (!normals_ || normals_->size() != input_->size()) {
+    PCL_ERROR("[segorient::NormalSegmentation] %zu normals for %zu points\n",
+              normals_ ? normals_->size() : std::size_t{0}, input_->size());
+  } else {
+    const CloudPoints<PointT> points(*input_);
+    CloudSegmentation::Input input;
+    input.points = points.view();
+    input.normals.reserve(4 * normals_->size());
+    for (const NormalT& n : *normals_) {
+      input.normals.insert(input.normals.end(), {n.normal_x, n.normal_y, n.normal_z, n.curvature});
+    }
+    if (!fake_indices_) input.indices = indices_.get();
+    input.table = neighborhoods_.get();
+    input.neighbors = static_cast<int>(neighbors_);
+    if (!neighborhoods_ && !input_->empty()) input.search = searchFunction();
+    SegmentationOptions options = options_;
+    if (!curvature_test_) options.max_curvature = std::numeric_limits<float>::max();
+    good = result_.compute(input, options);
+    if (!good)
+      PCL_ERROR("[segorient::NormalSegmentation] empty cloud, or neighbourhoods of another\n");
+  }
+  deinitCompute();
+  done_ = good;
+  return good;
+}
+
+template <typename PointT, typename NormalT>
+void NormalSegmentation<PointT, NormalT>::extract(std::vector<pcl::PointIndices>& clusters) {
+  clusters.clear();
+  if (!done_ && !segment()) return;
+  const Segmentation& s = result_.segmentation();
+  for (std::size_t i = 0; i < s.segments.size(); ++i) {
+    if (s.segments[i].size < min_size_ || s.segments[i].size > max_size_) continue;
+    clusters.emplace_back();
+    clusters.back().header = input_->header;
+    clusters.back().indices.assign(s.begin(i), s.end(i));
+  }
+}
+
+template <typename PointT, typename NormalT>
+void NormalSegmentation<PointT, NormalT>::getSegmentFromPoint(pcl::index_t index,
+                                                              pcl::PointIndices& cluster) {
+  cluster.indices.clear();
+  if (!done_ && !segment()) return;
+  const Segmentation& s = result_.segmentation();
+  cluster.header = input_->header;
+  if (index < 0 || static_cast<std::size_t>(index) >= s.labels.size()) return;
+  const std::int32_t label = s.labels[static_cast<std::size_t>(index)];
+  if (label < 0) return;
+  cluster.indices.assign(s.begin(static_cast<std::size_t>(label)),
+                         s.end(static_cast<std::size_t>(label)));
+}
+
+template <typename PointT, typename NormalT>
+template <typename ColoredT>
+typename pcl::PointCloud<ColoredT>::Ptr NormalSegmentation<PointT, NormalT>::colored() const {
+  if (!done_ || !input_) return {};
+  typename pcl::PointCloud<ColoredT>::Ptr cloud(new pcl::PointCloud<ColoredT>);
+  const std::vector<std::int32_t>& labels = getLabels();
+  cloud->resize(input_->size());
+  for (std::size_t i = 0; i < labels.size(); ++i) {
+    const PointT& from = (*input_)[i];
+    ColoredT& to = (*cloud)[i];
+    to.x = from.x;
+    to.y = from.y;
+    to.z = from.z;
+    const pcl::RGB color =
+        labels[i] < 0
+            ? pcl::RGB(90, 90, 90)
+            : pcl::GlasbeyLUT::at(static_cast<std::size_t>(labels[i]) % pcl::GlasbeyLUT::size());
+    to.r = color.r;
+    to.g = color.g;
+    to.b = color.b;
+    to.a = 255;
+  }
+  cloud->header = input_->header;
+  cloud->width = input_->width;
+  cloud->height = input_->height;
+  cloud->is_dense = input_->is_dense;
+  cloud->sensor_origin_ = input_->sensor_origin_;
+  cloud->sensor_orientation_ = input_->sensor_orientation_;
+  return cloud;
+}
+
+template <typename PointT, typename NormalT>
+pcl::PointCloud<pcl::PointXYZRGB>::Ptr NormalSegmentation<PointT, NormalT>::getColoredCloud() {
+  return colored<pcl::PointXYZRGB>();
+}
+
+template <typename PointT, typename NormalT>
+pcl::PointCloud<pcl::PointXYZRGBA>::Ptr NormalSegmentation<PointT, NormalT>::getColoredCloudRGBA() {
+  return colored<pcl::PointXYZRGBA>();
+}
+
+}  // namespace segorient
+
+#define PCL_INSTANTIATE_NormalSegmentation(T, NT) \
+  template class segorient::NormalSegmentation<T, NT>;

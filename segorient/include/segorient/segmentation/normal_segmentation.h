@@ -1,0 +1,188 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the segorient authors
+#pragma once
+
+#include <pcl/PointIndices.h>
+#include <pcl/pcl_base.h>
+#include <pcl/point_cloud.h>
+#include <pcl/point_types.h>
+#include <pcl/search/search.h>
+#include <segorient/segmentation/cloud_segmentation.h>
+
+#include <limits>
+#include <memory>
+#include <vector>
+
+namespace segorient {
+
+/// Cuts a cloud into faces of similar normals: region growing by alpha and beta, then three
+/// clean-up passes (paper, section 2.3). Takes the place of pcl::RegionGrowing; setters with the
+/// same meaning have the same names.
+///
+/// @code
+/// segorient::NormalSegmentation<pcl::PointXYZ, pcl::Normal> segmentation;  // was
+/// pcl::RegionGrowing segmentation.setInputCloud(cloud); segmentation.setInputNormals(normals);
+/// std::vector<pcl::PointIndices> faces;
+/// segmentation.extract(faces);            // by descending size
+/// auto colored = segmentation.getColoredCloud();
+/// @endcode
+///
+/// Different from pcl::RegionGrowing: normals need not be oriented; a normal is compared with its
+/// neighbour's (alpha) and with the mean of the segment (beta); gaps are not jumped and the sides
+/// of thin walls not mixed; small segments are cleaned up; the result does not depend on the order
+/// of the points. Neighbours come from an all-points search of its own; a search method is only
+/// needed to have others.
+///
+/// Without a cloud, or with normals of another size, extract() reports through PCL_ERROR and gives
+/// no segments. Points with NaN coordinates or normals are in no segment.
+template <typename PointT, typename NormalT>
+class NormalSegmentation : public pcl::PCLBase<PointT> {
+ public:
+  using Base = pcl::PCLBase<PointT>;
+  using typename Base::PointCloud;
+  using typename Base::PointCloudConstPtr;
+  using Ptr = pcl::shared_ptr<NormalSegmentation<PointT, NormalT>>;
+  using ConstPtr = pcl::shared_ptr<const NormalSegmentation<PointT, NormalT>>;
+  using KdTree = pcl::search::Search<PointT>;
+  using KdTreePtr = typename KdTree::Ptr;
+  using Normal = pcl::PointCloud<NormalT>;
+  using NormalPtr = typename Normal::Ptr;
+  using NormalConstPtr = typename Normal::ConstPtr;
+
+  void setInputCloud(const PointCloudConstPtr& cloud) override;
+  void setIndices(const pcl::IndicesPtr& indices) override;
+  void setIndices(const pcl::IndicesConstPtr& indices) override;
+  void setIndices(const pcl::PointIndicesConstPtr& indices) override;
+  void setIndices(std::size_t row_start, std::size_t col_start, std::size_t nb_rows,
+                  std::size_t nb_cols) override;
+
+  /// Unit normals with curvature, one a point of the cloud; signs do not matter.
+  void setInputNormals(const NormalConstPtr& normals);
+  NormalConstPtr getInputNormals() const { return normals_; }
+
+  /// Search to take neighbours from; null (default) for the all-points search of
+  /// search::MedianHash.
+  void setSearchMethod(const KdTreePtr& search);
+  KdTreePtr getSearchMethod() const { return search_; }
+
+  /// Ready neighbourhoods of the whole cloud (row = point), so that neighbours are found once; null
+  /// (default) to search. At most setNumberOfNeighbours() of each row are used.
+  void setNeighborhoods(const std::shared_ptr<const Neighborhoods>& neighborhoods);
+  std::shared_ptr<const Neighborhoods> getNeighborhoods() const { return neighborhoods_; }
+
+  /// Neighbours of a point, itself not counted; default 12, less than 1 means 1.
+  void setNumberOfNeighbours(unsigned int neighbors);
+  unsigned int getNumberOfNeighbours() const { return neighbors_; }
+
+  /// Alpha: largest angle between the normals of two neighbours; default 20 degrees, in radians.
+  void setSmoothnessThreshold(float alpha);
+  float getSmoothnessThreshold() const { return options_.alpha; }
+
+  /// Beta: largest angle between a point's normal and the segment's reference normal; default 30
+  /// degrees. A right angle or more: no such limit.
+  void setReferenceThreshold(float beta);
+  float getReferenceThreshold() const { return options_.beta; }
+
+  /// Epsilon: by how much the clean-up may exceed beta; default 10 degrees.
+  void setReferenceTolerance(float epsilon);
+  float getReferenceTolerance() const { return options_.epsilon; }
+
+  /// Points of higher curvature join a segment but do not pass it on; default: no limit.
+  void setCurvatureThreshold(float curvature);
+  float getCurvatureThreshold() const { return options_.max_curvature; }
+
+  /// Whether the curvature threshold is used; default true.
+  void setCurvatureTestFlag(bool value);
+  bool getCurvatureTestFlag() const { return curvature_test_; }
+
+  /// Segments with fewer points are small: the clean-up works on them; default 20.
+  void setSmallSegmentSize(std::size_t points);
+  std::size_t getSmallSegmentSize() const { return options_.small_size; }
+
+  /// Pass 1: share of the surrounding points that a segment must hold to take a small one in;
+  /// default 0.4.
+  void setNeighborShare(float share);
+  float getNeighborShare() const { return options_.neighbor_share; }
+
+  /// Neighbours farther apart than this many local spacings are none; default 2.5, 0 = no limit.
+  void setMaximumGap(float spacings);
+  float getMaximumGap() const { return options_.max_gap; }
+
+  /// Points farther than this many local spacings off the tangent plane are not reached; default
+  /// 0.5, 0 = no limit. Raised by itself on noisy clouds, see SegmentationOptions::max_offset.
+  void setMaximumOffset(float spacings);
+  float getMaximumOffset() const { return options_.max_offset; }
+
+  /// Clean-up passes 1 to 3; all on by default. Without pass 3 small segments stay apart, as
+  /// isolated.
+  void setAbsorbSmall(bool value);
+  bool getAbsorbSmall() const { return options_.absorb_small; }
+  void setExtractEdges(bool value);
+  bool getExtractEdges() const { return options_.extract_edges; }
+  void setConnectSmall(bool value);
+  bool getConnectSmall() const { return options_.connect_small; }
+
+  /// Segments that extract() leaves out: those of fewer points (default 1) or more (default: no
+  /// limit).
+  void setMinClusterSize(pcl::uindex_t points) { min_size_ = points; }
+  pcl::uindex_t getMinClusterSize() const { return min_size_; }
+  void setMaxClusterSize(pcl::uindex_t points) { max_size_ = points; }
+  pcl::uindex_t getMaxClusterSize() const { return max_size_; }
+
+  /// 0 (default) = all cores. The result does not depend on it.
+  void setNumberOfThreads(unsigned int threads = 0) {
+    options_.threads = static_cast<int>(threads);
+  }
+  unsigned int getNumberOfThreads() const { return static_cast<unsigned int>(options_.threads); }
+
+  /// The segments by descending size, as indices into the cloud.
+  virtual void extract(std::vector<pcl::PointIndices>& clusters);
+
+  /// The segment that holds a point; empty if the point is in none.
+  virtual void getSegmentFromPoint(pcl::index_t index, pcl::PointIndices& cluster);
+
+  /// The cloud with a colour a segment (pcl::GlasbeyLUT by label; always the same for the same
+  /// segments), grey where there is none. Null before extract().
+  pcl::PointCloud<pcl::PointXYZRGB>::Ptr getColoredCloud();
+  pcl::PointCloud<pcl::PointXYZRGBA>::Ptr getColoredCloudRGBA();
+
+  /// Segment of each point of the cloud, -1 = none; empty before extract().
+  const std::vector<std::int32_t>& getLabels() const { return result_.segmentation().labels; }
+  /// The segments with all that is known of them; empty before extract().
+  const Segmentation& getSegmentation() const { return result_.segmentation(); }
+  /// What growing and each clean-up pass did.
+  const SegmentationReport& getReport() const { return result_.report(); }
+  /// Which segments touch, and the point pairs across each border.
+  SegmentGraph getSegmentGraph() const { return result_.graph(); }
+
+ protected:
+  using Base::deinitCompute;
+  using Base::fake_indices_;
+  using Base::indices_;
+  using Base::initCompute;
+  using Base::input_;
+
+ private:
+  bool segment();
+  void outdated();
+  CloudSegmentation::Search searchFunction();
+  template <typename ColoredT>
+  typename pcl::PointCloud<ColoredT>::Ptr colored() const;
+
+  NormalConstPtr normals_;
+  KdTreePtr search_;
+  std::shared_ptr<const Neighborhoods> neighborhoods_;
+  SegmentationOptions options_;
+  unsigned int neighbors_ = 12;
+  bool curvature_test_ = true;
+  pcl::uindex_t min_size_ = 1;
+  pcl::uindex_t max_size_ = std::numeric_limits<pcl::uindex_t>::max();
+  CloudSegmentation result_;
+  bool done_ = false;
+};
+
+}  // namespace segorient
+
+#ifdef PCL_NO_PRECOMPILE
+#include <segorient/segmentation/impl/normal_segmentation.hpp>
+#endif

@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the segorient authors
+#include "segment_order.h"
+
+#include <algorithm>
+
+namespace segorient::segmentation {
+
+std::vector<std::int32_t> rankLabels(const std::vector<std::int32_t>& labels,
+                                     const std::vector<std::uint32_t>& sizes, std::size_t& count) {
+  std::vector<std::size_t> smallest(sizes.size(), labels.size());
+  for (std::size_t p = labels.size(); p-- > 0;) {
+    if (labels[p] >= 0) smallest[static_cast<std::size_t>(labels[p])] = p;
+  }
+  std::vector<std::size_t> order;
+  for (std::size_t s = 0; s < sizes.size(); ++s) {
+    if (sizes[s] > 0) order.push_back(s);
+  }
+  std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+    return sizes[a] != sizes[b] ? sizes[a] > sizes[b] : smallest[a] < smallest[b];
+  });
+  std::vector<std::int32_t> rank(sizes.size(), -1);
+  for (std::size_t r = 0; r < order.size(); ++r) rank[order[r]] = static_cast<std::int32_t>(r);
+  count = order.size();
+  return rank;
+}
+
+void fillMembers(Segmentation& result) {
+  std::uint32_t first = 0;
+  for (Segment& segment : result.segments) {
+    segment.first = first;
+    first += segment.size;
+  }
+  result.members.resize(first);
+  std::vector<std::uint32_t> next;
+  next.reserve(result.segments.size());
+  for (const Segment& segment : result.segments) next.push_back(segment.first);
+  for (std::size_t p = 0; p < result.labels.size(); ++p) {
+    const std::int32_t label = result.labels[p];
+    if (label < 0) continue;
+    result.members[next[static_cast<std::size_t>(label)]++] = static_cast<pcl::index_t>(p);
+  }
+}
+
+}  // namespace segorient::segmentation

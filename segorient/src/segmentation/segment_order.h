@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the segorient authors
+#pragma once
+
+#include <segorient/segmentation/segmentation.h>
+
+#include <cstddef>
+#include <vector>
+
+namespace segorient::segmentation {
+
+/// Final label of each provisional one, -1 for those without points: descending size, equal sizes
+/// by smallest member.
+std::vector<std::int32_t> rankLabels(const std::vector<std::int32_t>& labels,
+                                     const std::vector<std::uint32_t>& sizes, std::size_t& count);
+
+/// Segment::first and the members, from the labels and the segments' sizes.
+void fillMembers(Segmentation& result);
+
+}  // namespace segorient::segmentation
