@@ -71,7 +71,10 @@ void findNeighbors(const PipelineOptions& options, Working& work, PipelineReport
   const CloudScale scale = measureScale(work.cloud.view(), index);
   report.spacing = scale.spacing;
   report.noise = scale.noise;
-  report.k = options.k > 0 ? options.k : neighborsForNoise(scale.noise);
+  const int wanted = options.k > 0 ? options.k : neighborsForNoise(scale.noise);
+  // More than there are would only cost memory.
+  const std::size_t others = work.cloud.size() > 0 ? work.cloud.size() - 1 : 0;
+  report.k = static_cast<int>(std::min(static_cast<std::size_t>(wanted), others));
   index.nearestKAll(report.k + 1, work.neighborhoods);
 }
 

@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the segorient authors
+#pragma once
+
+#include <pcl/console/print.h>
+#include <segorient/common/cloud_access.h>
+#include <segorient/orientation/oriented_normal_estimation.h>
+
+#include <cmath>
+#include <cstddef>
+#include <limits>
+
+namespace segorient {
+
+template <typename PointInT, typename PointOutT>
+void OrientedNormalEstimation<PointInT, PointOutT>::setInputCloud(const PointCloudConstPtr& cloud) {
+  // PCL reads the sensor origin without looking whether there is a cloud.
+  if (cloud) {
+    Base::setInputCloud(cloud);
+  } else {
+    input_.reset();
+  }
+}
+
+template <typename PointInT, typename PointOutT>
+bool OrientedNormalEstimation<PointInT, PointOutT>::initCompute() {
+  result_ = OrientedCloud{};
+  if (!input_ || input_->empty()) {
+    PCL_ERROR("[segorient::%s::compute] There is no input cloud, or it is empty.\n",
+              getClassName().c_str());
+    return false;
+  }
+  if (k_ < 0 || search_radius_ != 0.0) {
+    PCL_ERROR(
+        "[segorient::%s::compute] k (%d) must not be negative, and a radius (%g) is not used.\n",
+        getClassName().c_str(), k_, search_radius_);
+    return false;
+  }
+  if (!pcl::PCLBase<PointInT>::initCompute()) return false;
+  if (!surface_) {
+    fake_surface_ = true;
+    surface_ = input_;
+  }
+  return true;
+}
+
+template <typename PointInT, typename PointOutT>
+void OrientedNormalEstimation<PointInT, PointOutT>::computeFeature(PointCloudOut& output) {
+  PipelineOptions options = options_;
+  if (k_ > 0) options.k = k_ > 1 ? k_ - 1 : 1;
+  pcl::Indices rows = *indices_;
+  pcl::PointCloud<PointInT> joined;
+  const bool own_surface = surface_ == input_;
+  if (!own_surface) {  // the input's points follow the surface's; those in both are merged
+    joined = *surface_;
+    for (pcl::index_t& row : rows) {
+      const bool valid = row >= 0 && static_cast<std::size_t>(row) < input_->size();
+      if (valid) joined.push_back((*input_)[static_cast<std::size_t>(row)]);
+      row = valid ? static_cast<pcl::index_t>(joined.size() - 1) : -1;
+    }
+  }
+  const CloudPoints<PointInT> points(own_surface ? *input_ : joined);
+  result_ = orientCloud(points.view(), nullptr, options, progress_);
+  const bool whole = own_surface && this->fake_indices_;
+  if (!whole) result_ = selectRows(result_, rows);
+  write(output);
+}
+
+template <typename PointInT, typename PointOutT>
+void OrientedNormalEstimation<PointInT, PointOutT>::write(PointCloudOut& output) const {
+  output.is_dense = true;
+  for (std::size_t i = 0; i < indices_->size(); ++i) {
+    PointOutT& out = output[i];
+    const float* n = &result_.normals[4 * i];
+    if constexpr (pcl::traits::has_xyz<PointOutT>::value) {
+      constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
+      const auto index = static_cast<std::size_t>((*indices_)[i]);
+      const bool in_range = (*indices_)[i] >= 0 && index < input_->size();
+      out.x = in_range ? static_cast<float>((*input_)[index].x) : kNaN;
+      out.y = in_range ? static_cast<float>((*input_)[index].y) : kNaN;
+      out.z = in_range ? static_cast<float>((*input_)[index].z) : kNaN;
+    }
+    out.normal_x = n[0];
+    out.normal_y = n[1];
+    out.normal_z = n[2];
+    out.curvature = n[3];
+    if (!std::isfinite(n[0])) output.is_dense = false;
+  }
+}
+
+}  // namespace segorient
+
+#define PCL_INSTANTIATE_OrientedNormalEstimation(T, NT) \
+  template class segorient::OrientedNormalEstimation<T, NT>;

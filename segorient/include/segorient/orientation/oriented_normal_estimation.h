@@ -1,0 +1,127 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the segorient authors
+#pragma once
+
+#include <pcl/features/normal_3d.h>
+#include <segorient/orientation/pipeline.h>
+
+#include <vector>
+
+namespace segorient {
+
+/// Consistently oriented normals, outward where there is an outside: neighbours, normals, segments
+/// and their orientation in one class. Takes the place of pcl::NormalEstimation with its viewpoint.
+///
+/// @code
+/// segorient::OrientedNormalEstimation<pcl::PointXYZ, pcl::Normal> estimation;
+/// estimation.setInputCloud(cloud);
+/// estimation.compute(*normals);                  // nothing else needs to be set
+/// const auto& labels = estimation.getLabels();   // the segment of each point
+/// @endcode
+///
+/// Neighbours come from an all-points search of its own; a search method is not used. The whole
+/// cloud is oriented even where indices are set: they choose what is returned. With a search
+/// surface, the input points are oriented as points of that surface. The viewpoint is not used.
+///
+/// A point without a normal (NaN coordinates, or fewer than three distinct points around) gets NaN,
+/// and is_dense is cleared. No cloud, an empty one, or a negative k: PCL_ERROR and an empty output.
+template <typename PointInT, typename PointOutT>
+class OrientedNormalEstimation : public pcl::NormalEstimation<PointInT, PointOutT> {
+ public:
+  using Base = pcl::NormalEstimation<PointInT, PointOutT>;
+  using Ptr = pcl::shared_ptr<OrientedNormalEstimation<PointInT, PointOutT>>;
+  using ConstPtr = pcl::shared_ptr<const OrientedNormalEstimation<PointInT, PointOutT>>;
+  using PointCloudOut = typename Base::PointCloudOut;
+  using PointCloudConstPtr = typename Base::PointCloudConstPtr;
+  using Method = OrientationMethod;
+
+  OrientedNormalEstimation() { feature_name_ = "OrientedNormalEstimation"; }
+
+  using Base::setInputCloud;
+  void setInputCloud(const PointCloudConstPtr& cloud) override;
+
+  // setKSearch() counts the point itself, as in PCL; 0 (default) = from the cloud's noise.
+
+  /// How segments are oriented; default AUTO, the best known.
+  void setMethod(Method method) { options_.orientation.method = method; }
+  Method getMethod() const { return options_.orientation.method; }
+
+  /// How normals are estimated; default Plane.
+  void setNormalEstimator(NormalEstimator estimator) { options_.normals.estimator = estimator; }
+  NormalEstimator getNormalEstimator() const { return options_.normals.estimator; }
+
+  /// Largest angle between the normals of neighbours in a segment, radians.
+  void setAlpha(float alpha) { options_.segmentation.alpha = alpha; }
+  float getAlpha() const { return options_.segmentation.alpha; }
+
+  /// Largest angle between a normal and its segment's reference normal, radians; default 30
+  /// degrees.
+  void setBeta(float beta) { options_.segmentation.beta = beta; }
+  float getBeta() const { return options_.segmentation.beta; }
+
+  /// Angles between segments up to this decide, radians; default 35 degrees.
+  void setGamma(float gamma) { options_.orientation.gamma = gamma; }
+  float getGamma() const { return options_.orientation.gamma; }
+
+  /// By how much the clean-up of segments may exceed beta, radians; default 10 degrees.
+  void setEpsilon(float epsilon) { options_.segmentation.epsilon = epsilon; }
+  float getEpsilon() const { return options_.segmentation.epsilon; }
+
+  /// All settings of all stages; k and threads of this class take precedence.
+  void setOptions(const PipelineOptions& options) { options_ = options; }
+  const PipelineOptions& getOptions() const { return options_; }
+
+  /// 0 (default) = all cores. The result does not depend on it.
+  void setNumberOfThreads(unsigned int threads = 0) {
+    options_.threads = static_cast<int>(threads);
+  }
+  unsigned int getNumberOfThreads() const { return static_cast<unsigned int>(options_.threads); }
+
+  /// Called with each stage's name and the fraction of the work that is done.
+  void setProgress(const PipelineProgress& progress) { progress_ = progress; }
+  const PipelineProgress& getProgress() const { return progress_; }
+
+  // Of the last compute(), empty before; entry i belongs to output i.
+
+  /// Segment of each point, -1 where there is no normal.
+  const std::vector<std::int32_t>& getLabels() const { return result_.segmentation.labels; }
+  /// Confidence of each point's orientation, 0 to 1.
+  const std::vector<float>& getConfidences() const { return result_.confidences; }
+  /// The segments, with their members among the output's points.
+  const Segmentation& getSegmentation() const { return result_.segmentation; }
+  /// How each segment was oriented, by label.
+  const std::vector<SegmentOrientationResult>& getSegments() const { return result_.segments; }
+  /// Connected component of each point, into the report's components.
+  const std::vector<std::int32_t>& getComponents() const { return result_.components; }
+  /// What was done: points, segments, times, components. Of the whole cloud.
+  const PipelineReport& getReport() const { return result_.report; }
+
+ protected:
+  using Base::fake_surface_;
+  using Base::feature_name_;
+  using Base::getClassName;
+  using Base::indices_;
+  using Base::input_;
+  using Base::k_;
+  using Base::search_radius_;
+  using Base::surface_;
+
+  bool initCompute() override;
+  void computeFeature(PointCloudOut& output) override;
+
+ private:
+  void write(PointCloudOut& output) const;
+
+  PipelineOptions options_;
+  PipelineProgress progress_;
+  OrientedCloud result_;
+
+ public:
+  PCL_MAKE_ALIGNED_OPERATOR_NEW
+};
+
+}  // namespace segorient
+
+#ifdef PCL_NO_PRECOMPILE
+#include <segorient/orientation/impl/oriented_normal_estimation.hpp>
+#endif
