@@ -63,8 +63,9 @@ bool MedianHash<PointT>::build(const PointCloudConstPtr& cloud, const IndicesCon
   representation_ = this->getPointRepresentation();
   access_ = chooseAccess();
   if (access_ == Access::kPcl) {
+    if (indices && indices->empty()) access_ = Access::kNone;
     this->tree_->setInputCloud(cloud, indices);
-    return true;
+    return access_ == Access::kPcl;
   }
   if (access_ == Access::kXYZ) {
     const CloudPoints<PointT> points(*cloud);

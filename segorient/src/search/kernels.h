@@ -1,0 +1,136 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the segorient authors
+//
+// The inner loops of MedianHashIndex on raw arrays, once per instruction set. All of them compute
+// the same bits: one rounding an operation, no fused operations, no order of summation that depends
+// on the width of a vector.
+#pragma once
+
+#include <pcl/types.h>
+
+#include <cstddef>
+#include <cstdint>
+
+#include "layout.h"
+
+namespace segorient::search {
+
+/// Raw pointers into a Layout.
+struct LayoutView {
+  const float* x;
+  const float* y;
+  const float* z;
+  const std::uint32_t* id;
+  const std::uint32_t* row;
+  const Region* regions;
+  std::size_t region_count;
+  const Box* boxes;
+  const Split* splits;
+  const std::uint16_t* starts;
+
+  explicit LayoutView(const Layout& layout)
+      : x(layout.x.data()),
+        y(layout.y.data()),
+        z(layout.z.data()),
+        id(layout.id.data()),
+        row(layout.row.empty() ? layout.id.data() : layout.row.data()),
+        regions(layout.regions.data()),
+        region_count(layout.regions.size()),
+        boxes(layout.boxes.data()),
+        splits(layout.splits.data()),
+        starts(layout.starts.data()) {}
+};
+
+/// A sphere to collect from.
+struct Sphere {
+  float center[3];
+  float limit;                   ///< points of a squared distance below this are collected
+  float prune;                   ///< <= limit; parts of space not nearer than this may be left out
+  std::uint32_t most_identical;  ///< of points in one place, how many (those of least id) suffice
+};
+
+/// The way down the tree to the region that a point is in.
+struct Path {
+  std::size_t region;
+  std::size_t length;
+  std::uint32_t other_side[32];  ///< the nodes passed by ...
+  float squared_distance[32];    ///< ... and bounds of how near they are
+
+  Path(const LayoutView& view, const float* point) : region(0), length(0) {
+    std::size_t node = 1;
+    while (node < view.region_count) {
+      // What lies beyond a split is at least as far as the split itself.
+      const Split& split = view.splits[node];
+      const float d = point[split.axis] - split.value;
+      const std::size_t right = d > 0.0F ? 1 : 0;
+      other_side[length] = static_cast<std::uint32_t>(2 * node + 1 - right);
+      squared_distance[length++] = d * d;
+      node = 2 * node + right;
+    }
+    region = node - view.region_count;
+  }
+};
+
+/// Points found so far; `distance` and `id` have room for kPadding entries beyond `capacity`.
+struct Candidates {
+  float* distance;
+  std::uint32_t* id;
+  std::size_t count;
+  std::size_t capacity;
+};
+
+/// Work space of sortNearest(), each of kMostToSort + Layout::kPadding entries.
+struct SortScratch {
+  float* part_distance;
+  std::uint32_t* part_id;
+  std::uint32_t* rank;
+  float* distance;    ///< where the result is left
+  std::uint32_t* id;  ///< where the result is left
+};
+
+/// Most candidates that sortNearest() takes.
+constexpr std::size_t kMostToSort = 1024;
+
+/// Everything that allInRegion() reads and writes besides the layout.
+struct AllPointsTask {
+  std::uint32_t k;  ///< at most the number of points
+  float epsilon;
+  pcl::index_t* indices;   ///< output, k entries a row
+  float* distances;        ///< output, or null
+  std::size_t row_length;  ///< entries from one row of the output to the next
+  // work space of one thread
+  float* block[3];  ///< x, y, z of points that a group may have as neighbours
+  std::uint32_t* block_id;
+  float* block_distance;
+  std::size_t block_capacity;  ///< each with Layout::kPadding entries more
+  Candidates candidates;       ///< room for block_capacity
+  SortScratch sort;
+  std::uint32_t* neighbors;  ///< room for the number of regions
+  std::uint32_t* failed;     ///< output: points without a result, to be searched for one by one
+  std::size_t failed_count;
+};
+
+struct Kernels {
+  const char* name;
+  /// Appends what lies in the sphere. \return false if there was no room for all
+  bool (*collect)(const LayoutView&, const Path&, const Sphere&, Candidates&);
+  /// The same from one region only.
+  bool (*collectRegion)(const LayoutView&, std::size_t region, const Sphere&, Candidates&);
+  /// Leaves the k nearest candidates in ascending order, ties by id, in the scratch. All candidates
+  /// are nearer than `limit`; there are at most kMostToSort of them.
+  void (*sortNearest)(Candidates&, std::size_t k, float limit, const SortScratch&);
+  /// The k nearest of every point of a region.
+  void (*allInRegion)(const LayoutView&, std::size_t region, AllPointsTask&);
+};
+
+/// The kernels of the best instruction set that this machine has, or of the one that the
+/// environment variable SEGORIENT_SIMD names (scalar, sse2, avx2) if it has that.
+const Kernels& chooseKernels();
+
+/// Sorts ids of equally distant points.
+void sortIds(std::uint32_t* ids, std::size_t count);
+
+/// Sorts candidates by distance, ties by id.
+void sortPairs(float* distances, std::uint32_t* ids, std::size_t count);
+
+}  // namespace segorient::search

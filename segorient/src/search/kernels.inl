@@ -1,0 +1,544 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the segorient authors
+//
+// Included once per instruction set, inside a namespace that defines Vector. Nothing from the
+// standard library is called here: an inline function compiled for one instruction set could
+// otherwise be linked into code that runs on machines without it.
+
+// Squared distances as FLANN and any plain loop compute them: ((dx*dx + dy*dy) + dz*dz).
+inline Vector squaredNorm(Vector dx, Vector dy, Vector dz) {
+  return add(add(mul(dx, dx), mul(dy, dy)), mul(dz, dz));
+}
+
+inline float largest(float a, float b) {
+  return a > b ? a : b;
+}
+inline float smallest(float a, float b) {
+  return a < b ? a : b;
+}
+inline float absolute(float a) {
+  return a < 0.0F ? -a : a;
+}
+
+// How far an interval is from another one; 0 if they meet.
+inline float gap(float lo, float hi, float other_lo, float other_hi) {
+  return largest(largest(other_lo - hi, lo - other_hi), 0.0F);
+}
+
+// Every rounding is monotone, so this is not above the rounded distance of any two of their points.
+inline float squaredGap(const Box& a, const Box& b) {
+  const float dx = gap(a.lo[0], a.hi[0], b.lo[0], b.hi[0]);
+  const float dy = gap(a.lo[1], a.hi[1], b.lo[1], b.hi[1]);
+  const float dz = gap(a.lo[2], a.hi[2], b.lo[2], b.hi[2]);
+  return dx * dx + dy * dy + dz * dz;
+}
+
+// ---------------------------------------------------------------------------------------------------
+// The cells of a region that come near a box
+
+// In units of cells and relative to the region's corner.
+struct CellRange {
+  float lo[3], hi[3];  // the box
+  float reach;
+  int first[3], last[3];
+};
+
+// False where rounding would make cell numbers meaningless; then all points have to be looked at.
+inline bool cellRange(const Region& region, const Box& bounds, const Box& box, float squared_reach,
+                      CellRange& range) {
+  // The smallest squares are rounded away, hence the absolute part.
+  const float reach = squareRoot(squared_reach) * 1.000001F + 1e-22F;
+  float magnitude = 0.0F;
+  for (int a = 0; a < 3; ++a) {
+    range.lo[a] = (box.lo[a] - bounds.lo[a]) * region.inverse_edge;
+    range.hi[a] = (box.hi[a] - bounds.lo[a]) * region.inverse_edge;
+    magnitude = largest(magnitude, largest(absolute(range.lo[a]), absolute(range.hi[a])));
+    magnitude = largest(magnitude, static_cast<float>(region.counts[a]));
+  }
+  if (!(magnitude < 1e6F)) return false;
+  // Covers the rounding of coordinates in units of cells, here and when points were sorted.
+  const float margin = 1e-6F * magnitude;
+  range.reach = reach * region.inverse_edge + 3.0F * margin;
+  for (int a = 0; a < 3; ++a) {
+    const auto most = static_cast<float>(region.counts[a] - 1);
+    const float lo = range.lo[a] - range.reach;
+    const float hi = range.hi[a] + range.reach;
+    range.first[a] = static_cast<int>(smallest(largest(lo, 0.0F), most + 1.0F));
+    range.last[a] = hi < 0.0F ? -1 : static_cast<int>(smallest(hi, most));
+  }
+  return true;
+}
+
+// Calls take(begin, end) with ranges of points that contain all those of the region that are nearer
+// to the box than the square root of squared_reach. Stops where take returns false.
+template <typename Take>
+inline bool forRanges(const LayoutView& view, std::size_t r, const Box& box, float squared_reach,
+                      std::uint32_t most_identical, Take& take) {
+  const Region& region = view.regions[r];
+  if (region.identical != 0) {
+    const std::uint32_t count = region.end - region.begin;
+    return take(region.begin, region.begin + (count < most_identical ? count : most_identical));
+  }
+  CellRange range;
+  if (!cellRange(region, view.boxes[view.region_count + r], box, squared_reach, range)) {
+    return take(region.begin, region.end);
+  }
+  const std::uint16_t* starts = view.starts + region.first_start;
+  const float squared = range.reach * range.reach;
+  const auto most = static_cast<float>(region.counts[0] - 1);
+  for (int cz = range.first[2]; cz <= range.last[2]; ++cz) {
+    const auto z = static_cast<float>(cz);
+    const float dz = gap(z, z + 1.0F, range.lo[2], range.hi[2]);
+    const float rest = squared - dz * dz;
+    for (int cy = range.first[1]; cy <= range.last[1]; ++cy) {
+      const auto y = static_cast<float>(cy);
+      const float dy = gap(y, y + 1.0F, range.lo[1], range.hi[1]);
+      const float squared_width = rest - dy * dy;
+      if (squared_width < 0.0F) continue;
+      const float width = squareRoot(squared_width);
+      const float lo = range.lo[0] - width;
+      const float hi = range.hi[0] + width;
+      if (hi < 0.0F || lo > most + 1.0F) continue;
+      const auto first = static_cast<std::uint32_t>(smallest(largest(lo, 0.0F), most));
+      const auto last = static_cast<std::uint32_t>(smallest(hi, most));
+      const std::uint16_t* row =
+          starts + static_cast<std::size_t>(region.counts[0]) *
+                       (static_cast<std::size_t>(cy) +
+                        static_cast<std::size_t>(region.counts[1]) * static_cast<std::size_t>(cz));
+      const std::uint32_t begin = region.begin + row[first];
+      const std::uint32_t end = region.begin + row[last + 1];
+      if (begin != end && !take(begin, end)) return false;
+    }
+  }
+  return true;
+}
+
+// ---------------------------------------------------------------------------------------------------
+// Collecting from a sphere
+
+struct CollectFromRange {
+  const LayoutView& view;
+  Vector qx, qy, qz, limit;
+  Candidates& out;
+
+  inline bool operator()(std::uint32_t begin, std::uint32_t end) {
+    if (out.count + (end - begin) > out.capacity) return false;
+    std::size_t count = out.count;
+    for (std::uint32_t i = begin; i < end; i += kWidth) {
+      const Vector dx = sub(qx, load(view.x + i));
+      const Vector dy = sub(qy, load(view.y + i));
+      const Vector dz = sub(qz, load(view.z + i));
+      const Vector d = squaredNorm(dx, dy, dz);
+      unsigned int mask = lessMask(d, limit);
+      if (end - i < kWidth) mask &= (1U << (end - i)) - 1U;
+      compress(d, mask, out.distance + count);
+      count += compressIds(view.id + i, mask, out.id + count);
+    }
+    out.count = count;
+    return true;
+  }
+};
+
+inline CollectFromRange collector(const LayoutView& view, const Sphere& sphere, Candidates& out) {
+  return {view,
+          broadcast(sphere.center[0]),
+          broadcast(sphere.center[1]),
+          broadcast(sphere.center[2]),
+          broadcast(sphere.limit),
+          out};
+}
+
+inline Box pointBox(const float* p) {
+  return {{p[0], p[1], p[2]}, {p[0], p[1], p[2]}};
+}
+
+bool collectRegion(const LayoutView& view, std::size_t region, const Sphere& sphere,
+                   Candidates& out) {
+  CollectFromRange take = collector(view, sphere, out);
+  return forRanges(view, region, pointBox(sphere.center), sphere.prune, sphere.most_identical,
+                   take);
+}
+
+// The regions below a node.
+template <typename Take>
+bool collectBelow(const LayoutView& view, std::size_t node, const Box& point, const Sphere& sphere,
+                  Take& take) {
+  std::size_t stack[64];
+  std::size_t depth = 0;
+  stack[depth++] = node;
+  while (depth > 0) {
+    const std::size_t i = stack[--depth];
+    if (!(squaredGap(view.boxes[i], point) < sphere.prune)) continue;
+    if (i < view.region_count) {
+      stack[depth++] = 2 * i;
+      stack[depth++] = 2 * i + 1;
+    } else if (!forRanges(view, i - view.region_count, point, sphere.prune, sphere.most_identical,
+                          take)) {
+      return false;
+    }
+  }
+  return true;
+}
+
+bool collect(const LayoutView& view, const Path& path, const Sphere& sphere, Candidates& out) {
+  CollectFromRange take = collector(view, sphere, out);
+  const Box point = pointBox(sphere.center);
+  if (!forRanges(view, path.region, point, sphere.prune, sphere.most_identical, take)) return false;
+  for (std::size_t i = path.length; i-- > 0;) {
+    if (path.squared_distance[i] < sphere.prune &&
+        !collectBelow(view, path.other_side[i], point, sphere, take)) {
+      return false;
+    }
+  }
+  return true;
+}
+
+// ---------------------------------------------------------------------------------------------------
+// Sorting
+
+// Writes the candidates in ascending order. Each one's place is the number of those before it,
+// which takes quadratic but straight work: for some tens of candidates nothing else is as fast.
+void sortByRank(const float* distance, const std::uint32_t* id, std::size_t count,
+                std::uint32_t* rank, float* out_distance, std::uint32_t* out_id) {
+  for (std::size_t first = 0; first < count; first += kWidth) {
+    const Vector own = load(distance + first);
+    Counter counter = zeroCounter();
+    // Equal ones keep their order.
+    for (std::size_t j = 0; j < first; ++j) {
+      counter = countLessEqual(counter, broadcast(distance[j]), own);
+    }
+    const std::size_t end = first + kWidth < count ? first + kWidth : count;
+    for (std::size_t j = first; j < end; ++j) {
+      counter = countBefore(counter, broadcast(distance[j]), own, j - first);
+    }
+    for (std::size_t j = end; j < count; ++j) {
+      counter = countLess(counter, broadcast(distance[j]), own);
+    }
+    store(rank + first, counter);
+  }
+  for (std::size_t i = 0; i < count; ++i) {
+    out_distance[rank[i]] = distance[i];
+    out_id[rank[i]] = id[i];
+  }
+  unsigned int ties = 0;
+  for (std::size_t i = 0; i + 1 < count; ++i) ties |= out_distance[i] == out_distance[i + 1];
+  if (ties == 0) return;
+  for (std::size_t i = 0; i + 1 < count;) {
+    std::size_t end = i + 1;
+    while (end < count && out_distance[end] == out_distance[i]) ++end;
+    if (end - i > 1) sortIds(out_id + i, end - i);
+    i = end;
+  }
+}
+
+// Above this, candidates are first divided by distance.
+constexpr std::size_t kMostToRank = 96;
+
+// Copies the candidates of distances in [from, to).
+std::size_t select(const Candidates& in, float from, float to, float* distance, std::uint32_t* id) {
+  const Vector low = broadcast(from);
+  const Vector high = broadcast(to);
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < in.count; i += kWidth) {
+    const Vector d = load(in.distance + i);
+    unsigned int mask = lessMask(d, high) & ~lessMask(d, low);
+    if (in.count - i < kWidth) mask &= (1U << (in.count - i)) - 1U;
+    compress(d, mask, distance + count);
+    count += compressIds(in.id + i, mask, id + count);
+  }
+  return count;
+}
+
+void sortNearest(Candidates& in, std::size_t k, float limit, const SortScratch& scratch) {
+  if (in.count <= kMostToRank) {
+    sortByRank(in.distance, in.id, in.count, scratch.rank, scratch.distance, scratch.id);
+    return;
+  }
+  const std::size_t parts = in.count / 32;
+  const float step = limit / static_cast<float>(parts);
+  std::size_t done = 0;
+  float from = 0.0F;
+  for (std::size_t part = 1; part <= parts && done < k; ++part) {
+    const float to = part == parts ? limit : step * static_cast<float>(part);
+    const std::size_t count = select(in, from, to, scratch.part_distance, scratch.part_id);
+    if (count <= kMostToRank) {
+      sortByRank(scratch.part_distance, scratch.part_id, count, scratch.rank,
+                 scratch.distance + done, scratch.id + done);
+    } else {
+      for (std::size_t i = 0; i < count; ++i) {
+        scratch.distance[done + i] = scratch.part_distance[i];
+        scratch.id[done + i] = scratch.part_id[i];
+      }
+      sortPairs(scratch.distance + done, scratch.id + done, count);
+    }
+    done += count;
+    from = to;
+  }
+}
+
+// ---------------------------------------------------------------------------------------------------
+// All points of a region
+
+// Appends the points of a range that are near a box to a block.
+struct GatherFromRange {
+  const LayoutView& view;
+  AllPointsTask& task;
+  Vector lo[3], hi[3], limit;
+  std::size_t count;
+
+  inline bool operator()(std::uint32_t begin, std::uint32_t end) {
+    if (count + (end - begin) > task.block_capacity) return false;
+    const Vector zero = broadcast(0.0F);
+    for (std::uint32_t i = begin; i < end; i += kWidth) {
+      const Vector x = load(view.x + i);
+      const Vector y = load(view.y + i);
+      const Vector z = load(view.z + i);
+      const Vector dx = largestOf(largestOf(sub(lo[0], x), sub(x, hi[0])), zero);
+      const Vector dy = largestOf(largestOf(sub(lo[1], y), sub(y, hi[1])), zero);
+      const Vector dz = largestOf(largestOf(sub(lo[2], z), sub(z, hi[2])), zero);
+      unsigned int mask = lessMask(squaredNorm(dx, dy, dz), limit);
+      if (end - i < kWidth) mask &= (1U << (end - i)) - 1U;
+      compress(x, mask, task.block[0] + count);
+      compress(y, mask, task.block[1] + count);
+      compress(z, mask, task.block[2] + count);
+      count += compressIds(view.id + i, mask, task.block_id + count);
+    }
+    return true;
+  }
+};
+
+// Regions other than `region` that come nearer to its box than the square root of `limit`.
+std::size_t listNeighbors(const LayoutView& view, std::size_t region, float limit,
+                          std::uint32_t* out) {
+  const Box& box = view.boxes[view.region_count + region];
+  std::size_t stack[64];
+  std::size_t depth = 0;
+  std::size_t count = 0;
+  stack[depth++] = 1;
+  while (depth > 0) {
+    const std::size_t i = stack[--depth];
+    if (!(squaredGap(view.boxes[i], box) < limit)) continue;
+    if (i < view.region_count) {
+      stack[depth++] = 2 * i;
+      stack[depth++] = 2 * i + 1;
+    } else if (i - view.region_count != region) {
+      out[count++] = static_cast<std::uint32_t>(i - view.region_count);
+    }
+  }
+  return count;
+}
+
+// What is carried from group to group of a region.
+struct RegionState {
+  std::size_t region;
+  float typical;  // squared distance to the k-th neighbour, lately
+  float listed;   // reach of the list of neighbouring regions
+  std::size_t neighbors;
+  float prune;  // factor on squared reaches, 1 where the search is exact
+};
+
+inline Box groupBox(const LayoutView& view, std::uint32_t begin, std::uint32_t end) {
+  const float* coordinates[3] = {view.x, view.y, view.z};
+  Box box;
+  for (int a = 0; a < 3; ++a) {
+    const float* c = coordinates[a];
+    float lo = c[begin];
+    float hi = c[begin];
+    for (std::uint32_t i = begin + 1; i < end; ++i) {
+      lo = smallest(lo, c[i]);
+      hi = largest(hi, c[i]);
+    }
+    box.lo[a] = lo;
+    box.hi[a] = hi;
+  }
+  return box;
+}
+
+// Fills the block with all points nearer to the group's box than the square root of `limit`.
+// \return how many, or more than the block holds
+inline std::size_t gather(const LayoutView& view, const Box& box, float limit, RegionState& state,
+                          AllPointsTask& task) {
+  const float reach = limit * state.prune;
+  GatherFromRange take{view,
+                       task,
+                       {broadcast(box.lo[0]), broadcast(box.lo[1]), broadcast(box.lo[2])},
+                       {broadcast(box.hi[0]), broadcast(box.hi[1]), broadcast(box.hi[2])},
+                       broadcast(reach),
+                       0};
+  const std::size_t too_many = task.block_capacity + 1;
+  if (!forRanges(view, state.region, box, reach, task.k, take)) return too_many;
+  if (!(reach <= state.listed)) {
+    state.listed = 2.0F * reach;
+    state.neighbors = listNeighbors(view, state.region, state.listed, task.neighbors);
+  }
+  for (std::size_t j = 0; j < state.neighbors; ++j) {
+    const std::size_t other = task.neighbors[j];
+    if (!(squaredGap(view.boxes[view.region_count + other], box) < reach)) continue;
+    if (!forRanges(view, other, box, reach, task.k, take)) return too_many;
+  }
+  return take.count;
+}
+
+// Distances of one query to the whole block; returns how many are below `limit`.
+inline std::size_t blockDistances(const AllPointsTask& task, std::size_t block, const float* q,
+                                  float limit) {
+  const Vector qx = broadcast(q[0]);
+  const Vector qy = broadcast(q[1]);
+  const Vector qz = broadcast(q[2]);
+  const Vector threshold = broadcast(limit);
+  Counter counter = zeroCounter();
+  for (std::size_t i = 0; i < block; i += kWidth) {
+    const Vector dx = sub(qx, load(task.block[0] + i));
+    const Vector dy = sub(qy, load(task.block[1] + i));
+    const Vector dz = sub(qz, load(task.block[2] + i));
+    const Vector d = squaredNorm(dx, dy, dz);
+    store(task.block_distance + i, d);
+    counter = countLess(counter, d, threshold);
+  }
+  return total(counter);
+}
+
+inline std::size_t countBelow(const AllPointsTask& task, std::size_t block, float limit) {
+  const Vector threshold = broadcast(limit);
+  Counter counter = zeroCounter();
+  for (std::size_t i = 0; i < block; i += kWidth) {
+    counter = countLess(counter, load(task.block_distance + i), threshold);
+  }
+  return total(counter);
+}
+
+// Copies the distances below `limit` and their ids out of the block.
+inline void takeBelow(AllPointsTask& task, std::size_t block, float limit) {
+  const Vector threshold = broadcast(limit);
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < block; i += kWidth) {
+    const Vector d = load(task.block_distance + i);
+    const unsigned int mask = lessMask(d, threshold);
+    compress(d, mask, task.candidates.distance + count);
+    count += compressIds(task.block_id + i, mask, task.candidates.id + count);
+  }
+  task.candidates.count = count;
+}
+
+// A row begins with the point itself, also where others are in the same place.
+inline void writeRow(const AllPointsTask& task, std::uint32_t row, std::uint32_t self) {
+  const std::uint32_t* id = task.sort.id;
+  pcl::index_t* indices = task.indices + row * task.row_length;
+  if (id[0] == self) {
+    for (std::size_t i = 0; i < task.k; ++i) indices[i] = static_cast<pcl::index_t>(id[i]);
+  } else {
+    std::size_t from = 0;
+    indices[0] = static_cast<pcl::index_t>(self);
+    bool skipped = false;
+    for (std::size_t i = 1; i < task.k; ++i) {
+      if (!skipped && id[from] == self) {
+        skipped = true;
+        ++from;
+      }
+      indices[i] = static_cast<pcl::index_t>(id[from++]);
+    }
+  }
+  if (task.distances != nullptr) {
+    float* distances = task.distances + row * task.row_length;
+    for (std::size_t i = 0; i < task.k; ++i) distances[i] = task.sort.distance[i];
+  }
+}
+
+// One query over a block that holds everything nearer than the square root of `reach`. Starting
+// from a guess, looks for a threshold that lets through k candidates and not many more. \return
+// false if fewer than k are in reach
+inline bool searchBlock(const LayoutView& view, std::uint32_t point, std::size_t block, float reach,
+                        RegionState& state, AllPointsTask& task) {
+  const float q[3] = {view.x[point], view.y[point], view.z[point]};
+  const std::size_t k = task.k;
+  const std::size_t enough = k + k / 2 + 8;
+  float threshold = smallest(1.3F * state.typical, reach);
+  std::size_t count = blockDistances(task, block, q, threshold);
+  float too_low = 0.0F;
+  for (int attempt = 0; count < k || (count > enough && attempt < 3); ++attempt) {
+    if (count < k) {
+      if (threshold == reach) return false;
+      too_low = threshold;
+      const float factor = 1.25F * static_cast<float>(k) / static_cast<float>(count + 1);
+      threshold = attempt > 4 ? reach : smallest(largest(factor, 1.2F) * threshold, reach);
+    } else {
+      const float factor = 1.25F * static_cast<float>(k) / static_cast<float>(count);
+      const float lower = largest(factor * threshold, 0.5F * (too_low + threshold));
+      const std::size_t fewer = countBelow(task, block, lower);
+      if (fewer < k) break;
+      threshold = lower;
+      count = fewer;
+      continue;
+    }
+    count = countBelow(task, block, threshold);
+  }
+  if (count > kMostToSort) return false;
+  takeBelow(task, block, threshold);
+  sortNearest(task.candidates, k, threshold, task.sort);
+  state.typical = task.sort.distance[k - 1];
+  writeRow(task, view.row[point], view.id[point]);
+  return true;
+}
+
+// Points next to each other in the layout that share a block of candidates.
+void searchGroup(const LayoutView& view, std::uint32_t begin, std::uint32_t end, RegionState& state,
+                 AllPointsTask& task) {
+  for (std::uint32_t i = begin; i < end; ++i) {
+    prefetchForWrite(task.indices + view.row[i] * task.row_length);
+  }
+  const Box box = groupBox(view, begin, end);
+  const float reach = 1.7F * state.typical;
+  const std::size_t block = gather(view, box, reach, state, task);
+  if (block > task.block_capacity) {
+    for (std::uint32_t i = begin; i < end; ++i) task.failed[task.failed_count++] = i;
+    state.typical *= 0.5F;
+    return;
+  }
+  for (std::size_t i = 0; i < kWidth; ++i) {
+    task.block[0][block + i] = kInfinity;
+    task.block[1][block + i] = 0.0F;
+    task.block[2][block + i] = 0.0F;
+    task.block_id[block + i] = 0;
+  }
+  float most = 0.0F;
+  for (std::uint32_t i = begin; i < end; ++i) {
+    if (searchBlock(view, i, block, reach, state, task)) {
+      most = largest(most, state.typical);
+    } else {
+      task.failed[task.failed_count++] = i;
+      most = largest(most, reach);
+    }
+  }
+  state.typical = largest(most, 1e-44F);
+}
+
+// Points of a group: enough to share the work of gathering, few enough to be near each other.
+constexpr std::uint32_t kGroup = 16;
+
+void allInRegion(const LayoutView& view, std::size_t r, AllPointsTask& task) {
+  const Region& region = view.regions[r];
+  const float bound = 1.0F + task.epsilon;
+  const float relative = static_cast<float>(task.k) / 16.0F;
+  RegionState state{r, largest(region.spacing16 * relative, 1e-44F), -1.0F, 0,
+                    task.epsilon > 0.0F ? 0.999999F / (bound * bound) : 1.0F};
+  task.failed_count = 0;
+  if (region.identical != 0) {
+    for (std::uint32_t i = region.begin; i < region.end; ++i) task.failed[task.failed_count++] = i;
+    return;
+  }
+  const std::uint16_t* starts = view.starts + region.first_start;
+  const std::size_t rows = static_cast<std::size_t>(region.counts[1]) * region.counts[2];
+  for (std::size_t row = 0; row < rows; ++row) {
+    const std::uint16_t* cells = starts + row * region.counts[0];
+    std::uint32_t begin = cells[0];
+    for (std::uint32_t c = 0; c < region.counts[0]; ++c) {
+      const std::uint32_t end = cells[c + 1];
+      const bool last = c + 1U == region.counts[0];
+      while (end - begin >= kGroup || (last && begin != end)) {
+        const std::uint32_t size = end - begin < 2 * kGroup ? end - begin : kGroup;
+        searchGroup(view, region.begin + begin, region.begin + begin + size, state, task);
+        begin += size;
+      }
+    }
+  }
+}

@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the segorient authors
+//
+// How the points of a MedianHashIndex lie in memory.
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace segorient::search {
+
+/// Tight box around points.
+struct Box {
+  float lo[3];
+  float hi[3];
+};
+
+/// A leaf of the median subdivision: up to some thousand points, hashed into the cells of a grid.
+/// Cell (x, y, z) has the number x + counts[0] * (y + counts[1] * z), so that the points of cells
+/// next to each other in x are one range.
+struct Region {
+  std::uint32_t begin, end;   ///< its points
+  std::uint32_t first_start;  ///< where its cells begin in Layout::starts
+  std::uint16_t counts[3];    ///< cells along each axis
+  std::uint16_t identical;    ///< 1 if all its points are in one place; then ascending by id
+  float inverse_edge;         ///< 1 / edge length of a cell
+  float spacing16;            ///< squared distance from a point to its 16th neighbour, typically
+};
+
+/// Inner node of the median subdivision: points with a smaller coordinate are on the left, those
+/// with a larger one on the right, equal ones on either side.
+struct Split {
+  float value;
+  std::uint32_t axis;
+};
+
+/// The points by region and cell, and the tree over the regions. The tree is complete: node i has
+/// the children 2 i and 2 i + 1, the root is 1, and region r is node regions.size() + r.
+struct Layout {
+  /// Vectors are read beyond the last point by up to this many entries.
+  static constexpr std::size_t kPadding = 16;
+
+  std::vector<float> x, y, z;         ///< padded
+  std::vector<std::uint32_t> id;      ///< index that is reported; padded
+  std::vector<std::uint32_t> row;     ///< row that was given to build(); empty where row = id
+  std::vector<Region> regions;        ///< a power of two of them, or none
+  std::vector<Box> boxes;             ///< by node; the first is unused
+  std::vector<Split> splits;          ///< by inner node; the first is unused
+  std::vector<std::uint16_t> starts;  ///< per region and cell: first point, counted from begin
+
+  std::size_t size() const { return x.empty() ? 0 : x.size() - kPadding; }
+  /// Reports indices[row] instead of row.
+  template <typename Index>
+  void useIndices(const std::vector<Index>& indices);
+
+  std::size_t memory() const {
+    return (x.capacity() + y.capacity() + z.capacity()) * sizeof(float) +
+           (id.capacity() + row.capacity()) * sizeof(std::uint32_t) +
+           regions.capacity() * sizeof(Region) + boxes.capacity() * sizeof(Box) +
+           splits.capacity() * sizeof(Split) + starts.capacity() * sizeof(std::uint16_t);
+  }
+};
+
+template <typename Index>
+void Layout::useIndices(const std::vector<Index>& indices) {
+  row = id;
+  for (std::size_t i = 0; i < size(); ++i) id[i] = static_cast<std::uint32_t>(indices[row[i]]);
+  for (const Region& region : regions) {
+    if (region.identical == 0) continue;
+    // Ascending by id, whatever the rows; they are all the same point.
+    const auto begin = row.begin() + region.begin;
+    const auto end = row.begin() + region.end;
+    std::sort(begin, end, [&](auto a, auto b) { return indices[a] < indices[b]; });
+    for (std::uint32_t i = region.begin; i < region.end; ++i) {
+      id[i] = static_cast<std::uint32_t>(indices[row[i]]);
+    }
+  }
+}
+
+/// A finite point on its way into the layout.
+struct BuildPoint {
+  float xyz[3];
+  std::uint32_t row;
+};
+
+/// Sorts points into a layout.
+/// \param points consumed
+/// \param region_size most points in a region; from 1 to kMostRegionSize
+/// \param threads at least 1; the layout does not depend on it
+Layout buildLayout(std::vector<BuildPoint> points, std::size_t region_size, int threads);
+
+/// So that starts fit 16 bits.
+constexpr std::size_t kMostRegionSize = 32768;
+
+}  // namespace segorient::search

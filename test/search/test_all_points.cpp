@@ -1,0 +1,130 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the segorient authors
+#include <gtest/gtest.h>
+#include <segorient/search/median_hash_index.h>
+
+#include "brute_force.h"
+#include "search_clouds.h"
+
+namespace segorient::test {
+namespace {
+
+using search::MedianHashIndex;
+
+std::vector<Neighbor> row(const Neighborhoods& table, std::size_t i) {
+  std::vector<Neighbor> result;
+  for (std::size_t j = 0; j < static_cast<std::size_t>(table.count(i)); ++j) {
+    result.push_back({table.sqrDistances(i)[j], table.indices(i)[j]});
+  }
+  return result;
+}
+
+class AllPoints : public testing::TestWithParam<SearchCloud> {};
+
+TEST_P(AllPoints, EqualsBruteForce) {
+  const SearchCloud& cloud = GetParam();
+  for (const std::size_t region_size : {std::size_t{40}, std::size_t{2048}}) {
+    MedianHashIndex::Options options;
+    options.region_size = region_size;
+    MedianHashIndex index;
+    index.build(cloud.view(), nullptr, options);
+    for (const int k : {1, 5, 18, 33, 70}) {
+      Neighborhoods table;
+      index.nearestKAll(k, table);
+      ASSERT_EQ(table.size(), cloud.size());
+      for (std::size_t i = 0; i < cloud.size(); i += 11) {
+        std::vector<Neighbor> expected;
+        if (isFinite(cloud.view()[i])) {
+          expected = bruteForceRow(cloud.view(), static_cast<pcl::index_t>(i),
+                                   static_cast<std::size_t>(k));
+        }
+        ASSERT_EQ(row(table, i), expected) << "row " << i << ", k " << k;
+      }
+    }
+  }
+}
+
+TEST_P(AllPoints, SubsetOfIndices) {
+  const SearchCloud& cloud = GetParam();
+  std::vector<pcl::index_t> indices;
+  for (std::size_t i = 0; i < cloud.size(); i += 2) {
+    indices.push_back(static_cast<pcl::index_t>(cloud.size() - 1 - i));
+  }
+  indices.push_back(indices.front());
+  indices.insert(indices.begin() + 5, -7);
+  indices.push_back(static_cast<pcl::index_t>(cloud.size()));
+  MedianHashIndex index;
+  index.build(cloud.view(), &indices, {});
+  Neighborhoods table;
+  index.nearestKAll(9, table);
+  ASSERT_EQ(table.size(), indices.size());
+  for (std::size_t i = 0; i < indices.size(); i += i < 10 ? 1 : 13) {
+    const bool valid = indices[i] >= 0 && static_cast<std::size_t>(indices[i]) < cloud.size() &&
+                       isFinite(cloud.view()[static_cast<std::size_t>(indices[i])]);
+    const auto expected =
+        valid ? bruteForceRow(cloud.view(), indices[i], 9, &indices) : std::vector<Neighbor>{};
+    ASSERT_EQ(row(table, i), expected) << "row " << i;
+  }
+}
+
+TEST_P(AllPoints, SameForAnyNumberOfThreadsAndWithoutDistances) {
+  const SearchCloud& cloud = GetParam();
+  MedianHashIndex::Options options;
+  options.region_size = 100;
+  options.threads = 1;
+  MedianHashIndex one;
+  one.build(cloud.view(), nullptr, options);
+  options.threads = 3;
+  MedianHashIndex three;
+  three.build(cloud.view(), nullptr, options);
+  Neighborhoods with;
+  one.nearestKAll(12, with);
+  Neighborhoods without;
+  three.nearestKAll(12, without, false);
+  ASSERT_FALSE(without.hasDistances());
+  for (std::size_t i = 0; i < cloud.size(); ++i) {
+    ASSERT_EQ(with.count(i), without.count(i));
+    const auto count = with.count(i);
+    ASSERT_TRUE(std::equal(with.indices(i), with.indices(i) + count, without.indices(i)));
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Clouds, AllPoints, testing::ValuesIn(searchClouds(1500)));
+
+TEST(AllPoints, ManyRegionsAgreeWithSingleQueries) {
+  for (const SearchCloud& cloud : searchClouds(30000)) {
+    if (cloud.name == "one place" || cloud.name == "overflowing squares" ||
+        cloud.name == "largest floats" || cloud.name == "tiny") {
+      continue;  // every distance is equal: quadratic by nature, and covered above
+    }
+    MedianHashIndex index;
+    index.build(cloud.view(), nullptr, {});
+    Neighborhoods table;
+    index.nearestKAll(19, table);
+    std::vector<pcl::index_t> indices(19);
+    std::vector<float> distances(19);
+    for (std::size_t i = 0; i < cloud.size(); ++i) {
+      const float* query = cloud.view()[i];
+      if (!isFinite(query)) continue;
+      ASSERT_EQ(index.nearestK(query, 19, indices.data(), distances.data()), table.count(i));
+      const float* row_distances = table.sqrDistances(i);
+      ASSERT_TRUE(std::equal(distances.begin(), distances.end(), row_distances))
+          << cloud.name << ", row " << i;
+    }
+  }
+}
+
+TEST(AllPoints, KLargerThanTheCloud) {
+  const SearchCloud cloud = searchClouds(7).front();
+  MedianHashIndex index;
+  index.build(cloud.view(), nullptr, {});
+  Neighborhoods table;
+  index.nearestKAll(50, table);
+  EXPECT_EQ(table.k(), 50);
+  for (std::size_t i = 0; i < 7; ++i) {
+    EXPECT_EQ(row(table, i), bruteForceRow(cloud.view(), static_cast<pcl::index_t>(i), 50));
+  }
+}
+
+}  // namespace
+}  // namespace segorient::test

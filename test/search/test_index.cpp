@@ -1,0 +1,199 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the segorient authors
+#include <gtest/gtest.h>
+#include <segorient/search/median_hash_index.h>
+
+#include <array>
+#include <thread>
+
+#include "brute_force.h"
+#include "search_clouds.h"
+
+namespace segorient::test {
+namespace {
+
+using search::MedianHashIndex;
+
+std::vector<Neighbor> nearestK(const MedianHashIndex& index, const float* query, int k,
+                               float epsilon = 0.0F) {
+  std::vector<pcl::index_t> indices(static_cast<std::size_t>(k));
+  std::vector<float> distances(static_cast<std::size_t>(k));
+  const int found = index.nearestK(query, k, indices.data(), distances.data(), epsilon);
+  std::vector<Neighbor> result;
+  for (std::size_t i = 0; i < static_cast<std::size_t>(found); ++i) {
+    result.push_back({distances[i], indices[i]});
+  }
+  return result;
+}
+
+std::vector<Neighbor> radius(const MedianHashIndex& index, const float* query, double r,
+                             unsigned int max_nn, bool sorted) {
+  std::vector<pcl::index_t> indices;
+  std::vector<float> distances;
+  const int found = index.radius(query, r, indices, distances, max_nn, sorted);
+  EXPECT_EQ(indices.size(), static_cast<std::size_t>(found));
+  EXPECT_EQ(distances.size(), static_cast<std::size_t>(found));
+  std::vector<Neighbor> result;
+  for (std::size_t i = 0; i < indices.size(); ++i) result.push_back({distances[i], indices[i]});
+  return result;
+}
+
+std::vector<Neighbor> prefix(std::vector<Neighbor> all, std::size_t k) {
+  all.resize(std::min(k, all.size()));
+  return all;
+}
+
+// Points of the cloud, near them, and far outside.
+std::vector<std::array<float, 3>> queries(const SearchCloud& cloud) {
+  std::vector<std::array<float, 3>> result;
+  const PointView view = cloud.view();
+  for (std::size_t i = 0; i < view.size; i += 1 + view.size / 25) {
+    const float* p = view[i];
+    if (!isFinite(p)) continue;
+    result.push_back({p[0], p[1], p[2]});
+    result.push_back({p[0] * 1.01F, p[1] * 0.99F, p[2]});
+    result.push_back({p[1] * 3.0F, p[2], p[0] - p[1]});
+  }
+  result.push_back({1e3F, -1e3F, 1e3F});
+  result.push_back({-1e12F, 0.0F, 0.0F});
+  result.push_back({3e38F, 3e38F, -3e38F});
+  result.push_back({0.0F, 0.0F, 0.0F});
+  return result;
+}
+
+class IndexOnCloud : public testing::TestWithParam<SearchCloud> {};
+
+TEST_P(IndexOnCloud, NearestKEqualsBruteForce) {
+  const SearchCloud& cloud = GetParam();
+  for (const std::size_t region_size : {std::size_t{16}, std::size_t{200}, std::size_t{2048}}) {
+    MedianHashIndex::Options options;
+    options.region_size = region_size;
+    MedianHashIndex index;
+    index.build(cloud.view(), nullptr, options);
+    for (const auto& query : queries(cloud)) {
+      if (!isFinite(query.data())) continue;
+      const auto expected = bruteForce(cloud.view(), query.data());
+      ASSERT_EQ(index.size(), expected.size());
+      for (const int k : {1, 2, 8, 15, 64, 512, 100000}) {
+        ASSERT_EQ(nearestK(index, query.data(), k), prefix(expected, static_cast<std::size_t>(k)))
+            << "region size " << region_size << ", k " << k << ", query " << query[0] << ' '
+            << query[1] << ' ' << query[2];
+      }
+    }
+  }
+}
+
+TEST_P(IndexOnCloud, RadiusEqualsBruteForce) {
+  const SearchCloud& cloud = GetParam();
+  MedianHashIndex index;
+  index.build(cloud.view(), nullptr, {});
+  for (const auto& query : queries(cloud)) {
+    if (!isFinite(query.data())) continue;
+    const auto all = bruteForce(cloud.view(), query.data());
+    for (const std::size_t rank : {std::size_t{0}, std::size_t{5}, std::size_t{40}, all.size()}) {
+      const double r =
+          rank < all.size() ? std::sqrt(static_cast<double>(all[rank].distance)) : 1e20;
+      const auto limit = static_cast<float>(r * r);
+      std::vector<Neighbor> expected;
+      for (const Neighbor& n : all) {
+        if (n.distance < limit) expected.push_back(n);
+      }
+      ASSERT_EQ(radius(index, query.data(), r, 0, true), expected) << "radius " << r;
+      ASSERT_EQ(radius(index, query.data(), r, 7, true), prefix(expected, 7));
+      auto unsorted = radius(index, query.data(), r, 0, false);
+      std::sort(unsorted.begin(), unsorted.end());
+      ASSERT_EQ(unsorted, expected);
+      auto closest = radius(index, query.data(), r, 7, false);
+      std::sort(closest.begin(), closest.end());
+      ASSERT_EQ(closest, prefix(expected, 7));
+    }
+  }
+}
+
+TEST_P(IndexOnCloud, SubsetOfIndices) {
+  const SearchCloud& cloud = GetParam();
+  std::vector<pcl::index_t> indices;
+  for (std::size_t i = 0; i < cloud.size(); i += 3) {
+    indices.push_back(static_cast<pcl::index_t>(cloud.size() - 1 - i));
+  }
+  indices.push_back(indices.front());  // found twice
+  indices.push_back(-1);
+  indices.push_back(static_cast<pcl::index_t>(cloud.size()));
+  MedianHashIndex index;
+  index.build(cloud.view(), &indices, {});
+  for (const auto& query : queries(cloud)) {
+    if (!isFinite(query.data())) continue;
+    const auto expected = bruteForce(cloud.view(), query.data(), &indices);
+    ASSERT_EQ(index.size(), expected.size());
+    ASSERT_EQ(nearestK(index, query.data(), 20), prefix(expected, 20));
+  }
+}
+
+TEST_P(IndexOnCloud, ApproximateKeepsItsPromise) {
+  const SearchCloud& cloud = GetParam();
+  MedianHashIndex::Options options;
+  options.region_size = 64;
+  MedianHashIndex index;
+  index.build(cloud.view(), nullptr, options);
+  for (const float epsilon : {0.1F, 1.0F, 10.0F}) {
+    for (const auto& query : queries(cloud)) {
+      if (!isFinite(query.data())) continue;
+      const auto exact = prefix(bruteForce(cloud.view(), query.data()), 20);
+      const auto found = nearestK(index, query.data(), 20, epsilon);
+      ASSERT_EQ(found.size(), exact.size());
+      for (std::size_t i = 0; i < found.size(); ++i) {
+        if (!std::isfinite(exact[i].distance)) continue;
+        // 1e-6: rounding of the distances themselves; the smallest floats: of their squares
+        ASSERT_LE(std::sqrt(static_cast<double>(found[i].distance)),
+                  (1.0 + static_cast<double>(epsilon)) * (1.0 + 1e-6) *
+                          std::sqrt(static_cast<double>(exact[i].distance)) +
+                      1e-22);
+      }
+    }
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Clouds, IndexOnCloud, testing::ValuesIn(searchClouds(1500)));
+
+TEST(Index, EverySmallSize) {
+  for (std::size_t n = 0; n < 40; ++n) {
+    SearchCloud cloud = searchClouds(std::max<std::size_t>(n, 1)).front();
+    cloud.xyz.resize(4 * n);
+    MedianHashIndex::Options options;
+    options.region_size = 1 + n % 5;
+    MedianHashIndex index;
+    index.build(cloud.view(), nullptr, options);
+    const std::array<float, 3> query{0.1F, 0.2F, 0.3F};
+    for (int k = 0; k < 45; ++k) {
+      ASSERT_EQ(nearestK(index, query.data(), k),
+                prefix(bruteForce(cloud.view(), query.data()), static_cast<std::size_t>(k)));
+    }
+  }
+}
+
+TEST(Index, ConcurrentQueriesOnOneObject) {
+  const SearchCloud cloud = searchClouds(4000).at(1);
+  MedianHashIndex index;
+  index.build(cloud.view(), nullptr, {});
+  std::vector<std::vector<Neighbor>> expected;
+  for (std::size_t i = 0; i < cloud.size(); i += 4) {
+    expected.push_back(nearestK(index, cloud.view()[i], 10));
+  }
+  std::vector<std::thread> threads;
+  std::array<std::size_t, 4> wrong{};
+  for (std::size_t t = 0; t < wrong.size(); ++t) {
+    threads.emplace_back([&, t] {
+      for (std::size_t j = 0; j < expected.size(); ++j) {
+        const std::size_t at = (j * (2 * t + 1)) % expected.size();
+        const float* query = cloud.view()[4 * at];
+        if (!(nearestK(index, query, 10) == expected[at])) ++wrong[t];
+        if (radius(index, query, 0.1, 10, true).empty()) ++wrong[t];
+      }
+    });
+  }
+  for (auto& thread : threads) thread.join();
+  for (const std::size_t w : wrong) EXPECT_EQ(w, 0U);
+}
+
+}  // namespace
+}  // namespace segorient::test
