@@ -106,7 +106,8 @@ OrientationResult orientSegments(const PointView& points, const PointView& norma
   }
 
   const SegmentLinks links = linkRegularSegments(segmentation, graph, neighborhoods);
-  const std::vector<float> cosines = segmentCosines(normals, segmentation, links, options.angle);
+  const std::vector<float> cosines =
+      segmentCosines(points, normals, segmentation, links, options.angle);
   const std::vector<BoundaryVote> boundary =
       localBoundaryVotes(points, normals, neighborhoods, segmentation, links, options.threads);
   const std::vector<ExtremalEvidence> extremal = gatherExtremalEvidence(

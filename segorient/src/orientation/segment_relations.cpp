@@ -31,15 +31,28 @@ float referenceCosine(const Segmentation& segmentation, const SegmentLink& link)
   return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
-float borderCosine(const PointView& normals, const Segmentation& segmentation,
-                   const SegmentLinks& links, const SegmentLink& link) {
+// Of two walls that face each other across a gap, or around the edge of a thin plate, normals say
+// nothing about each other: pairs whose connection leaves either tangent plane by more than this
+// (sine) count as undecided.
+constexpr float kMostOffPlane = 0.5F;
+
+// Two undecided pairs are added to every border, so that a chance contact of few points never
+// counts as much as a long border.
+constexpr float kPrior = 2.F;
+
+float borderCosine(const PointView& points, const PointView& normals,
+                   const Segmentation& segmentation, const SegmentLinks& links,
+                   const SegmentLink& link) {
   float sum = 0.F;
   for (std::uint32_t i = link.first; i < link.first + link.size; ++i) {
     const BorderPair& pair = links.pairs[i];
-    sum += segmentNormal(normals, segmentation, pair.in_a)
-               .dot(segmentNormal(normals, segmentation, pair.in_b));
+    const Vector3f chord = vectorAt(points, pair.in_b) - vectorAt(points, pair.in_a);
+    const Vector3f in_a = segmentNormal(normals, segmentation, pair.in_a);
+    const Vector3f in_b = segmentNormal(normals, segmentation, pair.in_b);
+    const float off_plane = std::max(std::abs(chord.dot(in_a)), std::abs(chord.dot(in_b)));
+    if (off_plane <= kMostOffPlane * chord.norm()) sum += in_a.dot(in_b);
   }
-  return sum / static_cast<float>(std::max(1U, link.size));
+  return sum / (static_cast<float>(link.size) + kPrior);
 }
 
 class LocalBoundary {
@@ -107,21 +120,22 @@ BoundaryVote voteOf(const LocalBoundary& boundary, const SegmentLinks& links,
     in_b.push_back(pair.in_b);
   }
   BoundaryVote out;
-  if (total > 0.F) out.margin = balance / total;
+  out.margin = balance / (total + kPrior);
   out.points = std::min(distinct(in_a), distinct(in_b));
   return out;
 }
 
 }  // namespace
 
-std::vector<float> segmentCosines(const PointView& normals, const Segmentation& segmentation,
-                                  const SegmentLinks& links, SegmentAngle angle) {
+std::vector<float> segmentCosines(const PointView& points, const PointView& normals,
+                                  const Segmentation& segmentation, const SegmentLinks& links,
+                                  SegmentAngle angle) {
   std::vector<float> out;
   out.reserve(links.links.size());
   for (const SegmentLink& link : links.links) {
     const float cosine = angle == SegmentAngle::REFERENCE_NORMALS
                              ? referenceCosine(segmentation, link)
-                             : borderCosine(normals, segmentation, links, link);
+                             : borderCosine(points, normals, segmentation, links, link);
     out.push_back(std::clamp(cosine, -1.F, 1.F));
   }
   return out;

@@ -81,11 +81,19 @@ void SegmentSpread::orient(std::int32_t segment, int sign, DecidedBy by, float c
   }
 }
 
+// Whether angle and boundary both decide, and not the same.
+bool SegmentSpread::contradictory(std::uint32_t link) const {
+  const float cosine = evidence_.cosines[link];
+  const BoundaryVote& vote = evidence_.boundary[link];
+  return lineAngle(cosine) <= options_.gamma && vote.decides(options_.min_margin) &&
+         signOfValue(cosine) != signOfValue(vote.margin);
+}
+
 bool SegmentSpread::decideByAngle(const Step& step) {
   const float cosine = evidence_.cosines[step.link];
   const float angle = lineAngle(cosine);
   const bool unreliable = angle > options_.gamma;
-  if (unreliable && rule_ != Rule::ANGLE) return false;
+  if (rule_ == Rule::ANGLE_THEN_BOUNDARY && (unreliable || contradictory(step.link))) return false;
   const std::int32_t from = evidence_.links.links[step.link].other(step.target);
   orient(step.target, signOf(from) * signOfValue(cosine), DecidedBy::PROPAGATION,
          (unreliable ? kGuessConfidence : 1.F) * std::abs(cosine), unreliable);
@@ -100,6 +108,7 @@ bool SegmentSpread::decideByBoundary(std::int32_t segment) {
     const std::int32_t other = links.links[link].other(segment);
     const BoundaryVote& vote = evidence_.boundary[link];
     if (signOf(other) == 0 || !vote.decides(options_.min_margin)) continue;
+    if (rule_ == Rule::ANGLE_THEN_BOUNDARY && contradictory(link)) continue;
     orient(segment, signOf(other) * signOfValue(vote.margin), DecidedBy::BOUNDARY,
            std::abs(vote.margin));
     return true;

@@ -49,6 +49,7 @@ class SegmentSpread {
 
   void labelComponents();
   float cost(std::uint32_t link) const;
+  bool contradictory(std::uint32_t link) const;
   void visit(const Step& step);
   bool decideByAngle(const Step& step);
   bool decideByBoundary(std::int32_t segment);

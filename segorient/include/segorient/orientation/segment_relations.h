@@ -22,9 +22,11 @@ enum class SegmentAngle : std::uint8_t {
 /// that the segments are consistent as they are.
 ///
 /// Reference normals of segments that were parted by the growing angle alone differ by about that
-/// angle, so they cannot tell a smooth border from a sharp one; the pairs at the border can.
-std::vector<float> segmentCosines(const PointView& normals, const Segmentation& segmentation,
-                                  const SegmentLinks& links, SegmentAngle angle);
+/// angle, so they cannot tell a smooth border from a sharp one; the pairs at the border can. Pairs
+/// that face each other across a gap count as cosine 0.
+std::vector<float> segmentCosines(const PointView& points, const PointView& normals,
+                                  const Segmentation& segmentation, const SegmentLinks& links,
+                                  SegmentAngle angle);
 
 /// What the boundaries of two neighbouring segments say about their relative orientation.
 struct BoundaryVote {
