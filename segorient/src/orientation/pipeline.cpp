@@ -11,6 +11,7 @@
 #include <limits>
 
 #include "cloud_scale.h"
+#include "segment_members.h"
 
 namespace segorient {
 namespace {
@@ -100,31 +101,6 @@ void findOrientation(const PipelineOptions& options, Working& work) {
   const SegmentGraph graph = buildSegmentGraph(work.segmentation, work.neighborhoods);
   work.orientation = orientSegments(work.cloud.view(), work.normalView(), work.neighborhoods,
                                     work.segmentation, graph, orientation_options);
-}
-
-// Members and sizes of the segments from the labels of the rows.
-void collectMembers(Segmentation& segmentation) {
-  std::vector<Segment>& segments = segmentation.segments;
-  for (Segment& segment : segments) segment.size = 0;
-  std::size_t labelled = 0;
-  for (const std::int32_t label : segmentation.labels) {
-    if (label < 0) continue;
-    ++segments[static_cast<std::size_t>(label)].size;
-    ++labelled;
-  }
-  std::uint32_t first = 0;
-  for (Segment& segment : segments) {
-    segment.first = first;
-    first += segment.size;
-  }
-  segmentation.members.resize(labelled);
-  std::vector<std::uint32_t> cursor(segments.size());
-  for (std::size_t s = 0; s < segments.size(); ++s) cursor[s] = segments[s].first;
-  for (std::size_t i = 0; i < segmentation.labels.size(); ++i) {
-    const std::int32_t label = segmentation.labels[i];
-    if (label < 0) continue;
-    segmentation.members[cursor[static_cast<std::size_t>(label)]++] = static_cast<pcl::index_t>(i);
-  }
 }
 
 // Turns the distinct points' normals and segments as they were oriented. The normals' own signs now

@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the segorient authors
+#pragma once
+
+#include <pcl/console/print.h>
+#include <segorient/common/cloud_access.h>
+#include <segorient/orientation/segment_orientation.h>
+
+#include <algorithm>
+#include <cstddef>
+#include <limits>
+
+namespace segorient {
+
+template <typename PointT, typename NormalT>
+bool SegmentOrientation<PointT, NormalT>::orient() {
+  if (!input_ || input_->empty()) {
+    PCL_ERROR(
+        "[segorient::SegmentOrientation::compute] There is no input cloud, or it is empty.\n");
+    return false;
+  }
+  if (!normals_ || normals_->size() != input_->size()) {
+    PCL_ERROR("[segorient::SegmentOrientation::compute] There must be one normal a point.\n");
+    return false;
+  }
+  if (k_ < 0) {
+    PCL_ERROR("[segorient::SegmentOrientation::compute] k (%d) must not be negative.\n", k_);
+    return false;
+  }
+  const CloudPoints<PointT> points(*input_);
+  result_ = orientSegmentation(points.view(), normalView(*normals_), segmentation_.get(),
+                               k_ > 0 ? std::max(1, k_ - 1) : 0, segmentation_options_, options_);
+  if (result_.orientation.point_signs.empty()) {
+    PCL_ERROR(
+        "[segorient::SegmentOrientation::compute] The segments are not those of this cloud.\n");
+    return false;
+  }
+  return true;
+}
+
+template <typename PointT, typename NormalT>
+void SegmentOrientation<PointT, NormalT>::compute(PointCloudN& output) {
+  PointCloudN oriented;  // the output may be the input
+  result_ = OrientedSegmentation{};
+  if (orient() && initCompute()) {
+    oriented.header = input_->header;
+    oriented.is_dense = true;
+    for (const pcl::index_t index : *indices_) {
+      const auto i = static_cast<std::size_t>(index);
+      const bool in_range = index >= 0 && i < normals_->size();
+      NormalT normal = in_range ? (*normals_)[i] : NormalT();
+      const int sign = in_range ? result_.orientation.point_signs[i] : 0;
+      const float factor =
+          sign != 0 ? static_cast<float>(sign) : std::numeric_limits<float>::quiet_NaN();
+      normal.normal_x *= factor;
+      normal.normal_y *= factor;
+      normal.normal_z *= factor;
+      if (sign == 0) oriented.is_dense = false;
+      oriented.push_back(normal);
+    }
+    if (oriented.size() == input_->size() && input_->isOrganized()) {
+      oriented.width = input_->width;
+      oriented.height = input_->height;
+    }
+    deinitCompute();
+  }
+  output = oriented;
+}
+
+}  // namespace segorient
+
+#define PCL_INSTANTIATE_SegmentOrientation(T, NT) \
+  template class segorient::SegmentOrientation<T, NT>;

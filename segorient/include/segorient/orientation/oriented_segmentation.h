@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the segorient authors
+#pragma once
+
+#include <segorient/common/point_view.h>
+#include <segorient/orientation/orient_segments.h>
+#include <segorient/orientation/orientation_result.h>
+#include <segorient/segmentation/region_growing.h>
+#include <segorient/segmentation/segmentation.h>
+
+namespace segorient {
+
+/// A cloud with normals and segments, whoever made them, and the orientation of both.
+struct OrientedSegmentation {
+  Segmentation segmentation;      ///< the given one, or one of its own
+  OrientationResult orientation;  ///< by row
+};
+
+/// Orients a cloud that has normals: the stage after segmentation, on any rows (NaN and repeated
+/// points included). A row that repeats a point follows that point. \param normals one a row, signs
+/// arbitrary; NaN = the point has none \param segmentation of these rows, or null to make one by
+/// `segmentation_options` \param k neighbours of a point, itself not counted; <= 0 = 12 \return
+/// empty if the sizes do not agree or a label is out of range
+OrientedSegmentation orientSegmentation(const PointView& points, const PointView& normals,
+                                        const Segmentation* segmentation, int k,
+                                        const SegmentationOptions& segmentation_options,
+                                        const OrientationOptions& options);
+
+}  // namespace segorient

@@ -1,0 +1,136 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the segorient authors
+#pragma once
+
+#include <pcl/pcl_base.h>
+#include <pcl/point_cloud.h>
+#include <segorient/orientation/oriented_segmentation.h>
+
+#include <memory>
+#include <vector>
+
+namespace segorient {
+
+/// Consistent orientation of a cloud's normals by its segments: the paper's methods one by one, its
+/// combination, and the default (paper, section 3).
+///
+/// @code
+/// segorient::SegmentOrientation<pcl::PointXYZ, pcl::Normal> orientation;
+/// orientation.setInputCloud(cloud);
+/// orientation.setInputNormals(normals);  // of any estimator; signs do not matter
+/// orientation.setMethod(segorient::OrientationMethod::COMBINED);
+/// orientation.compute(*oriented);
+/// @endcode
+///
+/// Segments are those of setSegmentation(), such as NormalSegmentation finds them, or made anew.
+/// Every point that has a normal is oriented; NaN stays NaN. With indices, output i belongs to
+/// index i; the whole cloud is oriented all the same. No cloud, or normals of another size:
+/// PCL_ERROR and an empty output.
+template <typename PointT, typename NormalT>
+class SegmentOrientation : public pcl::PCLBase<PointT> {
+ public:
+  using Base = pcl::PCLBase<PointT>;
+  using Ptr = pcl::shared_ptr<SegmentOrientation<PointT, NormalT>>;
+  using ConstPtr = pcl::shared_ptr<const SegmentOrientation<PointT, NormalT>>;
+  using PointCloudN = pcl::PointCloud<NormalT>;
+  using PointCloudNConstPtr = typename PointCloudN::ConstPtr;
+  using SegmentationConstPtr = std::shared_ptr<const Segmentation>;
+  using Method = OrientationMethod;
+
+  static constexpr Method AUTO = Method::AUTO;
+  static constexpr Method PROPAGATION = Method::PROPAGATION;
+  static constexpr Method BOUNDARY = Method::BOUNDARY;
+  static constexpr Method COMBINED = Method::COMBINED;
+  static constexpr Method EXTREMAL = Method::EXTREMAL;
+
+  /// One normal a point of the input cloud.
+  void setInputNormals(const PointCloudNConstPtr& normals) { normals_ = normals; }
+  PointCloudNConstPtr getInputNormals() const { return normals_; }
+
+  /// Segments of the whole input cloud; null (default) to make them from the normals.
+  void setSegmentation(const SegmentationConstPtr& segmentation) { segmentation_ = segmentation; }
+  SegmentationConstPtr getSegmentation() const { return segmentation_; }
+
+  /// How the segments made anew are made.
+  void setSegmentationOptions(const SegmentationOptions& options) {
+    segmentation_options_ = options;
+  }
+  const SegmentationOptions& getSegmentationOptions() const { return segmentation_options_; }
+
+  /// Neighbours of a point and the point itself, as in PCL; 0 (default) = 13.
+  void setKSearch(int k) { k_ = k; }
+  int getKSearch() const { return k_; }
+
+  /// Default AUTO.
+  void setMethod(Method method) { options_.method = method; }
+  Method getMethod() const { return options_.method; }
+
+  /// Angles between segments up to this, and from pi minus this on, decide; radians, default 35
+  /// degrees.
+  void setGamma(float gamma) { options_.gamma = gamma; }
+  float getGamma() const { return options_.gamma; }
+
+  /// Which angle stands for two segments: between reference normals (the paper's) or across the
+  /// border (default).
+  void setSegmentAngle(SegmentAngle angle) { options_.angle = angle; }
+  SegmentAngle getSegmentAngle() const { return options_.angle; }
+
+  /// PROPAGATION over the points themselves instead of segments; default false.
+  void setPointTree(bool value) { options_.point_tree = value; }
+  bool getPointTree() const { return options_.point_tree; }
+
+  /// Majority of a boundary's votes that decides, 0 to 1; default 0.5 (three to one).
+  void setMinMargin(float margin) { options_.min_margin = margin; }
+  float getMinMargin() const { return options_.min_margin; }
+
+  /// m: most points in a box when extremal points are looked for; default 120.
+  void setMaxBoxPoints(std::size_t points) { options_.max_box_points = points; }
+  std::size_t getMaxBoxPoints() const { return options_.max_box_points; }
+
+  /// Whether connected components are turned outward; default true.
+  void setTurnOutward(bool value) { options_.turn_outward = value; }
+  bool getTurnOutward() const { return options_.turn_outward; }
+
+  /// 0 (default) = all cores. The result does not depend on it.
+  void setNumberOfThreads(unsigned int threads = 0) {
+    options_.threads = static_cast<int>(threads);
+  }
+  unsigned int getNumberOfThreads() const { return static_cast<unsigned int>(options_.threads); }
+
+  /// \param output the input normals, oriented
+  void compute(PointCloudN& output);
+
+  // Of the last compute(), empty before; by point of the input cloud.
+
+  /// Signs, deciding methods and confidences of segments, components and points.
+  const OrientationResult& getResult() const { return result_.orientation; }
+  /// The segments in use: labels, members.
+  const Segmentation& getUsedSegmentation() const { return result_.segmentation; }
+  /// Segment of each point, -1 = none.
+  const std::vector<std::int32_t>& getLabels() const { return result_.segmentation.labels; }
+
+ protected:
+  using Base::deinitCompute;
+  using Base::indices_;
+  using Base::initCompute;
+  using Base::input_;
+
+ private:
+  bool orient();
+
+  PointCloudNConstPtr normals_;
+  SegmentationConstPtr segmentation_;
+  SegmentationOptions segmentation_options_;
+  OrientationOptions options_;
+  int k_ = 0;
+  OrientedSegmentation result_;
+
+ public:
+  PCL_MAKE_ALIGNED_OPERATOR_NEW
+};
+
+}  // namespace segorient
+
+#ifdef PCL_NO_PRECOMPILE
+#include <segorient/orientation/impl/segment_orientation.hpp>
+#endif

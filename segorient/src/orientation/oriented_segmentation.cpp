@@ -1,0 +1,133 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the segorient authors
+#include <segorient/common/compact_cloud.h>
+#include <segorient/common/neighborhoods.h>
+#include <segorient/orientation/oriented_segmentation.h>
+#include <segorient/search/median_hash_index.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "segment_members.h"
+
+namespace segorient {
+namespace {
+
+constexpr int kDefaultNeighbors = 12;
+
+bool labelsInRange(const Segmentation& segmentation, std::size_t rows) {
+  if (segmentation.labels.size() != rows || segmentation.signs.size() != rows) return false;
+  const auto segments = static_cast<std::int64_t>(segmentation.segments.size());
+  return std::all_of(segmentation.labels.begin(), segmentation.labels.end(),
+                     [&](std::int32_t label) { return label < segments; });
+}
+
+std::vector<float> compactNormals(const CompactCloud& cloud, const PointView& normals) {
+  std::vector<float> out(4 * cloud.size(), 0.F);
+  for (std::size_t i = 0; i < cloud.size(); ++i) {
+    const float* n = normals[static_cast<std::size_t>(cloud.source[i])];
+    const float length = std::sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
+    // A zero normal is none.
+    const float scale = length > 0.F ? 1.F / length : std::numeric_limits<float>::quiet_NaN();
+    for (std::size_t a = 0; a < 3; ++a) out[4 * i + a] = n[a] * scale;
+  }
+  return out;
+}
+
+Segmentation compactSegmentation(const CompactCloud& cloud, const std::vector<float>& normals,
+                                 const Segmentation& segmentation) {
+  Segmentation out;
+  out.segments = segmentation.segments;
+  out.labels.resize(cloud.size());
+  out.signs.resize(cloud.size());
+  for (std::size_t i = 0; i < cloud.size(); ++i) {
+    const auto row = static_cast<std::size_t>(cloud.source[i]);
+    out.labels[i] = std::isfinite(normals[4 * i]) ? std::max(segmentation.labels[row], -1) : -1;
+    out.signs[i] = segmentation.signs[row] < 0 ? std::int8_t{-1} : std::int8_t{1};
+  }
+  collectMembers(out);
+  return out;
+}
+
+// Results of the distinct points for all rows: a repeated point's normal may have either sign, so
+// its sign is the one that turns it like the first.
+OrientationResult scatter(const CompactCloud& cloud, const PointView& normals,
+                          const OrientationResult& compact) {
+  OrientationResult out;
+  out.segments = compact.segments;
+  out.components = compact.components;
+  const std::size_t rows = cloud.row_of.size();
+  out.point_signs.assign(rows, 0);
+  out.point_confidences.assign(rows, 0.F);
+  out.point_components.assign(rows, -1);
+  for (std::size_t row = 0; row < rows; ++row) {
+    if (cloud.row_of[row] < 0 || !isFinite(normals[row])) continue;
+    const auto i = static_cast<std::size_t>(cloud.row_of[row]);
+    const float* first = normals[static_cast<std::size_t>(cloud.source[i])];
+    const float* own = normals[row];
+    const bool turned = first[0] * own[0] + first[1] * own[1] + first[2] * own[2] < 0.F;
+    out.point_signs[row] =
+        static_cast<std::int8_t>(turned ? -compact.point_signs[i] : compact.point_signs[i]);
+    out.point_confidences[row] = compact.point_confidences[i];
+    out.point_components[row] = compact.point_components[i];
+  }
+  return out;
+}
+
+Segmentation scatter(const CompactCloud& cloud, const PointView& normals,
+                     const Segmentation& compact) {
+  Segmentation out;
+  out.segments = compact.segments;
+  const std::size_t rows = cloud.row_of.size();
+  out.labels.assign(rows, -1);
+  out.signs.assign(rows, 0);
+  for (std::size_t row = 0; row < rows; ++row) {
+    if (cloud.row_of[row] < 0) continue;
+    const auto i = static_cast<std::size_t>(cloud.row_of[row]);
+    const float* first = normals[static_cast<std::size_t>(cloud.source[i])];
+    const float* own = normals[row];
+    const bool turned = first[0] * own[0] + first[1] * own[1] + first[2] * own[2] < 0.F;
+    out.labels[row] = compact.labels[i];
+    out.signs[row] = static_cast<std::int8_t>(turned ? -compact.signs[i] : compact.signs[i]);
+  }
+  collectMembers(out);
+  return out;
+}
+
+}  // namespace
+
+OrientedSegmentation orientSegmentation(const PointView& points, const PointView& normals,
+                                        const Segmentation* segmentation, int k,
+                                        const SegmentationOptions& segmentation_options,
+                                        const OrientationOptions& options) {
+  OrientedSegmentation out;
+  if (normals.size != points.size) return out;
+  if (segmentation != nullptr && !labelsInRange(*segmentation, points.size)) return out;
+
+  const CompactCloud cloud = compactCloud(points, nullptr, options.threads);
+  const std::vector<float> distinct_normals = compactNormals(cloud, normals);
+  const PointView normal_view{distinct_normals.data(), 4, cloud.size()};
+  search::MedianHashIndex index;
+  search::MedianHashIndex::Options search_options;
+  search_options.threads = options.threads;
+  index.build(cloud.view(), nullptr, search_options);
+  const std::size_t most = std::max<std::size_t>(1, cloud.size()) - 1;
+  const auto neighbors = static_cast<std::size_t>(k > 0 ? k : kDefaultNeighbors);
+  Neighborhoods neighborhoods;
+  index.nearestKAll(static_cast<int>(std::min(neighbors, most)) + 1, neighborhoods);
+
+  const Segmentation distinct =
+      segmentation != nullptr
+          ? compactSegmentation(cloud, distinct_normals, *segmentation)
+          : segmentByNormals(cloud.view(), normal_view, neighborhoods, segmentation_options);
+  const SegmentGraph graph = buildSegmentGraph(distinct, neighborhoods);
+  out.orientation =
+      scatter(cloud, normals,
+              orientSegments(cloud.view(), normal_view, neighborhoods, distinct, graph, options));
+  out.segmentation = segmentation != nullptr ? *segmentation : scatter(cloud, normals, distinct);
+  return out;
+}
+
+}  // namespace segorient
