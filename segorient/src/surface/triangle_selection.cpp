@@ -1,0 +1,236 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the segorient authors
+#include "triangle_selection.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace segorient::surface {
+namespace {
+
+constexpr std::uint32_t kNone = PlanarTriangulation::kNone;
+/// Bins of a quarter of the median: longer edges than this many bins are not looked at.
+constexpr std::size_t kMostBins = 1U << 16U;
+
+float medianOf(std::vector<float> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+/// Which triangles stay. Once the long ones are gone, triangles only come back: for points that
+/// would be in none, and where the mesh would hang together by a single point.
+class Selector {
+ public:
+  Selector(const PlanarTriangulation& mesh, const std::vector<float>& lengths, std::size_t points,
+           std::vector<std::uint8_t>& kept)
+      : mesh_(mesh),
+        kept_(kept),
+        longest_(mesh.triangles.size()),
+        corner_(points, kNone),
+        uses_(points, 0) {
+    kept_.assign(mesh.triangles.size(), 0);
+    for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
+      const auto& triangle = mesh.triangles[t];
+      longest_[t] = std::max(
+          {lengths[triangle.edges[0]], lengths[triangle.edges[1]], lengths[triangle.edges[2]]});
+      for (const std::uint32_t p : triangle.points) corner_[p] = t;
+    }
+  }
+
+  void keepShort(float limit) {
+    for (std::uint32_t t = 0; t < kept_.size(); ++t) {
+      if (longest_[t] <= limit) keep(t);
+    }
+  }
+
+  // One peel: what becomes boundary by it stays.
+  void peel(float limit) {
+    std::vector<std::uint32_t> outer;
+    for (std::uint32_t t = 0; t < kept_.size(); ++t) {
+      if (kept_[t] != 0 && longest_[t] > limit && onBoundary(t)) outer.push_back(t);
+    }
+    for (const std::uint32_t t : outer) {
+      const auto& p = mesh_.triangles[t].points;
+      if (std::any_of(p.begin(), p.end(), [&](std::uint32_t q) { return uses_[q] < 2; })) continue;
+      kept_[t] = 0;
+      for (const std::uint32_t q : p) --uses_[q];
+    }
+  }
+
+  // Points in no triangle get their shortest one back.
+  void takeInLoosePoints() {
+    for (std::uint32_t p = 0; p < corner_.size(); ++p) {
+      if (corner_[p] == kNone || uses_[p] > 0) continue;
+      listStar(p);
+      std::uint32_t best = star_.front();
+      for (const std::uint32_t t : star_) {
+        if (longest_[t] < longest_[best]) best = t;
+      }
+      keep(best);
+    }
+  }
+
+  // A point at which several fans of triangles meet: the gap between two of them is closed that
+  // needs the shortest triangles, until one fan is left.
+  void closePinches() {
+    std::vector<std::uint32_t> queue;
+    for (std::uint32_t p = 0; p < corner_.size(); ++p) {
+      if (corner_[p] != kNone) queue.push_back(p);
+    }
+    for (std::size_t head = 0; head < queue.size(); ++head) {
+      while (closeGap(queue[head], queue)) {
+      }
+    }
+  }
+
+ private:
+  void keep(std::uint32_t t) {
+    kept_[t] = 1;
+    for (const std::uint32_t p : mesh_.triangles[t].points) ++uses_[p];
+  }
+
+  std::uint32_t across(std::uint32_t t, std::uint32_t edge) const {
+    const auto& sides = mesh_.edges[edge].triangles;
+    return sides[0] == t ? sides[1] : sides[0];
+  }
+
+  bool onBoundary(std::uint32_t t) const {
+    const auto& edges = mesh_.triangles[t].edges;
+    return std::any_of(edges.begin(), edges.end(), [&](std::uint32_t e) {
+      const std::uint32_t other = across(t, e);
+      return other == kNone || kept_[other] == 0;
+    });
+  }
+
+  static std::size_t cornerOf(const PlanarTriangulation::Triangle& triangle, std::uint32_t p) {
+    return triangle.points[0] == p ? 0 : triangle.points[1] == p ? 1 : 2;
+  }
+
+  // The triangles around a point, counter-clockwise; from the hull where the point is on it.
+  void listStar(std::uint32_t p) {
+    std::uint32_t first = corner_[p];
+    star_open_ = false;
+    for (std::uint32_t t = first;;) {
+      const std::uint32_t previous =
+          across(t, mesh_.triangles[t].edges[cornerOf(mesh_.triangles[t], p)]);
+      if (previous == kNone) {
+        star_open_ = true;
+        first = t;
+        break;
+      }
+      t = previous;
+      if (t == first) break;
+    }
+    star_.clear();
+    std::uint32_t t = first;
+    do {
+      star_.push_back(t);
+      t = across(t, mesh_.triangles[t].edges[(cornerOf(mesh_.triangles[t], p) + 2) % 3]);
+    } while (t != kNone && t != first);
+  }
+
+  bool closeGap(std::uint32_t p, std::vector<std::uint32_t>& queue) {
+    if (uses_[p] < 2) return false;
+    listStar(p);
+    const std::size_t size = star_.size();
+    // Begin behind a fan, so that no gap is cut in two.
+    std::size_t begin = 0;
+    if (!star_open_) {
+      while (begin < size && !(kept_[star_[begin]] != 0 && kept_[star_[(begin + 1) % size]] == 0))
+        ++begin;
+      if (begin == size) return false;
+    }
+    std::size_t gaps = 0;
+    std::size_t best_from = 0;
+    std::size_t best_to = 0;
+    float best = 0.F;
+    std::size_t from = 0;
+    float worst = 0.F;
+    bool seen_fan = false;
+    bool in_gap = false;
+    for (std::size_t i = begin; i <= begin + size; ++i) {
+      if (star_open_ && i == size) break;
+      const std::uint32_t t = star_[i % size];
+      if (kept_[t] == 0) {
+        if (!in_gap) from = i;
+        worst = in_gap ? std::max(worst, longest_[t]) : longest_[t];
+        in_gap = true;
+        continue;
+      }
+      if (in_gap && seen_fan) {
+        if (gaps == 0 || worst < best) {
+          best = worst;
+          best_from = from;
+          best_to = i;
+        }
+        ++gaps;
+      }
+      in_gap = false;
+      seen_fan = true;
+    }
+    // All around, one gap is the outside of the only fan; at the hull every gap parts two fans.
+    if (gaps < (star_open_ ? 1U : 2U)) return false;
+    for (std::size_t i = best_from; i < best_to; ++i) {
+      const std::uint32_t t = star_[i % size];
+      keep(t);
+      for (const std::uint32_t q : mesh_.triangles[t].points) {
+        if (q != p) queue.push_back(q);
+      }
+    }
+    return true;
+  }
+
+  const PlanarTriangulation& mesh_;
+  std::vector<std::uint8_t>& kept_;
+  std::vector<float> longest_;         ///< by triangle, its longest edge
+  std::vector<std::uint32_t> corner_;  ///< by point, one of its triangles
+  std::vector<std::uint32_t> uses_;    ///< by point, its kept triangles
+  std::vector<std::uint32_t> star_;
+  bool star_open_ = false;
+};
+
+}  // namespace
+
+float criticalLength(const std::vector<float>& lengths, const TriangulationOptions& options) {
+  const auto [shortest, longest] = std::minmax_element(lengths.begin(), lengths.end());
+  const float low = *shortest;
+  const float range = *longest - low;
+  if (!(range > 0.F)) return options.critical_factor * low;
+  float width = 0.25F * medianOf(lengths);
+  std::size_t bins = 1;
+  if (options.bins > 0) {
+    bins = static_cast<std::size_t>(options.bins);
+    width = range / static_cast<float>(bins);
+  } else {
+    bins = static_cast<std::size_t>(std::min(range / width, static_cast<float>(kMostBins))) + 1;
+  }
+  std::vector<std::uint32_t> counts(bins, 0);
+  for (const float length : lengths) {
+    const float at = (length - low) / width;
+    if (at < static_cast<float>(bins)) {
+      ++counts[static_cast<std::size_t>(at)];
+    } else if (options.bins > 0) {
+      ++counts.back();  // the longest edge, by rounding
+    }
+  }
+  const auto most = static_cast<float>(*std::max_element(counts.begin(), counts.end()));
+  std::size_t last = bins - 1;
+  while (last > 0 && static_cast<float>(counts[last]) <= options.kappa1 * most) --last;
+  return options.critical_factor * (low + static_cast<float>(last + 1) * width);
+}
+
+Selection selectTriangles(const PlanarTriangulation& mesh, const std::vector<float>& lengths,
+                          std::size_t points, const TriangulationOptions& options) {
+  Selection selection;
+  if (mesh.triangles.empty()) return selection;
+  selection.critical_length = criticalLength(lengths, options);
+  Selector selector(mesh, lengths, points, selection.kept);
+  selector.keepShort(selection.critical_length);
+  selector.peel(options.kappa2 * selection.critical_length);
+  selector.takeInLoosePoints();
+  selector.closePinches();
+  return selection;
+}
+
+}  // namespace segorient::surface
