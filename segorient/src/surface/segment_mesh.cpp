@@ -30,8 +30,10 @@ class Projection {
     return {static_cast<double>(p[0]), static_cast<double>(p[1]), static_cast<double>(p[2])};
   }
 
-  // Scaled by a power of two, so that only the last step rounds.
-  std::vector<GridPoint> onGrid() const {
+  /// Power of two that brings the points onto the grid, so that only the last step rounds.
+  double scale() const { return scale_; }
+
+  std::vector<GridPoint> onGrid() {
     double extent = 0;
     for (std::size_t i = 0; i < count_; ++i) {
       const Eigen::Vector3d d = at(i) - origin_;
@@ -39,12 +41,12 @@ class Projection {
     }
     int exponent = 0;
     std::frexp(extent, &exponent);
-    const double scale = std::ldexp(static_cast<double>(kGridLimit), -exponent);
+    scale_ = std::ldexp(static_cast<double>(kGridLimit), -exponent);
     std::vector<GridPoint> grid(count_);
     for (std::size_t i = 0; i < count_ && extent > 0; ++i) {
       const Eigen::Vector3d d = at(i) - origin_;
-      grid[i].x = static_cast<std::int32_t>(std::lround(scale * d.dot(u_)));
-      grid[i].y = static_cast<std::int32_t>(std::lround(scale * d.dot(v_)));
+      grid[i].x = static_cast<std::int32_t>(std::lround(scale_ * d.dot(u_)));
+      grid[i].y = static_cast<std::int32_t>(std::lround(scale_ * d.dot(v_)));
     }
     return grid;
   }
@@ -53,18 +55,19 @@ class Projection {
   const PointView& points_;
   const pcl::index_t* members_;
   std::size_t count_;
+  double scale_ = 1;
   Eigen::Vector3d origin_;
   Eigen::Vector3d u_;
   Eigen::Vector3d v_;
 };
 
-// Lengths in space.
+// Lengths in space, in units of the grid: no float overflows.
 std::vector<float> edgeLengths(const PlanarTriangulation& mesh, const Projection& projection) {
   std::vector<float> lengths;
   lengths.reserve(mesh.edges.size());
   for (const auto& edge : mesh.edges) {
-    lengths.push_back(
-        static_cast<float>((projection.at(edge.points[0]) - projection.at(edge.points[1])).norm()));
+    const double length = (projection.at(edge.points[0]) - projection.at(edge.points[1])).norm();
+    lengths.push_back(static_cast<float>(length * projection.scale()));
   }
   return lengths;
 }
@@ -104,6 +107,18 @@ void traceLoops(const PlanarTriangulation& mesh, const std::vector<std::uint8_t>
   }
 }
 
+// All members that are no duplicates.
+void addLoose(const std::vector<pcl::index_t>& members,
+              const std::vector<std::uint32_t>& duplicates, std::vector<pcl::index_t>& loose) {
+  for (std::size_t i = 0, d = 0; i < members.size(); ++i) {
+    if (d < duplicates.size() && duplicates[d] == i) {
+      ++d;
+    } else {
+      loose.push_back(members[i]);
+    }
+  }
+}
+
 }  // namespace
 
 SegmentMesh triangulatePoints(const PointView& points, const pcl::index_t* members,
@@ -111,35 +126,35 @@ SegmentMesh triangulatePoints(const PointView& points, const pcl::index_t* membe
                               const TriangulationOptions& options) {
   SegmentMesh result;
   const Eigen::Vector3d direction = Eigen::Vector3f(normal.data()).cast<double>().normalized();
-  if (count < 3 || !direction.allFinite() || direction.squaredNorm() < 0.5) {
+  std::vector<pcl::index_t> finite;
+  for (std::size_t i = 0; i < count; ++i) {
+    const bool good = isFinite(points[static_cast<std::size_t>(members[i])]);
+    (good ? finite : result.loose).push_back(members[i]);
+  }
+  if (finite.size() < 3 || !direction.allFinite() || direction.squaredNorm() < 0.5) {
     result.loose.assign(members, members + count);
     return result;
   }
-  const Projection projection(points, members, count, direction);
+  Projection projection(points, finite.data(), finite.size(), direction);
   const std::vector<GridPoint> grid = projection.onGrid();
   const PlanarTriangulation mesh = triangulate(grid);
-  for (const std::uint32_t p : mesh.duplicates) result.duplicates.push_back(members[p]);
+  for (const std::uint32_t p : mesh.duplicates) result.duplicates.push_back(finite[p]);
   if (mesh.triangles.empty()) {
-    for (std::size_t i = 0, d = 0; i < count; ++i) {
-      if (d < mesh.duplicates.size() && mesh.duplicates[d] == i) {
-        ++d;
-      } else {
-        result.loose.push_back(members[i]);
-      }
-    }
+    addLoose(finite, mesh.duplicates, result.loose);
     return result;
   }
   const surface::Selection selection =
-      surface::selectTriangles(mesh, edgeLengths(mesh, projection), count, options);
-  result.critical_length = selection.critical_length;
+      surface::selectTriangles(mesh, edgeLengths(mesh, projection), finite.size(), options);
+  result.critical_length =
+      static_cast<float>(static_cast<double>(selection.critical_length) / projection.scale());
   for (std::uint32_t t = 0; t < selection.kept.size(); ++t) {
     if (selection.kept[t] == 0) continue;
     const auto& p = mesh.triangles[t].points;
-    result.triangles.push_back({members[p[0]], members[p[1]], members[p[2]]});
+    result.triangles.push_back({finite[p[0]], finite[p[1]], finite[p[2]]});
     const Eigen::Vector3d a = projection.at(p[0]);
     result.area += 0.5 * (projection.at(p[1]) - a).cross(projection.at(p[2]) - a).norm();
   }
-  traceLoops(mesh, selection.kept, grid, members, result);
+  traceLoops(mesh, selection.kept, grid, finite.data(), result);
   return result;
 }
 

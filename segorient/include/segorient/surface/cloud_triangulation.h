@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the segorient authors
+#pragma once
+
+#include <segorient/surface/segment_mesh.h>
+
+#include <vector>
+
+namespace segorient {
+
+/// What SegmentTriangulation does that does not depend on the point type.
+/// \param normals 4 floats a point (normal, curvature); only needed where `segmentation` is empty,
+/// and
+///        the cloud is segmented then
+/// \param segmentation of the whole cloud, or empty
+/// \param indices points to use, null = all; bad ones are left out
+/// \return false if the segmentation is not of this cloud
+bool triangulateCloud(const PointView& points, const std::vector<float>& normals,
+                      const Segmentation& segmentation, const pcl::Indices* indices,
+                      const TriangulationOptions& options, bool all,
+                      std::vector<SegmentMesh>& meshes);
+
+}  // namespace segorient
