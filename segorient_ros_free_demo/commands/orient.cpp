@@ -1,0 +1,165 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the segorient authors
+#include <segorient/orientation/pipeline.h>
+
+#include <cstdio>
+#include <optional>
+
+#include "commands/commands.h"
+#include "io/output_file.h"
+#include "io/readers.h"
+#include "support/command_line.h"
+#include "support/json.h"
+#include "support/progress_bar.h"
+#include "support/result_columns.h"
+#include "support/stage_options.h"
+
+namespace segorient::program {
+namespace po = boost::program_options;
+namespace {
+
+constexpr std::size_t kComponentsShown = 5;
+
+void printSummary(const PipelineReport& report, const std::string& out, bool verbose) {
+  std::printf("points          %zu", report.points);
+  if (report.non_finite > 0) std::printf(", %zu not finite", report.non_finite);
+  if (report.duplicates > 0) std::printf(", %zu duplicates", report.duplicates);
+  std::printf("\nwithout normal  %zu\n", report.without_normal);
+  std::printf("segments        %zu regular, %zu connected, %zu isolated\n", report.regular_segments,
+              report.connected_segments, report.isolated_segments);
+  std::printf("neighbours      %d; spacing %.4g, noise %.2f spacings\n", report.k,
+              static_cast<double>(report.spacing), static_cast<double>(report.noise));
+  std::printf("components      %zu, oriented by method %s\n", report.components.size(),
+              toString(report.method));
+  for (std::size_t i = 0; i < report.components.size(); ++i) {
+    if (i == kComponentsShown && !verbose) {
+      std::printf("  and %zu more\n", report.components.size() - i);
+      break;
+    }
+    const ComponentOrientationResult& c = report.components[i];
+    std::printf("  %9zu points, outside by %s, confidence %.2f\n", c.points, toString(c.by),
+                static_cast<double>(c.confidence));
+  }
+  std::printf("seconds         %.2f:", report.seconds);
+  for (const StageTime& s : report.stages) std::printf("  %s %.2f", s.stage.c_str(), s.seconds);
+  std::printf("\npeak memory     %.0f MB\n", static_cast<double>(report.peak_memory) / 1048576.0);
+  std::printf("written         %s\n", out.c_str());
+}
+
+void addSegments(const OrientedCloud& cloud, JsonWriter& json) {
+  json.beginArray("segments");
+  for (std::size_t i = 0; i < cloud.segments.size(); ++i) {
+    const Segment& s = cloud.segmentation.segments[i];
+    const SegmentOrientationResult& r = cloud.segments[i];
+    json.beginItem();
+    json.field("label", i);
+    json.field("kind", kindName(s.kind));
+    json.field("points", s.size);
+    json.field("oriented_by", toString(r.by));
+    json.field("confidence", r.confidence);
+    json.field("component", r.component);
+    json.endObject();
+  }
+  json.endArray();
+}
+
+std::string reportText(const OrientedCloud& cloud) {
+  const PipelineReport& report = cloud.report;
+  JsonWriter json;
+  json.field("points", report.points);
+  json.field("non_finite", report.non_finite);
+  json.field("duplicates", report.duplicates);
+  json.field("without_normal", report.without_normal);
+  json.field("k", report.k);
+  json.field("normals", estimatorName(report.estimator));
+  json.field("method", toString(report.method));
+  json.field("spacing", report.spacing);
+  json.field("noise_in_spacings", report.noise);
+  json.beginObject("segments_by_kind");
+  json.field("regular", report.regular_segments);
+  json.field("connected", report.connected_segments);
+  json.field("isolated", report.isolated_segments);
+  json.field("hard", report.hard_segments);
+  json.endObject();
+  json.beginObject("seconds");
+  for (const StageTime& s : report.stages) json.field(s.stage, s.seconds);
+  json.field("total", report.seconds);
+  json.endObject();
+  json.field("peak_memory_bytes", report.peak_memory);
+  json.beginArray("components");
+  for (const ComponentOrientationResult& c : report.components) {
+    json.beginItem();
+    json.field("points", c.points);
+    json.field("oriented_by", toString(c.by));
+    json.field("sign", static_cast<int>(c.sign));
+    json.field("evidence", c.evidence);
+    json.field("confidence", c.confidence);
+    json.endObject();
+  }
+  json.endArray();
+  addSegments(cloud, json);
+  return json.finish();
+}
+
+void write(const CloudTable& table, const OrientedCloud& cloud, OutputFile& file) {
+  OutputCloud out(table);
+  addNormalColumns(cloud.normals, out);
+  const SegmentColumns segments(cloud.segmentation);
+  // Colours that the input has are worth more than ours; the label tells the segments.
+  if (table.find("rgb") == nullptr) segments.addColors(out);
+  segments.addLabels(out);
+  out.addRest(table);
+  writeCloud(out, file);
+}
+
+}  // namespace
+
+int runOrient(const std::vector<std::string>& words) {
+  CommandLine line(
+      "orient IN OUT [options]",
+      "Gives every point of IN a normal; the normals point outward where there is an\n"
+      "outside, and agree with each other where there is none. OUT (.pcd or .ply) has\n"
+      "the points of IN in the same order, with normals, curvature, segment labels and\n"
+      "colours, and all other fields of IN. Defaults need no tuning.",
+      "segorient orient scan.ply oriented.pcd --report report.json");
+  CommonOptions common;
+  StageOptions stages;
+  std::string report_path;
+  unsigned seed = 0;
+  line.arguments({"IN", "OUT"});
+  stages.addOrientation(line);
+  stages.addNormals(line);
+  stages.addSegmentation(line);
+  line.options()("seed", po::value(&seed)->default_value(0),
+                 "of random choices; no method makes any, so results do not depend on it")(
+      "report", po::value(&report_path), "what was done, as JSON");
+  common.add(line);
+  if (!line.parse(words)) return 0;
+  common.check();
+  PipelineOptions options;
+  stages.apply(line, common, options);
+  requireEnding(line.argument("OUT"), {".pcd", ".ply"});
+
+  OutputFile out(line.argument("OUT"));
+  std::optional<OutputFile> report;
+  if (!report_path.empty()) report.emplace(report_path);
+  const CloudTable table = readCloud(line.argument("IN"));
+  OrientedCloud cloud;
+  {
+    const LocalPoints points(table);
+    if (points.finite() == 0) {
+      throw FileError(line.argument("IN"), "has no point with finite coordinates");
+    }
+    ProgressBar bar(!common.quiet, table.size);
+    cloud = orientCloud(points.view(), nullptr, options,
+                        [&](const char* stage, double fraction) { bar.update(stage, fraction); });
+  }
+  write(table, cloud, out);
+  if (report) report->write(reportText(cloud));
+  out.commit();
+  if (report) report->commit();
+  if (!common.quiet) printSummary(cloud.report, out.path(), common.verbose);
+  return 0;
+}
+
+}  // namespace segorient::program

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the segorient authors
+#include "commands/commands.h"
+#include "io/output_file.h"
+#include "io/readers.h"
+#include "render/scene.h"
+#include "support/command_line.h"
+
+namespace segorient::program {
+namespace po = boost::program_options;
+
+int runRender(const std::vector<std::string>& words) {
+  CommandLine line(
+      "render IN OUT.png [options]",
+      "Draws a cloud as closed surfaces, from two opposite sides. Needs no screen.\n"
+      "Colours by normal: light where normals point to the viewer, red where they point\n"
+      "away, blue where there is none; on a closed object all should be light. A PLY\n"
+      "with faces is drawn as the mesh that it is.",
+      "segorient render oriented.pcd oriented.png --color normal");
+  View view;
+  std::string color;
+  bool single = false;
+  int threads = 0;
+  line.arguments({"IN", "OUT.png"});
+  line.options()("color", po::value(&color)->default_value("auto"),
+                 "auto, normal, segment (field label), rgb")(
+      "azimuth", po::value(&view.azimuth)->default_value(view.azimuth), "degrees about the z axis")(
+      "elevation", po::value(&view.elevation)->default_value(view.elevation),
+      "degrees above the horizon")("single", po::bool_switch(&single), "one side only")(
+      "width", po::value<std::size_t>(&view.width)->default_value(1600), "pixels")(
+      "height", po::value<std::size_t>(&view.height)->default_value(800), "pixels")(
+      "threads", po::value(&threads)->default_value(0), "threads; 0 = all cores");
+  if (!line.parse(words)) return 0;
+  require(view.width >= 2 && view.width <= 16384 && view.height >= 1 && view.height <= 16384,
+          "--width and --height must be 2 to 16384");
+  require(threads >= 0, "--threads must not be negative");
+  requireEnding(line.argument("OUT.png"), {".png"});
+
+  OutputFile out(line.argument("OUT.png"));
+  const std::string path = line.argument("IN");
+  const CloudTable table = readCloud(path);
+  const LocalPoints points(table);
+  if (points.finite() == 0) throw FileError(path, "has no point with finite coordinates");
+  const Coloring coloring = parseColoring(color, table, path);
+  writePng(drawViews(makeScene(table, points, coloring, threads), view, !single), out);
+  out.commit();
+  return 0;
+}
+
+}  // namespace segorient::program

@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the segorient authors
+#include <array>
+#include <cstdio>
+
+#include "commands/commands.h"
+#include "io/output_file.h"
+#include "io/readers.h"
+#include "support/command_line.h"
+#include "support/result_columns.h"
+#include "support/stage_options.h"
+#include "support/stages.h"
+
+namespace segorient::program {
+namespace {
+
+void printSummary(const Stages& stages, const std::string& path) {
+  std::array<std::size_t, 3> count{0, 0, 0};
+  std::array<std::size_t, 3> points{0, 0, 0};
+  for (const Segment& s : stages.compactSegmentation().segments) {
+    ++count[static_cast<std::size_t>(s.kind)];
+    points[static_cast<std::size_t>(s.kind)] += s.size;
+  }
+  std::printf("points     %zu, %zu not finite, %zu duplicates\n", stages.cloud().row_of.size(),
+              stages.nonFinite(), stages.duplicates());
+  for (const SegmentKind kind :
+       {SegmentKind::Regular, SegmentKind::Connected, SegmentKind::Isolated}) {
+    std::printf("%-10s %zu segments of %zu points\n", kindName(kind),
+                count[static_cast<std::size_t>(kind)], points[static_cast<std::size_t>(kind)]);
+  }
+  std::printf("seconds    %s\nwritten    %s\n", timesText(stages.times()).c_str(), path.c_str());
+}
+
+}  // namespace
+
+int runSegment(const std::vector<std::string>& words) {
+  CommandLine line(
+      "segment IN OUT [options]",
+      "Cuts IN into segments of similar normals. OUT (.pcd or .ply) has the points of\n"
+      "IN in the same order, with normals that agree within each segment, curvature,\n"
+      "colours, labels (largest segment first; 4294967295: in none) and segment_kind\n"
+      "(0 regular, 1 connected, 2 isolated), and all other fields of IN but its rgb.",
+      "segorient segment scan.ply segments.pcd --beta 25");
+  CommonOptions common;
+  StageOptions stage_options;
+  line.arguments({"IN", "OUT"});
+  stage_options.addNormals(line);
+  stage_options.addSegmentation(line);
+  common.add(line);
+  if (!line.parse(words)) return 0;
+  common.check();
+  PipelineOptions options;
+  stage_options.apply(line, common, options);
+  requireEnding(line.argument("OUT"), {".pcd", ".ply"});
+
+  OutputFile file(line.argument("OUT"));
+  const CloudTable table = readCloud(line.argument("IN"));
+  const LocalPoints points(table);
+  if (points.finite() == 0) {
+    throw FileError(line.argument("IN"), "has no point with finite coordinates");
+  }
+  Stages stages(points.view(), options, !common.quiet);
+  stages.findNormals();
+  stages.findSegments();
+  const Segmentation segmentation = stages.segmentation();
+  std::vector<float> normals = stages.normals();
+  for (std::size_t i = 0; i < table.size; ++i) {
+    for (std::size_t a = 0; a < 3 && segmentation.signs[i] < 0; ++a) normals[4 * i + a] *= -1.F;
+  }
+  OutputCloud out(table);
+  addNormalColumns(normals, out);
+  const SegmentColumns columns(segmentation);
+  columns.addColors(out);
+  columns.addLabels(out);
+  columns.addKinds(out);
+  out.addRest(table);
+  writeCloud(out, file);
+  file.commit();
+  if (!common.quiet) printSummary(stages, file.path());
+  return 0;
+}
+
+}  // namespace segorient::program

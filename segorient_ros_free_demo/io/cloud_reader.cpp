@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the segorient authors
+#include <algorithm>
+#include <cctype>
+
+#include "io/file_endings.h"
+#include "io/readers.h"
+
+namespace segorient::program {
+namespace {
+
+void checkCoordinates(const InputFile& file, const CloudTable& table) {
+  for (const Field* f : table.xyz()) {
+    if (f == nullptr) file.fail("has no fields x, y, z");
+    if (f->type != 'F' || f->count != 1) {
+      file.fail("field " + f->name + " is not a floating point number");
+    }
+  }
+}
+
+}  // namespace
+
+std::string fileEnding(const std::string& path) {
+  const std::size_t slash = path.find_last_of('/');
+  const std::size_t dot = path.find_last_of('.');
+  if (dot == std::string::npos || (slash != std::string::npos && dot < slash)) return {};
+  std::string ending = path.substr(dot);
+  std::transform(ending.begin(), ending.end(), ending.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return ending;
+}
+
+void allocateRows(const InputFile& file, CloudTable& table, std::uint64_t size,
+                  std::uint64_t least_bytes) {
+  // One byte more: the end of a text file's last line may be missing.
+  if (size > (file.remaining() + 1) / std::max<std::uint64_t>(1, least_bytes)) {
+    file.fail("is cut short: it is too small for its " + std::to_string(size) + " points");
+  }
+  table.size = static_cast<std::size_t>(size);
+  table.rows.resize(table.size * table.row_bytes);
+}
+
+CloudTable readCloud(const std::string& path) {
+  InputFile file(path);
+  const std::string ending = fileEnding(path);
+  CloudTable table;
+  if (ending == ".pcd") {
+    table = readPcd(file);
+  } else if (ending == ".ply") {
+    table = readPly(file);
+  } else if (ending == ".obj") {
+    table = readObj(file);
+  } else if (ending == ".xyz" || ending == ".txt" || ending == ".asc" || ending == ".csv" ||
+             ending == ".pts") {
+    table = readText(file);
+  } else {
+    file.fail(
+        "is of a kind not known by its ending (known: .pcd .ply .obj .xyz .txt .asc .csv .pts)");
+  }
+  checkCoordinates(file, table);
+  if (table.size == 0) file.fail("has no points");
+  return table;
+}
+
+}  // namespace segorient::program

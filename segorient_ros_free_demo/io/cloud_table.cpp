@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the segorient authors
+#include "io/cloud_table.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <limits>
+
+namespace segorient::program {
+namespace {
+
+template <typename T>
+double load(const std::uint8_t* data) {
+  T v;
+  std::memcpy(&v, data, sizeof(T));
+  return static_cast<double>(v);
+}
+
+// Whether rows can be read as three consecutive floats where they are.
+bool viewable(const CloudTable& table, const std::array<const Field*, 3>& xyz) {
+  const bool floats = std::all_of(xyz.begin(), xyz.end(),
+                                  [](const Field* f) { return f->type == 'F' && f->size == 4; });
+  return floats && xyz[1]->offset == xyz[0]->offset + 4 && xyz[2]->offset == xyz[0]->offset + 8 &&
+         table.row_bytes % sizeof(float) == 0 && xyz[0]->offset % sizeof(float) == 0;
+}
+
+}  // namespace
+
+double loadNumber(const std::uint8_t* data, char type, std::uint32_t size) {
+  if (type == 'F') return size == 8 ? load<double>(data) : load<float>(data);
+  const bool is_signed = type == 'I';
+  switch (size) {
+    case 1:
+      return is_signed ? load<std::int8_t>(data) : load<std::uint8_t>(data);
+    case 2:
+      return is_signed ? load<std::int16_t>(data) : load<std::uint16_t>(data);
+    case 4:
+      return is_signed ? load<std::int32_t>(data) : load<std::uint32_t>(data);
+    default:
+      return is_signed ? load<std::int64_t>(data) : load<std::uint64_t>(data);
+  }
+}
+
+void CloudTable::addField(std::string name, char type, std::uint32_t field_size,
+                          std::uint32_t count) {
+  fields.push_back({std::move(name), type, field_size, count, row_bytes});
+  row_bytes += fields.back().bytes();
+}
+
+const Field* CloudTable::find(const std::string& name) const {
+  const auto it =
+      std::find_if(fields.begin(), fields.end(), [&](const Field& f) { return f.name == name; });
+  return it == fields.end() ? nullptr : &*it;
+}
+
+double CloudTable::value(const Field& field, std::size_t row, std::uint32_t element) const {
+  return loadNumber(at(field, row) + std::size_t{element} * field.size, field.type, field.size);
+}
+
+std::array<double, 3> CloudTable::triple(const std::array<const Field*, 3>& columns,
+                                         std::size_t row) const {
+  return {value(*columns[0], row), value(*columns[1], row), value(*columns[2], row)};
+}
+
+bool CloudTable::hasNormals() const {
+  const auto n = normals();
+  return std::all_of(n.begin(), n.end(), [](const Field* f) { return f != nullptr; });
+}
+
+LocalPoints::LocalPoints(const CloudTable& table) {
+  const auto xyz = table.xyz();
+  constexpr double kMax = std::numeric_limits<double>::max();
+  std::array<double, 3> low{kMax, kMax, kMax};
+  std::array<double, 3> high{-kMax, -kMax, -kMax};
+  for (std::size_t i = 0; i < table.size; ++i) {
+    const auto p = table.triple(xyz, i);
+    if (!std::isfinite(p[0]) || !std::isfinite(p[1]) || !std::isfinite(p[2])) continue;
+    ++finite_;
+    for (std::size_t a = 0; a < 3; ++a) {
+      low[a] = std::min(low[a], p[a]);
+      high[a] = std::max(high[a], p[a]);
+    }
+  }
+  for (std::size_t a = 0; a < 3 && finite_ > 0; ++a) {
+    extent_ = std::max(extent_, high[a] - low[a]);
+    reach_ = std::max({reach_, std::abs(low[a]), std::abs(high[a])});
+  }
+  const bool move = reach_ > 2.0 * extent_;
+  for (std::size_t a = 0; a < 3 && move; ++a) origin_[a] = low[a] + 0.5 * (high[a] - low[a]);
+
+  view_.size = table.size;
+  if (table.size == 0) return;
+  if (!move && viewable(table, xyz)) {
+    view_.data = reinterpret_cast<const float*>(table.at(*xyz[0], 0));
+    view_.stride = table.row_bytes / sizeof(float);
+    return;
+  }
+  copy_.resize(3 * table.size);
+  for (std::size_t i = 0; i < table.size; ++i) {
+    const auto p = table.triple(xyz, i);
+    for (std::size_t a = 0; a < 3; ++a) copy_[3 * i + a] = static_cast<float>(p[a] - origin_[a]);
+  }
+  view_.data = copy_.data();
+  view_.stride = 3;
+}
+
+}  // namespace segorient::program

@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the segorient authors
+#pragma once
+
+#include <segorient/common/point_view.h>
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace segorient::program {
+
+/// One named column of a cloud, as in a PCD header.
+struct Field {
+  std::string name;
+  char type = 'F';          ///< F floating point, I signed, U unsigned
+  std::uint32_t size = 4;   ///< bytes of one element: 1, 2, 4 or 8
+  std::uint32_t count = 1;  ///< elements
+  std::size_t offset = 0;   ///< bytes from the beginning of a row
+
+  std::size_t bytes() const { return std::size_t{size} * count; }
+};
+
+/// Three vertices of a mesh's triangle.
+using Triangle = std::array<std::uint32_t, 3>;
+
+/// A cloud as it is in a file: all its fields, each in its own type, row by row without padding.
+///
+/// pcl::PCLPointCloud2 would do as well but for its 32-bit sizes, which end at 4 GB.
+struct CloudTable {
+  std::vector<Field> fields;
+  std::size_t size = 0;       ///< number of points
+  std::size_t row_bytes = 0;  ///< bytes of a row
+  std::size_t width = 0;
+  std::size_t height = 1;                                ///< above 1 in an organised cloud
+  std::array<double, 7> viewpoint{0, 0, 0, 1, 0, 0, 0};  ///< origin and quaternion, as in a PCD
+  std::vector<std::uint8_t> rows;
+  std::vector<Triangle> triangles;  ///< faces of a PLY, where it has any
+
+  /// Appends a field behind the others; only before rows are stored.
+  void addField(std::string name, char type, std::uint32_t field_size, std::uint32_t count = 1);
+  /// The field of this name, or null.
+  const Field* find(const std::string& name) const;
+  const std::uint8_t* at(const Field& field, std::size_t row) const {
+    return rows.data() + row * row_bytes + field.offset;
+  }
+  std::uint8_t* at(const Field& field, std::size_t row) {
+    return rows.data() + row * row_bytes + field.offset;
+  }
+  /// One element as a double.
+  double value(const Field& field, std::size_t row, std::uint32_t element = 0) const;
+  /// Three fields of one point as doubles.
+  std::array<double, 3> triple(const std::array<const Field*, 3>& columns, std::size_t row) const;
+  /// Where a point is.
+  std::array<double, 3> position(std::size_t row) const { return triple(xyz(), row); }
+  std::array<const Field*, 3> xyz() const { return {find("x"), find("y"), find("z")}; }
+  /// The fields normal_x, normal_y, normal_z; null where the cloud has none.
+  std::array<const Field*, 3> normals() const {
+    return {find("normal_x"), find("normal_y"), find("normal_z")};
+  }
+  bool hasNormals() const;
+};
+
+/// A number in memory as a double.
+double loadNumber(const std::uint8_t* data, char type, std::uint32_t size);
+
+/// Points of a table as floats near the origin.
+///
+/// Floats hold seven digits. Where a cloud lies further from the origin than twice its extent (map
+/// coordinates, say) it is moved, in double, so that they resolve 1e-7 of its extent; otherwise
+/// `origin` is zero and float fields are viewed in place, without a copy.
+class LocalPoints {
+ public:
+  explicit LocalPoints(const CloudTable& table);  ///< `table` must outlive this object
+
+  const PointView& view() const { return view_; }
+  const std::array<double, 3>& origin() const { return origin_; }
+  double extent() const { return extent_; }       ///< longest side of the bounding box
+  double reach() const { return reach_; }         ///< largest absolute coordinate
+  std::size_t finite() const { return finite_; }  ///< points without NaN or infinite coordinates
+
+ private:
+  std::vector<float> copy_;
+  PointView view_;
+  std::array<double, 3> origin_{0, 0, 0};
+  double extent_ = 0.0;
+  double reach_ = 0.0;
+  std::size_t finite_ = 0;
+};
+
+}  // namespace segorient::program

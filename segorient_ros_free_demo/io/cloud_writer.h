@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the segorient authors
+#pragma once
+
+#include "io/cloud_table.h"
+#include "io/output_file.h"
+
+#include <array>
+#include <string>
+#include <vector>
+
+namespace segorient::program {
+
+/// One column of a cloud to be written: a field, and where its values are. The memory is somebody
+/// else's.
+struct Column {
+  Field field;                         ///< name and type; its offset is not used
+  const std::uint8_t* data = nullptr;  ///< first row's value
+  std::size_t stride = 0;              ///< bytes from one row to the next
+};
+
+/// A cloud to be written: columns, in the order they shall have in the file.
+struct OutputCloud {
+  std::size_t size = 0;
+  std::size_t width = 0;
+  std::size_t height = 1;
+  std::array<double, 7> viewpoint{0, 0, 0, 1, 0, 0, 0};
+  std::vector<Column> columns;
+  const std::vector<Triangle>* triangles = nullptr;  ///< of a mesh; not kept in a PCD
+
+  /// As many points as `table`, and its fields x, y, z.
+  explicit OutputCloud(const CloudTable& table);
+  /// Appends the fields of `table` that are not there yet and not among `dropped`.
+  void addRest(const CloudTable& table, const std::vector<std::string>& dropped = {});
+  /// Appends a field of `table`.
+  void add(const CloudTable& table, const Field& field);
+  /// Appends a column of one float, unsigned int or byte a point; `stride` in values.
+  void add(const std::string& name, const float* values, std::size_t stride);
+  void add(const std::string& name, const std::uint32_t* values);
+  void add(const std::string& name, const std::uint8_t* values);
+  bool has(const std::string& name) const { return find(name) != nullptr; }
+  const Column* find(const std::string& name) const;
+};
+
+/// Binary PCD, fields as they are.
+void writePcd(const OutputCloud& cloud, OutputFile& file);
+/// Binary PLY, with faces if there are triangles: normals as nx ny nz, colours as red green blue.
+/// `label` is written a second time as `scalar_label`, the only kind of name that CloudCompare
+/// takes; no label is 4294967295 and -1.
+void writePly(const OutputCloud& cloud, OutputFile& file);
+
+/// Binary legacy VTK poly data: points, triangles (points as vertices where there are none),
+/// colours.
+void writeVtk(const OutputCloud& cloud, OutputFile& file);
+
+/// By the file's ending, .pcd, .ply or .vtk; does not commit.
+void writeCloud(const OutputCloud& cloud, OutputFile& file);
+
+}  // namespace segorient::program

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the segorient authors
+#pragma once
+
+#include <cstddef>
+#include <cstdio>
+#include <string>
+#include <string_view>
+
+namespace segorient::program {
+
+/// A file that is there whole or not at all: written under another name beside its place and moved
+/// there by commit(). Without commit(), on any error and on Ctrl-C, what was there before stays.
+///
+/// Every failure is a FileError that names the file. Construct it before the work whose result it
+/// is to hold, so that a place that cannot be written is known at once.
+class OutputFile {
+ public:
+  explicit OutputFile(std::string path);
+  ~OutputFile();
+  OutputFile(const OutputFile&) = delete;
+  OutputFile& operator=(const OutputFile&) = delete;
+
+  const std::string& path() const { return path_; }
+  void write(const void* data, std::size_t bytes);
+  void write(std::string_view text) { write(text.data(), text.size()); }
+  void commit();
+
+ private:
+  [[noreturn]] void fail(int error);
+
+  std::string path_;
+  std::string target_;     // path_, symbolic links resolved
+  std::string temporary_;  // empty once committed
+  std::FILE* file_ = nullptr;
+};
+
+/// Makes Ctrl-C and the like remove the temporary files of all OutputFiles before the program ends,
+/// and a full disk or a file size limit an error of write().
+void installSignalHandlers();
+
+}  // namespace segorient::program

@@ -1,0 +1,279 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the segorient authors
+#include <algorithm>
+#include <cstring>
+#include <map>
+
+#include "io/readers.h"
+#include "io/text_numbers.h"
+
+namespace segorient::program {
+namespace {
+
+struct PlyType {
+  char type = 'F';
+  std::uint32_t size = 4;
+};
+
+struct Property {
+  std::string name;
+  PlyType value;
+  bool is_list = false;
+  PlyType length;  // of a list's number of entries
+};
+
+struct Element {
+  std::string name;
+  std::uint64_t count = 0;
+  std::vector<Property> properties;
+
+  bool hasLists() const {
+    return std::any_of(properties.begin(), properties.end(),
+                       [](const Property& p) { return p.is_list; });
+  }
+  // Bytes that a row takes at least.
+  std::uint64_t leastBytes(bool ascii) const {
+    std::uint64_t bytes = 0;
+    for (const Property& p : properties) bytes += ascii ? 2 : (p.is_list ? p.length : p.value).size;
+    return bytes;
+  }
+};
+
+struct PlyHeader {
+  bool ascii = false;
+  bool swap = false;
+  std::vector<Element> elements;
+};
+
+PlyType plyType(const InputFile& file, std::string_view name) {
+  static const std::map<std::string_view, PlyType> kTypes{
+      {"char", {'I', 1}},  {"int8", {'I', 1}},    {"uchar", {'U', 1}},  {"uint8", {'U', 1}},
+      {"short", {'I', 2}}, {"int16", {'I', 2}},   {"ushort", {'U', 2}}, {"uint16", {'U', 2}},
+      {"int", {'I', 4}},   {"int32", {'I', 4}},   {"uint", {'U', 4}},   {"uint32", {'U', 4}},
+      {"float", {'F', 4}}, {"float32", {'F', 4}}, {"double", {'F', 8}}, {"float64", {'F', 8}}};
+  const auto it = kTypes.find(name);
+  if (it == kTypes.end()) file.failLine("'" + std::string(name) + "' is no type of a PLY property");
+  return it->second;
+}
+
+void readFormat(const InputFile& file, std::string_view line, PlyHeader& header) {
+  const std::string_view format = nextWord(line);
+  header.ascii = format == "ascii";
+  header.swap = format == "binary_big_endian";
+  if (!header.ascii && !header.swap && format != "binary_little_endian") {
+    file.failLine("'" + std::string(format) + "' is no format of PLY");
+  }
+}
+
+void readElement(const InputFile& file, std::string_view line, PlyHeader& header) {
+  Element element;
+  element.name = std::string(nextWord(line));
+  if (!parseNumber(nextWord(line), element.count))
+    file.failLine("the element's count is no number");
+  header.elements.push_back(std::move(element));
+}
+
+void readProperty(const InputFile& file, std::string_view line, PlyHeader& header) {
+  if (header.elements.empty()) file.failLine("is a property of no element");
+  Property p;
+  std::string_view word = nextWord(line);
+  p.is_list = word == "list";
+  if (p.is_list) {
+    p.length = plyType(file, nextWord(line));
+    if (p.length.type == 'F') file.failLine("a list's length is no whole number");
+    word = nextWord(line);
+  }
+  p.value = plyType(file, word);
+  p.name = std::string(nextWord(line));
+  if (p.name.empty()) file.failLine("the property has no name");
+  header.elements.back().properties.push_back(std::move(p));
+}
+
+PlyHeader readHeader(InputFile& file) {
+  PlyHeader header;
+  std::string_view line;
+  if (!file.line(line) || nextWord(line) != "ply") file.fail("is not a PLY file");
+  bool has_format = false;
+  for (;;) {
+    if (!file.line(line)) file.fail("is cut short: its header has no end");
+    const std::string_view key = nextWord(line);
+    if (key == "end_header") break;
+    if (key == "format") {
+      readFormat(file, line, header);
+      has_format = true;
+    } else if (key == "element") {
+      readElement(file, line, header);
+    } else if (key == "property") {
+      readProperty(file, line, header);
+    } else if (!key.empty() && key != "comment" && key != "obj_info") {
+      file.failLine("is not of a PLY header");
+    }
+  }
+  if (!has_format) file.fail("its header does not name a format");
+  return header;
+}
+
+// Values of a PLY's body one after another, text or binary.
+class Body {
+ public:
+  Body(InputFile& file, const PlyHeader& header) : file_(file), header_(header) {}
+
+  // Whether values are in the file as they are in memory.
+  bool isVerbatim() const { return !header_.ascii && !header_.swap; }
+  void beginRow() {
+    if (!header_.ascii) return;
+    do {
+      if (!file_.line(line_)) file_.fail("is cut short");
+    } while (line_.find_first_not_of(" \t") == std::string_view::npos);
+  }
+  void value(const PlyType& type, std::uint8_t* out) {
+    if (!header_.ascii) {
+      file_.read(out, type.size);
+      if (header_.swap) std::reverse(out, out + type.size);
+      return;
+    }
+    const std::string_view word = nextWord(line_);
+    if (word.empty()) file_.failLine("has fewer numbers than there are properties");
+    if (!storeNumber(word, type.type, type.size, out)) {
+      file_.failLine("'" + std::string(word) + "' is not a number of its property's type");
+    }
+  }
+  double number(const PlyType& type) {
+    std::array<std::uint8_t, 8> bytes{};
+    value(type, bytes.data());
+    return loadNumber(bytes.data(), type.type, type.size);
+  }
+  std::uint64_t length(const PlyType& type) {
+    const double n = number(type);
+    if (n < 0.0) file_.fail("has a list of negative length");
+    return static_cast<std::uint64_t>(n);
+  }
+
+ private:
+  InputFile& file_;
+  const PlyHeader& header_;
+  std::string_view line_;
+};
+
+void skipElement(Body& body, const Element& element) {
+  for (std::uint64_t row = 0; row < element.count; ++row) {
+    body.beginRow();
+    for (const Property& p : element.properties) {
+      const std::uint64_t n = p.is_list ? body.length(p.length) : 1;
+      for (std::uint64_t i = 0; i < n; ++i) body.number(p.value);
+    }
+  }
+}
+
+// Polygons as fans of triangles.
+void readFaces(InputFile& file, Body& body, const Element& element, CloudTable& table) {
+  for (std::uint64_t row = 0; row < element.count; ++row) {
+    body.beginRow();
+    for (const Property& p : element.properties) {
+      const std::uint64_t n = p.is_list ? body.length(p.length) : 1;
+      const bool corners = p.is_list && (p.name == "vertex_indices" || p.name == "vertex_index");
+      Triangle t{0, 0, 0};
+      for (std::uint64_t i = 0; i < n; ++i) {
+        const double v = body.number(p.value);
+        if (!corners) continue;
+        if (v < 0.0 || v >= static_cast<double>(table.size)) file.fail("a face has no such vertex");
+        const auto vertex = static_cast<std::uint32_t>(v);
+        if (i == 0) t[0] = vertex;
+        if (i >= 2) {
+          t[2] = vertex;
+          table.triangles.push_back(t);
+        }
+        t[1] = vertex;
+      }
+    }
+  }
+}
+
+std::string pclName(const std::string& name) {
+  if (name == "nx") return "normal_x";
+  if (name == "ny") return "normal_y";
+  if (name == "nz") return "normal_z";
+  return name;
+}
+
+// Where red, green and blue of 8 bits go: byte 2, 1, 0 of a packed rgb; -1 for any other property.
+int colourByte(const Property& p) {
+  if (p.value.type != 'U' || p.value.size != 1) return -1;
+  if (p.name == "red" || p.name == "diffuse_red") return 2;
+  if (p.name == "green" || p.name == "diffuse_green") return 1;
+  if (p.name == "blue" || p.name == "diffuse_blue") return 0;
+  return -1;
+}
+
+void readVertices(InputFile& file, Body& body, const Element& element, bool ascii,
+                  CloudTable& table) {
+  if (element.hasLists()) file.fail("its vertices have lists, which are not supported");
+  const auto& properties = element.properties;
+  const auto has = [&](const char* name) {
+    return std::any_of(properties.begin(), properties.end(),
+                       [&](const Property& p) { return p.name == name; });
+  };
+  // Where each property goes; npos: it is dropped.
+  std::vector<std::size_t> offsets;
+  const bool colours = std::count_if(properties.begin(), properties.end(),
+                                     [](const Property& p) { return colourByte(p) >= 0; }) == 3;
+  for (const Property& p : properties) {
+    const bool twin = p.name == "scalar_label" && has("label");  // written for CloudCompare
+    const int byte = colours ? colourByte(p) : -1;
+    if (byte >= 0) {
+      if (table.find("rgb") == nullptr) table.addField("rgb", 'F', 4);
+      offsets.push_back(table.find("rgb")->offset + static_cast<std::size_t>(byte));
+    } else if (twin) {
+      offsets.push_back(std::string::npos);
+    } else {
+      offsets.push_back(table.row_bytes);
+      table.addField(pclName(p.name), p.value.type, p.value.size);
+    }
+  }
+  allocateRows(file, table, element.count, element.leastBytes(ascii));
+  table.width = table.size;
+  if (body.isVerbatim() && table.row_bytes == element.leastBytes(false) &&
+      std::is_sorted(offsets.begin(), offsets.end())) {
+    file.read(table.rows.data(), table.rows.size());
+    return;
+  }
+  std::array<std::uint8_t, 8> ignored{};
+  for (std::size_t row = 0; row < table.size; ++row) {
+    body.beginRow();
+    std::uint8_t* to = table.rows.data() + row * table.row_bytes;
+    for (std::size_t i = 0; i < properties.size(); ++i) {
+      const bool dropped = offsets[i] == std::string::npos;
+      body.value(properties[i].value, dropped ? ignored.data() : to + offsets[i]);
+    }
+  }
+}
+
+}  // namespace
+
+CloudTable readPly(InputFile& file) {
+  const PlyHeader header = readHeader(file);
+  Body body(file, header);
+  CloudTable table;
+  bool has_vertices = false;
+  for (const Element& element : header.elements) {
+    const std::uint64_t least = element.leastBytes(header.ascii);
+    if (least == 0 && element.name != "vertex") continue;  // rows without properties take no bytes
+    if (element.count > (file.remaining() + 1) / std::max<std::uint64_t>(1, least)) {
+      file.fail("is cut short: it is too small for its " + std::to_string(element.count) + " " +
+                element.name + " rows");
+    }
+    if (element.name == "vertex") {
+      if (has_vertices) file.fail("has two elements of vertices");
+      has_vertices = true;
+      readVertices(file, body, element, header.ascii, table);
+    } else if (element.name == "face" && has_vertices) {
+      readFaces(file, body, element, table);
+    } else {
+      skipElement(body, element);
+    }
+  }
+  if (!has_vertices) file.fail("has no vertices");
+  return table;
+}
+
+}  // namespace segorient::program

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the segorient authors
+#pragma once
+
+#include "io/cloud_table.h"
+#include "io/input_file.h"
+
+#include <string>
+
+namespace segorient::program {
+
+// Readers of our own: PCL's crash on empty files and wrong counts, lose doubles in OBJ and text
+// files, and load a file without coordinates as if it had some. All of these throw FileError on
+// anything that is not whole, and never allocate more than the file's size can account for.
+
+/// PCD: ascii, binary, binary_compressed.
+CloudTable readPcd(InputFile& file);
+/// PLY: ascii, binary of both byte orders; elements other than vertex and face are skipped. nx, ny,
+/// nz become normal_x, normal_y, normal_z; red, green, blue become rgb.
+CloudTable readPly(InputFile& file);
+/// OBJ: the vertices.
+CloudTable readObj(InputFile& file);
+/// Text: a point a line, x y z first; a line of column names and comments (#, //) may come before.
+CloudTable readText(InputFile& file);
+
+/// A cloud by the file's ending (.pcd, .ply, .obj, .xyz, .txt, .asc, .csv, .pts), checked to have
+/// coordinates in floating point.
+CloudTable readCloud(const std::string& path);
+
+/// Bounds the memory that `size` rows of the table may take by what the file holds: throws if its
+/// remaining bytes cannot hold that many rows of at least `least_bytes`. Then allocates the rows.
+void allocateRows(const InputFile& file, CloudTable& table, std::uint64_t size,
+                  std::uint64_t least_bytes);
+
+}  // namespace segorient::program

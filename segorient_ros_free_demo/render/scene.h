@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the segorient authors
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "io/cloud_table.h"
+#include "render/rasterizer.h"
+
+namespace segorient::program {
+
+/// What the colours of a picture mean.
+enum class Coloring {
+  Normal,   ///< light grey where the normal points to the viewer, red where it points away
+  Segment,  ///< by the field `label`
+  Rgb       ///< by the field `rgb`
+};
+
+/// Reads a name of --color; "auto" takes Normal if the cloud has normals, else Segment or Rgb.
+/// Throws UsageError for another name, FileError if the cloud lacks what it needs.
+Coloring parseColoring(const std::string& name, const CloudTable& table, const std::string& path);
+
+/// The cloud's triangles if it has any, else its points as splats: as wide as the points around are
+/// apart, so that surfaces look closed, and cut where a sharp edge is, so that they do not stick
+/// out.
+Scene makeScene(const CloudTable& table, const LocalPoints& points, Coloring coloring, int threads);
+
+/// The scene from one direction and, if `both`, beside it from the opposite one.
+Picture drawViews(const Scene& scene, const View& view, bool both);
+
+}  // namespace segorient::program

@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the segorient authors
+#include "support/command_line.h"
+
+#include <algorithm>
+#include <iostream>
+
+#include "io/file_endings.h"
+
+namespace segorient::program {
+namespace po = boost::program_options;
+
+CommandLine::CommandLine(std::string usage, std::string purpose, std::string example)
+    : usage_(std::move(usage)), purpose_(std::move(purpose)), example_(std::move(example)) {
+  options()("help,h", "this text");
+}
+
+void CommandLine::arguments(std::vector<std::string> names, std::size_t optional) {
+  arguments_ = std::move(names);
+  optional_ = optional;
+}
+
+bool CommandLine::parse(const std::vector<std::string>& words) {
+  if (std::any_of(words.begin(), words.end(),
+                  [](const std::string& w) { return w == "--help" || w == "-h"; })) {
+    std::cout << "Usage: segorient " << usage_ << "\n\n"
+              << purpose_ << "\n\n"
+              << options_ << "\nExample:\n  " << example_ << "\n";
+    return false;
+  }
+  po::options_description all = options_;
+  po::positional_options_description positions;
+  for (const std::string& name : arguments_) {
+    all.add_options()(name.c_str(), po::value<std::string>());
+    positions.add(name.c_str(), 1);
+  }
+  // No guessing: an abbreviation that works today would break when an option is added.
+  const int style = po::command_line_style::unix_style & ~po::command_line_style::allow_guessing;
+  try {
+    po::store(po::command_line_parser(words).options(all).positional(positions).style(style).run(),
+              values_);
+    po::notify(values_);
+  } catch (const po::error& e) {
+    throw UsageError(e.what());
+  }
+  for (std::size_t i = 0; i + optional_ < arguments_.size(); ++i) {
+    require(has(arguments_[i]), arguments_[i] + " is missing: segorient " + usage_);
+  }
+  return true;
+}
+
+std::string CommandLine::argument(const std::string& name) const {
+  return has(name) ? get<std::string>(name) : std::string();
+}
+
+void require(bool condition, const std::string& text) {
+  if (!condition) throw UsageError(text);
+}
+
+void requireEnding(const std::string& path, const std::vector<std::string>& endings) {
+  std::string known;
+  for (const std::string& e : endings) known += " " + e;
+  require(std::find(endings.begin(), endings.end(), fileEnding(path)) != endings.end(),
+          path + ": an output file must end in one of" + known);
+}
+
+void CommonOptions::add(CommandLine& line) {
+  line.options()("threads", po::value(&threads)->default_value(0), "threads; 0 = all cores")(
+      "quiet,q", po::bool_switch(&quiet), "no summary and no progress")(
+      "verbose,v", po::bool_switch(&verbose), "a summary of every detail");
+}
+
+void CommonOptions::check() const {
+  require(threads >= 0, "--threads must not be negative");
+}
+
+}  // namespace segorient::program

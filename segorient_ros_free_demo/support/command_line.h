@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the segorient authors
+#pragma once
+
+#include <boost/program_options.hpp>
+#include <string>
+#include <vector>
+
+#include "io/errors.h"
+
+namespace segorient::program {
+
+/// Options of one command, read with Boost.Program_options.
+class CommandLine {
+ public:
+  /// \param usage "orient IN OUT [options]"
+  /// \param purpose what the command does, one or more lines
+  /// \param example a whole command line
+  CommandLine(std::string usage, std::string purpose, std::string example);
+
+  /// For the command's own options: `options ()("name", value, "text")`.
+  boost::program_options::options_description_easy_init options() { return options_.add_options(); }
+  /// Names of the arguments that are no options, in order; the last `optional` of them may be
+  /// missing.
+  void arguments(std::vector<std::string> names, std::size_t optional = 0);
+
+  /// False if help was asked for, which is then printed. Throws UsageError.
+  bool parse(const std::vector<std::string>& words);
+
+  bool has(const std::string& name) const { return values_.count(name) > 0; }
+  /// Whether the option was given rather than left at its default.
+  bool given(const std::string& name) const { return has(name) && !values_[name].defaulted(); }
+  template <typename T>
+  const T& get(const std::string& name) const {
+    return values_[name].as<T>();
+  }
+  /// The argument of this name, empty if it is missing.
+  std::string argument(const std::string& name) const;
+
+ private:
+  std::string usage_;
+  std::string purpose_;
+  std::string example_;
+  boost::program_options::options_description options_{"Options"};
+  std::vector<std::string> arguments_;
+  std::size_t optional_ = 0;
+  boost::program_options::variables_map values_;
+};
+
+/// Throws a UsageError with this text unless the condition holds.
+void require(bool condition, const std::string& text);
+/// Throws a UsageError unless the ending of an output file is one of these.
+void requireEnding(const std::string& path, const std::vector<std::string>& endings);
+
+/// What most commands take.
+struct CommonOptions {
+  int threads = 0;       ///< 0 = all cores
+  bool quiet = false;    ///< no summary, no progress
+  bool verbose = false;  ///< more of both
+
+  void add(CommandLine& line);
+  void check() const;
+};
+
+}  // namespace segorient::program

@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the segorient authors
+#include <gtest/gtest.h>
+#include <sys/resource.h>
+#include <sys/stat.h>
+
+#include <csignal>
+
+#include "io/errors.h"
+#include "io/output_file.h"
+#include "scratch_directory.h"
+
+namespace segorient::test {
+namespace {
+
+using program::FileError;
+using program::OutputFile;
+
+TEST(OutputFile, IsThereWholeOrNotAtAll) {
+  const ScratchDirectory directory;
+  const std::string path = directory.write("out.pcd", "before");
+  {
+    OutputFile file(path);
+    file.write("half");
+    EXPECT_EQ(directory.entries(), 2U);
+  }
+  EXPECT_EQ(readFile(path), "before");
+  EXPECT_EQ(directory.entries(), 1U);
+  OutputFile file(path);
+  file.write("after");
+  EXPECT_EQ(readFile(path), "before");
+  file.commit();
+  EXPECT_EQ(readFile(path), "after");
+  EXPECT_EQ(directory.entries(), 1U);
+}
+
+TEST(OutputFile, KeepsLinksAndPermissions) {
+  const ScratchDirectory directory;
+  const std::string path = directory.write("out.pcd", "before");
+  std::filesystem::create_symlink(path, directory.file("link.pcd"));
+  chmod(path.c_str(), 0640);
+  OutputFile file(directory.file("link.pcd"));
+  file.write("after");
+  file.commit();
+  EXPECT_TRUE(std::filesystem::is_symlink(directory.file("link.pcd")));
+  EXPECT_EQ(readFile(path), "after");
+  struct stat info {};
+  stat(path.c_str(), &info);
+  EXPECT_EQ(info.st_mode & 0777, 0640U);
+}
+
+TEST(OutputFile, SaysAtOnceWhatCannotBeWritten) {
+  const ScratchDirectory directory;
+  EXPECT_THROW(OutputFile(directory.file("no/such/out.pcd")), FileError);
+  EXPECT_THROW(OutputFile(directory.file("")), FileError);
+  EXPECT_THROW(OutputFile("/dev/null"), FileError);
+  EXPECT_THROW(OutputFile(""), FileError);
+}
+
+// Ends the process: 0 if the limit, which stands for a full disk, was a FileError.
+[[noreturn]] void writeTooMuch(const std::string& path) {
+  program::installSignalHandlers();
+  const rlimit limit{1 << 16, 1 << 16};
+  setrlimit(RLIMIT_FSIZE, &limit);
+  try {
+    OutputFile file(path);
+    file.write(std::string(1 << 18, 'x'));
+    file.commit();
+  } catch (const FileError&) {
+    std::_Exit(0);
+  }
+  std::_Exit(1);
+}
+
+TEST(OutputFile, AFullDiskIsAnErrorAndLeavesWhatWasThere) {
+  const ScratchDirectory directory;
+  const std::string path = directory.write("out.pcd", "before");
+  EXPECT_EXIT(writeTooMuch(path), testing::ExitedWithCode(0), "");
+  EXPECT_EQ(readFile(path), "before");
+}
+
+void interruptTwoFiles(const std::string& path, const std::string& other) {
+  program::installSignalHandlers();
+  OutputFile file(path);
+  OutputFile report(other);
+  file.write("half");
+  std::raise(SIGINT);
+}
+
+TEST(OutputFile, ASignalLeavesNoHalfFile) {
+  const ScratchDirectory directory;
+  EXPECT_EXIT(interruptTwoFiles(directory.file("out.pcd"), directory.file("report.json")),
+              testing::KilledBySignal(SIGINT), "");
+  EXPECT_EQ(directory.entries(), 0U);
+}
+
+}  // namespace
+}  // namespace segorient::test

@@ -1,0 +1,132 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the segorient authors
+// Pictures must show a wrong patch, and must not show one where there is none.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+#include <sstream>
+
+#include "io/readers.h"
+#include "render/scene.h"
+#include "scratch_directory.h"
+#include "support/colors.h"
+
+namespace segorient::test {
+namespace {
+
+using program::CloudTable;
+using program::Picture;
+
+// Points of the unit sphere; normals of those above `cap` point inward.
+CloudTable sphere(const ScratchDirectory& directory, double cap) {
+  std::mt19937 random(3);
+  std::normal_distribution<double> gauss;
+  std::ostringstream text;
+  text.precision(9);
+  for (int i = 0; i < 20000; ++i) {
+    double p[3] = {gauss(random), gauss(random), gauss(random)};
+    const double length = std::hypot(p[0], p[1], p[2]);
+    for (double& v : p) v /= length;
+    const double sign = p[2] > cap ? -1.0 : 1.0;
+    text << p[0] << ' ' << p[1] << ' ' << p[2] << ' ' << sign * p[0] << ' ' << sign * p[1] << ' '
+         << sign * p[2] << '\n';
+  }
+  return program::readCloud(directory.write("sphere.xyz", text.str()));
+}
+
+// Shares of the drawn pixels that are red, and of all pixels that are drawn.
+struct Shares {
+  double red = 0.0;
+  double drawn = 0.0;
+};
+
+Shares shares(const Picture& picture) {
+  std::size_t red = 0;
+  std::size_t drawn = 0;
+  const std::size_t size = picture.width * picture.height;
+  for (std::size_t i = 0; i < size; ++i) {
+    const std::uint8_t* p = picture.rgb.data() + 3 * i;
+    if (p[0] == 255 && p[1] == 255 && p[2] == 255) continue;
+    ++drawn;
+    if (p[0] > 2 * p[1]) ++red;
+  }
+  return {static_cast<double>(red) / static_cast<double>(drawn),
+          static_cast<double>(drawn) / static_cast<double>(size)};
+}
+
+Shares draw(const CloudTable& table, double elevation) {
+  const program::LocalPoints points(table);
+  program::View view;
+  view.width = view.height = 400;
+  view.elevation = elevation;
+  return shares(
+      program::drawScene(program::makeScene(table, points, program::Coloring::Normal, 1), view));
+}
+
+TEST(Rasterizer, AnOutwardSphereIsAFullDiscWithoutRed) {
+  const ScratchDirectory directory;
+  const CloudTable table = sphere(directory, 2.0);
+  const Shares s = draw(table, 25.0);
+  // A circle in a square with 4 % margins.
+  EXPECT_NEAR(s.drawn, 0.25 * M_PI * 0.92 * 0.92, 0.02);
+  EXPECT_LT(s.red, 0.005);
+}
+
+TEST(Rasterizer, AWrongPatchIsRedFromItsSideAndHiddenFromTheOther) {
+  const ScratchDirectory directory;
+  const CloudTable table =
+      sphere(directory, 0.8);  // a cap of radius 0.6: 36 % of the disc seen above
+  EXPECT_NEAR(draw(table, 90.0).red, 0.36, 0.03);
+  EXPECT_LT(draw(table, -90.0).red, 0.005);
+}
+
+TEST(Rasterizer, AMeshShowsItsFrontAndItsBack) {
+  const ScratchDirectory directory;
+  // In the plane x = 0, its front towards +x.
+  const CloudTable table = program::readCloud(directory.write(
+      "triangle.ply",
+      "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\n"
+      "property float z\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n"
+      "0 0 0\n0 1 0\n0 0 1\n3 0 1 2\n"));
+  const program::LocalPoints points(table);
+  const program::Scene scene = program::makeScene(table, points, program::Coloring::Normal, 1);
+  program::View view;
+  view.elevation = 0.0;
+  view.azimuth = 0.0;
+  EXPECT_EQ(shares(program::drawScene(scene, view)).red, 0.0);
+  view.azimuth = 180.0;
+  const Shares behind = shares(program::drawScene(scene, view));
+  EXPECT_NEAR(behind.drawn, 0.5 * 0.92 * 0.92, 0.02);
+  EXPECT_GT(behind.red, 0.95);
+}
+
+TEST(Rasterizer, EveryDegenerateCloudGivesAPicture) {
+  const ScratchDirectory directory;
+  for (const std::string text :
+       {"0 0 0\n", "1 1 1\n1 1 1\n", "0 0 0\n1e30 0 0\n", "0 0 0\n1e-40 0 0\n",
+        "nan 0 0\n0 0 0\n1 0 inf\n", "0 0 0 0 0 0\n1 0 0 0 0 0\n"}) {
+    const CloudTable table = program::readCloud(directory.write("a.xyz", text));
+    const program::LocalPoints points(table);
+    const Picture picture = program::drawViews(
+        program::makeScene(table, points, program::Coloring::Rgb, 1), program::View{}, true);
+    EXPECT_EQ(picture.width, 800U) << text;
+  }
+}
+
+TEST(Colors, SegmentsNextInNumberAreFarApart) {
+  EXPECT_EQ(program::segmentColor(program::kNoSegment), 0x909090U);
+  for (std::uint32_t label = 0; label < 500; ++label) {
+    for (std::uint32_t other = label + 1; other < label + 6; ++other) {
+      int difference = 0;
+      for (const unsigned shift : {0U, 8U, 16U}) {
+        difference += std::abs(static_cast<int>(program::segmentColor(label) >> shift & 255U) -
+                               static_cast<int>(program::segmentColor(other) >> shift & 255U));
+      }
+      EXPECT_GT(difference, 60) << label << " and " << other;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace segorient::test

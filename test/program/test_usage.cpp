@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the segorient authors
+// Words on the command line, help, exit statuses, and what is left when something goes wrong.
+#include <gtest/gtest.h>
+
+#include "run_program.h"
+
+namespace segorient::test {
+namespace {
+
+const std::vector<std::string> kCommands{"orient", "normals", "segment", "evaluate", "render"};
+
+TEST(Usage, HelpOfTheProgramAndOfEveryCommand) {
+  const Run help = runProgram({"--help"});
+  EXPECT_EQ(help.status, 0);
+  for (const std::string& command : kCommands) {
+    EXPECT_NE(help.out.find("\n  " + command + " "), std::string::npos) << command;
+    const Run own = runProgram({command, "--help"});
+    EXPECT_EQ(own.status, 0) << command;
+    EXPECT_NE(own.out.find("Usage: segorient " + command), std::string::npos) << command;
+    EXPECT_NE(own.out.find("Example:\n  segorient " + command), std::string::npos) << command;
+    EXPECT_TRUE(own.err.empty()) << command;
+  }
+  EXPECT_EQ(runProgram({"--version"}).out, "segorient 1.0.0\n");
+}
+
+TEST(Usage, WrongUsageIsStatus2AndOneLine) {
+  const ScratchDirectory directory;
+  const std::string out = directory.file("out.pcd");
+  EXPECT_EQ(runProgram({}).status, 2);
+  const std::vector<std::vector<std::string>> wrong{
+      {"polish"},
+      {"orient"},
+      {"orient", fandisk()},
+      {"orient", fandisk(), out, "extra"},
+      {"orient", fandisk(), directory.file("out.las")},
+      {"orient", fandisk(), directory.file("out")},
+      {"orient", fandisk(), out, "--metho", "auto"},
+      {"orient", fandisk(), out, "--method", "best"},
+      {"orient", fandisk(), out, "--normals", "fft"},
+      {"orient", fandisk(), out, "-k", "0"},
+      {"orient", fandisk(), out, "-k", "many"},
+      {"orient", fandisk(), out, "--alpha", "-5"},
+      {"orient", fandisk(), out, "--beta", "nan"},
+      {"orient", fandisk(), out, "--threads", "-1"},
+      {"orient", fandisk(), out, "--report"},
+      {"normals", fandisk(), directory.file("out.vtk")},
+      {"render", fandisk(), directory.file("out.jpg")},
+      {"render", fandisk(), directory.file("out.png"), "--width", "0"},
+      {"render", fandisk(), directory.file("out.png"), "--color", "taste"},
+      {"evaluate", fandisk()}};
+  for (const auto& words : wrong) {
+    std::string line;
+    for (const std::string& word : words) line += word + " ";
+    SCOPED_TRACE(line);
+    const Run run = runProgram(words);
+    EXPECT_EQ(run.status, 2);
+    EXPECT_TRUE(isOneLine(run.err)) << run.err;
+    EXPECT_TRUE(run.out.empty());
+  }
+  EXPECT_EQ(directory.entries(), 0U);
+}
+
+TEST(Usage, OutputThatCannotBeWrittenIsStatus1) {
+  const ScratchDirectory directory;
+  std::filesystem::create_directory(directory.file("taken.pcd"));
+  for (const std::string out : {"missing/out.pcd", "taken.pcd"}) {
+    const Run run = runProgram({"orient", fandisk(), directory.file(out)});
+    EXPECT_EQ(run.status, 1) << out;
+    EXPECT_TRUE(isOneLine(run.err)) << run.err;
+    EXPECT_NE(run.err.find(out), std::string::npos) << run.err;
+  }
+  const Run report = runProgram({"orient", fandisk(), directory.file("out.pcd"), "--report",
+                                 directory.file("missing/report.json")});
+  EXPECT_EQ(report.status, 1);
+  EXPECT_FALSE(std::filesystem::exists(directory.file("out.pcd")));
+}
+
+TEST(Usage, AFailedRunLeavesThePreviousOutput) {
+  const ScratchDirectory directory;
+  const std::string out = directory.write("out.pcd", "precious");
+  const std::string bad = directory.write("bad.pcd", "FIELDS x y z\nSIZE 4 4 4\n");
+  EXPECT_EQ(runProgram({"orient", bad, out}).status, 1);
+  EXPECT_EQ(readFile(out), "precious");
+  EXPECT_EQ(directory.entries(), 2U);
+}
+
+TEST(Usage, InputAndOutputMayBeTheSameFile) {
+  const ScratchDirectory directory;
+  const std::string both = directory.write("both.pcd", readFile(fandisk()));
+  ASSERT_EQ(runProgram({"orient", both, both, "--quiet"}).status, 0);
+  const Run run = runProgram({"evaluate", fandisk(), both});
+  EXPECT_EQ(run.status, 0) << run.err;
+}
+
+}  // namespace
+}  // namespace segorient::test
