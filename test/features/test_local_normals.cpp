@@ -191,7 +191,10 @@ TEST_P(AnyEstimator, UnevenRows) {
   for (std::size_t i = 0; i < normals.size(); ++i) ASSERT_EQ(normals[i], expected[i]) << i;
 }
 
-INSTANTIATE_TEST_SUITE_P(Estimators, AnyEstimator, testing::Values(NormalEstimator::Plane));
+INSTANTIATE_TEST_SUITE_P(Estimators, AnyEstimator,
+                         testing::Values(NormalEstimator::Plane, NormalEstimator::LCT,
+                                         NormalEstimator::LDT, NormalEstimator::AwASQuadratic,
+                                         NormalEstimator::AwASCubic));
 
 }  // namespace
 }  // namespace segorient::test

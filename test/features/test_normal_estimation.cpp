@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 #include <pcl/features/normal_3d_omp.h>
 #include <pcl/search/kdtree.h>
+#include <segorient/features/awas_normal_estimation.h>
 #include <segorient/features/lct_normal_estimation.h>
 #include <segorient/features/ldt_normal_estimation.h>
 #include <segorient/features/plane_normal_estimation.h>
@@ -204,9 +205,58 @@ TEST(PlaneNormalEstimation, DuplicatesDoNotFillNeighborhoods) {
   }
 }
 
+TEST(AwASNormalEstimation, SettersAndCurvatures) {
+  AwASNormalEstimation<pcl::PointXYZ, pcl::Normal> estimation;
+  EXPECT_EQ(estimation.getDegree(), 2);
+  EXPECT_EQ(estimation.getFirstGuess(), NormalEstimator::Plane);
+  const Sample ball = sphere(3000, 1);
+  estimation.setInputCloud(Cloud(ball.points).makeShared());
+  estimation.setKSearch(20);
+  estimation.setDegree(3);
+  estimation.setFirstGuess(NormalEstimator::LCT);
+  estimation.setNumberOfThreads(2);
+  EXPECT_EQ(estimation.getDegree(), 3);
+  EXPECT_EQ(estimation.getFirstGuess(), NormalEstimator::LCT);
+  EXPECT_EQ(estimation.getNumberOfThreads(), 2U);
+  const Normals cubic = computed(estimation);
+  estimation.setDegree(2);
+  const Normals quadratic = computed(estimation);
+  double errors[2] = {0, 0};
+  for (std::size_t i = 0; i < ball.normals.size(); ++i) {
+    errors[0] += angleBetween(ball.normals[i], quadratic[i].normal);
+    errors[1] += angleBetween(ball.normals[i], cubic[i].normal);
+  }
+  EXPECT_LT(errors[0], 3000 * 0.1 * kDegree);
+  EXPECT_LT(errors[1], 3000 * 0.1 * kDegree);
+  EXPECT_NE(errors[0], errors[1]);
+
+  pcl::PointCloud<pcl::PrincipalCurvatures> curvatures;
+  estimation.getPrincipalCurvatures(curvatures);
+  EXPECT_TRUE(curvatures.empty());
+  estimation.setComputePrincipalCurvatures(true);
+  estimation.setViewPoint(0, 0, 0);  // in the sphere's centre: normals inward
+  computed(estimation);
+  estimation.getPrincipalCurvatures(curvatures);
+  ASSERT_EQ(curvatures.size(), ball.normals.size());
+  for (const auto& c : curvatures) {
+    ASSERT_NEAR(c.pc1, 1.F, 0.15F);
+    ASSERT_NEAR(c.pc2, 1.F, 0.15F);
+  }
+  estimation.setViewPoint(100, 0, 0);
+  computed(estimation);
+  estimation.getPrincipalCurvatures(curvatures);
+  for (std::size_t i = 0; i < curvatures.size(); ++i) {
+    if (std::abs(ball.normals[i].x()) < 0.1F) continue;
+    ASSERT_NEAR(curvatures[i].pc1, ball.normals[i].x() > 0.F ? -1.F : 1.F, 0.15F);
+  }
+}
+
 template <typename T>
 class BadInput : public testing::Test {};
-using Estimations = testing::Types<PlaneNormalEstimation<pcl::PointXYZ, pcl::Normal>>;
+using Estimations = testing::Types<PlaneNormalEstimation<pcl::PointXYZ, pcl::Normal>,
+                                   LCTNormalEstimation<pcl::PointXYZ, pcl::Normal>,
+                                   LDTNormalEstimation<pcl::PointXYZ, pcl::Normal>,
+                                   AwASNormalEstimation<pcl::PointXYZ, pcl::Normal>>;
 TYPED_TEST_SUITE(BadInput, Estimations);
 
 TYPED_TEST(BadInput, GivesAnEmptyOrUndefinedResult) {

@@ -120,3 +120,15 @@ inline Lanes3 select(Mask condition, const Lanes3& yes, const Lanes3& no) {
 inline Lanes3 unit(const Lanes3& a) {
   return scaled(a, all(1.0F) / squareRoot(dot(a, a)));
 }
+
+/// Orthonormal vectors that with n are a right-handed frame (Duff et al., Building an orthonormal
+/// basis, revisited, JCGT 2017).
+struct Frame {
+  Lanes3 u, v, n;
+};
+inline Frame frameOf(const Lanes3& n) {
+  const Lanes sign = select(n.z < 0.0F, all(-1.0F), all(1.0F));
+  const Lanes a = -1.0F / (sign + n.z);
+  const Lanes b = n.x * n.y * a;
+  return {{1.0F + sign * n.x * n.x * a, sign * b, -sign * n.x}, {b, sign + n.y * n.y * a, -n.y}, n};
+}

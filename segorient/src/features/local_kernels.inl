@@ -5,6 +5,8 @@
 
 #include "lanes.inl"
 #include "plane_lanes.inl"
+#include "surface_lanes.inl"
+#include "triangulation_lanes.inl"
 
 inline void storeNormals(const LocalFitJob& job, const Batch& batch, std::size_t used,
                          const Lanes3& normal, Lanes curvature) {
@@ -14,13 +16,61 @@ inline void storeNormals(const LocalFitJob& job, const Batch& batch, std::size_t
   }
 }
 
+/// Normals from the surfaces, and what depends on single points: cubic surfaces and curvatures.
+inline Lanes3 surfaceNormals(const LocalFitJob& job, const Batch& batch, std::size_t used,
+                             const Plane& plane, const Lanes3& guess) {
+  const Frame frame = frameOf(guess);
+  const Quadratic q = fitQuadratics(batch, plane, frame);
+  const Lanes3 fitted = unit({frame.n.x - q.c[1] * frame.u.x - q.c[2] * frame.v.x,
+                              frame.n.y - q.c[1] * frame.u.y - q.c[2] * frame.v.y,
+                              frame.n.z - q.c[1] * frame.u.z - q.c[2] * frame.v.z});
+  Lanes3 normal = select(q.valid, fitted, guess);
+  const bool cubic = job.estimator == NormalEstimator::AwASCubic;
+  if (!cubic && !job.curvatures) return normal;
+  for (std::size_t l = 0; l < used; ++l) {
+    SurfaceFit fit;
+    fit.valid = q.valid[l] != 0;
+    fit.size = static_cast<double>(plane.size[l]) * batch.unit[l];
+    for (std::size_t i = 0; i < 6; ++i) fit.c[i] = static_cast<double>(q.c[i][l]);
+    const Lanes3* axes[3] = {&frame.u, &frame.v, &frame.n};
+    for (std::size_t a = 0; a < 3; ++a) {
+      fit.axes[a][0] = static_cast<double>(axes[a]->x[l]);
+      fit.axes[a][1] = static_cast<double>(axes[a]->y[l]);
+      fit.axes[a][2] = static_cast<double>(axes[a]->z[l]);
+    }
+    if (cubic && fit.valid && fitCubic(job, batch.rows[l], fit)) {
+      float n[3];
+      fit.normal(n);
+      normal.x[l] = n[0];
+      normal.y[l] = n[1];
+      normal.z[l] = n[2];
+    }
+    if (job.curvatures) job.curvatures[batch.rows[l]] = fit.curvature();
+  }
+  return normal;
+}
+
 /// Rows [begin, end) of the job.
 void estimateRows(const LocalFitJob& job, std::size_t begin, std::size_t end) {
-  Batch batch(static_cast<std::size_t>(job.entries));
+  const bool surface = job.estimator == NormalEstimator::AwASQuadratic ||
+                       job.estimator == NormalEstimator::AwASCubic;
+  const NormalEstimator first = surface ? job.first_guess : job.estimator;
+  const auto entries = static_cast<std::size_t>(job.entries);
+  Batch batch(entries, first == NormalEstimator::LCT);
+  SortingNetwork network;
+  std::vector<float> scratch(first == NormalEstimator::Plane ? 0 : 3 * entries * kWidth);
   for (std::size_t i = begin; i < end; i += kWidth) {
     loadBatch(job, i, end, batch);
     const std::size_t used = end - i < kWidth ? end - i : kWidth;
     const Plane plane = fitPlanes(job, batch);
-    storeNormals(job, batch, used, plane.normal, plane.curvature);
+    Lanes3 normal = plane.normal;
+    if (first == NormalEstimator::LCT) normal = fanNormals(batch, plane, network, scratch.data());
+    if (first == NormalEstimator::LDT) normal = starNormals(batch, plane, scratch.data());
+    if (surface) normal = surfaceNormals(job, batch, used, plane, normal);
+    storeNormals(job, batch, used, normal, plane.curvature);
+    if (job.curvatures && !surface) {
+      for (std::size_t l = 0; l < used; ++l)
+        job.curvatures[batch.rows[l]] = SurfaceFit().curvature();
+    }
   }
 }

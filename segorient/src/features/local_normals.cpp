@@ -4,6 +4,7 @@
 #include <segorient/features/local_normals.h>
 
 #include "local_fit_job.h"
+#include "surface_fit.h"
 
 #if defined(__SSE2__)
 #include <immintrin.h>

@@ -6,7 +6,9 @@
 /// Some points' neighbours as offsets from them: entry j of lane l at [j * kWidth + l]. Entries
 /// beyond a lane's own count are zero, so they add nothing to any sum.
 struct Batch {
-  explicit Batch(std::size_t entries) : capacity(entries), buffer(3 * entries * kWidth) {
+  /// \param vectors whether each offset is also kept as four floats, for access by lane and entry
+  Batch(std::size_t entries, bool vectors)
+      : buffer(3 * entries * kWidth), vector_buffer(vectors ? 4 * entries * kWidth : 0) {
     x = buffer.data();
     y = x + entries * kWidth;
     z = y + entries * kWidth;
@@ -21,16 +23,20 @@ struct Batch {
     store(y + at, d.y);
     store(z + at, d.z);
   }
+  float* vector(std::size_t j, std::size_t lane) {
+    return vector_buffer.data() + 4 * (j * kWidth + lane);
+  }
 
-  std::size_t capacity;
   std::vector<float> buffer;
+  std::vector<float> vector_buffer;
   float* x;
   float* y;
   float* z;
   std::size_t rows[kWidth];
   int counts[kWidth];
-  int count = 0;      ///< largest of counts
-  bool even = false;  ///< all counts are equal
+  double unit[kWidth];  ///< length that is 1 in the lane's offsets
+  int count = 0;        ///< largest of counts
+  bool even = false;    ///< all counts are equal
 };
 
 /// Reads the neighbours of rows first to first + kLanes - 1; beyond `last` the last row again.
@@ -43,6 +49,7 @@ inline void loadBatch(const LocalFitJob& job, std::size_t first, std::size_t las
     const std::size_t row = job.row(first + l < last ? first + l : last - 1);
     batch.rows[l] = row;
     batch.counts[l] = job.count(row);
+    batch.unit[l] = 1.0;
     batch.even = batch.even && batch.counts[l] == batch.counts[0];
     batch.count = batch.counts[l] > batch.count ? batch.counts[l] : batch.count;
     neighbors[l] = job.neighborhoods->indices(row);
@@ -56,6 +63,12 @@ inline void loadBatch(const LocalFitJob& job, std::size_t first, std::size_t las
     const Lanes3 p = loadPoints(points);
     const Lanes3 d{p.x - center.x, p.y - center.y, p.z - center.z};
     batch.setOffset(j, batch.even ? d : select(present, d, Lanes3{}));
+    if (batch.vector_buffer.empty()) return;
+    for (std::size_t l = 0; l < kWidth; ++l) {
+      const Quad vector = loadQuad(points[l]) - Quad{center.x[l], center.y[l], center.z[l]};
+      storeQuad(batch.vector(static_cast<std::size_t>(j), l),
+                batch.even || present[l] ? vector : Quad{});
+    }
   };
   if (batch.even) {
     for (int j = 0; j < batch.count; ++j) {
@@ -73,6 +86,29 @@ inline void loadBatch(const LocalFitJob& job, std::size_t first, std::size_t las
       points[l] = job.xyz + (present[l] ? 4 * static_cast<std::size_t>(neighbors[l][j]) : 0);
     }
     setOffset(j, present);
+  }
+}
+
+/// Scales a lane's offsets to lengths around 1, where their squares would over- or underflow.
+inline void rescaleLane(Batch& batch, std::size_t l) {
+  float largest = 0.0F;
+  for (int j = 0; j < batch.count; ++j) {
+    const std::size_t at = static_cast<std::size_t>(j) * kWidth + l;
+    for (const float* axis : {batch.x, batch.y, batch.z}) {
+      largest = std::max(largest, std::abs(axis[at]));
+    }
+  }
+  if (!(largest > 0.0F) || !std::isfinite(largest)) return;
+  // A power of two rounds nothing.
+  batch.unit[l] = std::ldexp(1.0, std::ilogb(largest));
+  const auto scale = [&](float& x) {
+    x = static_cast<float>(static_cast<double>(x) / batch.unit[l]);
+  };
+  for (int j = 0; j < batch.count; ++j) {
+    const std::size_t at = static_cast<std::size_t>(j) * kWidth + l;
+    for (float* axis : {batch.x, batch.y, batch.z}) scale(axis[at]);
+    if (batch.vector_buffer.empty()) continue;
+    for (std::size_t a = 0; a < 3; ++a) scale(batch.vector(static_cast<std::size_t>(j), l)[a]);
   }
 }
 
@@ -110,7 +146,7 @@ inline Lanes cosTwoThirdsOfArc(Lanes s) {
 /// cubic's root is a smooth function of a square root), its vector from the adjugate, and both once
 /// more from the Rayleigh quotient, whose error is the square of the first one's. Slim or round
 /// neighbourhoods, for which float is not enough, are done again in double.
-inline Plane fitPlanes(const LocalFitJob& job, const Batch& batch) {
+inline Plane fitPlanes(const LocalFitJob& job, Batch& batch) {
   const Lanes zero{};
   Lanes3 sum{};
   Lanes xx = zero, xy = zero, xz = zero, yy = zero, yz = zero, zz = zero;
@@ -174,8 +210,8 @@ inline Plane fitPlanes(const LocalFitJob& job, const Batch& batch) {
   plane.normal = normal;
   plane.curvature = larger(zero, lambda);
   // Below 1 % float leaves errors of 1e-5 rad. Under- and overflow of the squares end here as well.
-  const Mask good = (gap > 0.01F) & (trace > 1e-30F) & (trace < 1e30F) & (count >= 3.0F) &
-                    (dot(normal, normal) > 0.5F);
+  const Mask in_range = (trace > 1e-30F) & (trace < 1e30F);
+  const Mask good = (gap > 0.01F) & in_range & (count >= 3.0F) & (dot(normal, normal) > 0.5F);
   plane.valid = good;
   if (any(~good)) {
     for (std::size_t l = 0; l < kWidth; ++l) {
@@ -186,6 +222,16 @@ inline Plane fitPlanes(const LocalFitJob& job, const Batch& batch) {
       plane.normal.y[l] = exact[1];
       plane.normal.z[l] = exact[2];
       plane.curvature[l] = exact[3];
+      if (in_range[l] || !plane.valid[l]) continue;
+      rescaleLane(batch, l);
+      double squares = 0.0;
+      for (int j = 0; j < batch.counts[l]; ++j) {
+        const std::size_t at = static_cast<std::size_t>(j) * kWidth + l;
+        for (const float* axis : {batch.x, batch.y, batch.z}) {
+          squares += static_cast<double>(axis[at]) * static_cast<double>(axis[at]);
+        }
+      }
+      plane.size[l] = static_cast<float>(std::sqrt(squares / batch.counts[l]));
     }
   }
   return plane;

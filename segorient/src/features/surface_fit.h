@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the segorient authors
+#pragma once
+
+#include <segorient/features/local_normals.h>
+
+#include <cstddef>
+
+#include "local_fit_job.h"
+
+namespace segorient::detail {
+
+/// A surface z = f(x, y) over a frame at a point, of which only what the point sees is kept: the
+/// coefficients of 1, x, y, x^2, x y, y^2, with lengths in units of `size`.
+struct SurfaceFit {
+  bool valid = false;
+  double size = 1.0;
+  double c[6] = {0, 0, 0, 0, 0, 0};
+  double axes[3][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};  ///< x, y, z of the frame
+
+  void normal(float* n) const;
+  /// Curvatures at (0, 0), NaN where the fit is not valid.
+  LocalCurvature curvature() const;
+};
+
+/// Replaces a quadratic surface by a cubic one (10 coefficients) over the same frame, in double
+/// precision, if the row determines it.
+/// \return false, and `fit` unchanged, where it does not
+bool fitCubic(const LocalFitJob& job, std::size_t row, SurfaceFit& fit);
+
+}  // namespace segorient::detail

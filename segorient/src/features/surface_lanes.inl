@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the segorient authors
+//
+// Approximation with an analytic surface, quadratic (paper, section 2.2). Included once per
+// instruction set.
+
+/// Solves the symmetric positive definite system of order 6 whose lower triangle is in m, by
+/// Cholesky decomposition without roots; x holds the right side and then the solution. \return
+/// where no pivot fell below 1e-4 of its diagonal: beyond that float would not carry it
+inline Mask solveOrder6(Lanes m[6][6], Lanes x[6]) {
+  Mask regular = Mask{} == 0;
+  Lanes inverse[6];
+  for (int j = 0; j < 6; ++j) {
+    const Lanes diagonal = m[j][j];
+    Lanes scaled_row[6];
+    for (int k = 0; k < j; ++k) {
+      scaled_row[k] = m[j][k];         // L times D so far
+      m[j][k] = m[j][k] * inverse[k];  // L
+      m[j][j] -= scaled_row[k] * m[j][k];
+    }
+    regular &= m[j][j] > 1e-4F * diagonal;
+    inverse[j] = 1.0F / m[j][j];
+    for (int i = j + 1; i < 6; ++i) {
+      for (int k = 0; k < j; ++k) m[i][j] -= m[i][k] * m[j][k];
+    }
+  }
+  for (int i = 0; i < 6; ++i) {
+    for (int k = 0; k < i; ++k) x[i] -= m[i][k] * x[k];
+  }
+  for (int i = 0; i < 6; ++i) x[i] *= inverse[i];
+  for (int i = 5; i >= 0; --i) {
+    for (int k = i + 1; k < 6; ++k) x[i] -= m[k][i] * x[k];
+  }
+  return regular;
+}
+
+/// Quadratic surfaces over frames; lengths in units of plane.size.
+struct Quadratic {
+  Lanes c[6];  ///< of 1, x, y, x^2, x y, y^2
+  Mask valid;
+};
+
+inline Quadratic fitQuadratics(const Batch& batch, const Plane& plane, const Frame& frame) {
+  const Lanes zero{};
+  const Lanes unit_length = 1.0F / plane.size;
+  const Frame scaled_frame{scaled(frame.u, unit_length), scaled(frame.v, unit_length),
+                           scaled(frame.n, unit_length)};
+  Lanes x1 = zero, y1 = zero, x2 = zero, xy = zero, y2 = zero, x3 = zero, x2y = zero, xy2 = zero,
+        y3 = zero, x4 = zero, x3y = zero, x2y2 = zero, xy3 = zero, y4 = zero;
+  Quadratic q;
+  for (Lanes& c : q.c) c = zero;
+  for (int j = 0; j < batch.count; ++j) {
+    const Lanes3 d = batch.offset(j);
+    const Lanes x = dot(d, scaled_frame.u);
+    const Lanes y = dot(d, scaled_frame.v);
+    const Lanes z = dot(d, scaled_frame.n);
+    const Lanes xx = x * x;
+    const Lanes xy_ = x * y;
+    const Lanes yy = y * y;
+    x1 += x;
+    y1 += y;
+    x2 += xx;
+    xy += xy_;
+    y2 += yy;
+    x3 += xx * x;
+    x2y += xx * y;
+    xy2 += x * yy;
+    y3 += yy * y;
+    x4 += xx * xx;
+    x3y += xx * xy_;
+    x2y2 += xx * yy;
+    xy3 += xy_ * yy;
+    y4 += yy * yy;
+    q.c[0] += z;
+    q.c[1] += x * z;
+    q.c[2] += y * z;
+    q.c[3] += xx * z;
+    q.c[4] += xy_ * z;
+    q.c[5] += yy * z;
+  }
+  Lanes count{};
+  for (std::size_t l = 0; l < kWidth; ++l) count[l] = static_cast<float>(batch.counts[l]);
+  Lanes m[6][6] = {{count},
+                   {x1, x2},
+                   {y1, xy, y2},
+                   {x2, x3, x2y, x4},
+                   {xy, x2y, xy2, x3y, x2y2},
+                   {y2, xy2, y3, x2y2, xy3, y4}};
+  q.valid = plane.valid & solveOrder6(m, q.c);
+  return q;
+}

@@ -1,0 +1,172 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the segorient authors
+//
+// Normals from local triangulations, LCT and LDT (paper, section 2.2). Included once per
+// instruction set.
+
+/// Comparisons that sort so many entries whatever they are: Batcher's odd-even merge sort. Without
+/// branches, all lanes are sorted at once.
+class SortingNetwork {
+ public:
+  void sort(float* keys, int count) {
+    if (count != count_) build(count);
+    for (const Comparison& c : comparisons_) {
+      const Lanes a = load(keys + c.low);
+      const Lanes b = load(keys + c.high);
+      store(keys + c.low, smaller(a, b));
+      store(keys + c.high, larger(a, b));
+    }
+  }
+
+ private:
+  struct Comparison {
+    std::size_t low, high;  ///< floats from the first key
+  };
+  void build(int count) {
+    count_ = count;
+    comparisons_.clear();
+    for (int p = 1; p < count; p *= 2) {
+      for (int k = p; k >= 1; k /= 2) {
+        for (int j = k % p; j + k < count; j += 2 * k) {
+          for (int i = j; i < j + k && i + k < count; ++i) {
+            if (i / (2 * p) != (i + k) / (2 * p)) continue;
+            comparisons_.push_back(
+                {static_cast<std::size_t>(i) * kWidth, static_cast<std::size_t>(i + k) * kWidth});
+          }
+        }
+      }
+    }
+  }
+  int count_ = 0;
+  std::vector<Comparison> comparisons_;
+};
+
+/// The neighbours other than the point itself, counted.
+inline Mask isNeighbor(const Lanes3& d) {
+  return (d.x != 0.0F) | (d.y != 0.0F) | (d.z != 0.0F);
+}
+
+/// Local centre triangulation. The fan's triangles, weighted by their areas, sum up to the vector
+/// area of the polygon through the neighbours, whatever the centre: only their angular order
+/// depends on it.
+inline Lanes3 fanNormals(Batch& batch, const Plane& plane, SortingNetwork& network, float* keys) {
+  const Frame frame = frameOf(plane.normal);
+  const int count = batch.count < 4096 ? batch.count : 4096;
+  Lanes3 center{};
+  Lanes neighbors{};
+  for (int j = 0; j < count; ++j) {
+    const Lanes3 d = batch.offset(j);
+    center = {center.x + d.x, center.y + d.y, center.z + d.z};
+    neighbors += select(isNeighbor(d), all(1.0F), Lanes{});
+  }
+  center = scaled(center, 1.0F / larger(neighbors, all(1.0F)));
+  const Lanes center_u = dot(center, frame.u);
+  const Lanes center_v = dot(center, frame.v);
+
+  // Keys are angles with the neighbour's number in their last bits. The angle is that of a square
+  // instead of a circle: it has the same order, and needs one division.
+  int number_bits = 1;
+  while ((1 << number_bits) < count) ++number_bits;
+  const std::int32_t number_mask = (1 << number_bits) - 1;
+  for (int j = 0; j < count; ++j) {
+    const Lanes3 d = batch.offset(j);
+    const Lanes x = dot(d, frame.u) - center_u;
+    const Lanes y = dot(d, frame.v) - center_v;
+    const Lanes size = absolute(x) + absolute(y);
+    const Lanes slope = y / select(size > 0.0F, size, all(1.0F));
+    const Lanes angle = select(x < 0.0F, 2.0F - slope, select(y < 0.0F, 4.0F + slope, slope));
+    const Lanes key = select(isNeighbor(d), 1.0F + 0.125F * angle, all(1.75F));
+    const Mask numbered = (reinterpret_cast<Mask>(key) & ~number_mask) | j;
+    store(keys + static_cast<std::size_t>(j) * kWidth, reinterpret_cast<Lanes>(numbered));
+  }
+  network.sort(keys, count);
+
+  const auto vertex = [&](int j) __attribute__((always_inline)) {
+    const float* vectors[kWidth];
+    for (std::size_t l = 0; l < kWidth; ++l) {
+      std::int32_t key;
+      __builtin_memcpy(&key, keys + static_cast<std::size_t>(j) * kWidth + l, sizeof(key));
+      vectors[l] = batch.vector(static_cast<std::size_t>(key & number_mask), l);
+    }
+    return loadPoints(vectors);
+  };
+  const Lanes3 first = vertex(0);
+  Lanes3 previous = first;
+  Lanes3 area{};
+  for (int j = 1; j <= count; ++j) {
+    const Mask inside = all(static_cast<float>(j)) < neighbors;
+    const Lanes3 next = j < count ? select(inside, vertex(j), first) : first;
+    const Lanes3 triangle = cross(previous, next);
+    area = {area.x + triangle.x, area.y + triangle.y, area.z + triangle.z};
+    previous = next;
+  }
+  // Collinear in projection: no area, no normal of its own.
+  const Lanes length = dot(area, frame.n);
+  return select(length > 1e-6F * plane.size * plane.size, unit(area), plane.normal);
+}
+
+/// Local Delaunay triangulation. Of the triangulation only the star of the point is needed. Under
+/// inversion about the point its Delaunay neighbours become the vertices of the convex hull of all
+/// inverted neighbours, together with the origin where the point lies on the neighbours' hull. All
+/// lanes walk around their hulls in step (Jarvis), from the nearest neighbour on.
+inline Lanes3 starNormals(const Batch& batch, const Plane& plane, float* inverted) {
+  const Frame frame = frameOf(plane.normal);
+  const Lanes unit_length = 1.0F / plane.size;
+  const auto at = [inverted](int j) __attribute__((always_inline)) {
+    return inverted + 3 * static_cast<std::size_t>(j) * kWidth;
+  };
+  // Inverted x, y in the frame, and the height as it is.
+  Lanes3 start{};
+  Lanes start_norm{};
+  for (int j = 0; j < batch.count; ++j) {
+    const Lanes3 d = scaled(batch.offset(j), unit_length);
+    const Lanes x = dot(d, frame.u);
+    const Lanes y = dot(d, frame.v);
+    const Lanes norm = x * x + y * y;
+    // The point itself, and what lies on its normal, become the origin, which is no triangle's
+    // corner.
+    const Lanes inverse = select(norm > 1e-8F, 1.0F / norm, Lanes{});
+    const Lanes3 image{x * inverse, y * inverse, dot(d, frame.n)};
+    store(at(j), image.x);
+    store(at(j) + kWidth, image.y);
+    store(at(j) + 2 * kWidth, image.z);
+    const Mask nearer = inverse > start_norm;
+    start = select(nearer, image, start);
+    start_norm = select(nearer, inverse, start_norm);
+  }
+
+  const auto corner = [](const Lanes3& image) __attribute__((always_inline)) {
+    const Lanes norm = image.x * image.x + image.y * image.y;
+    const Mask real = norm > 0.0F;
+    const Lanes inverse = 1.0F / norm;
+    return select(real, Lanes3{image.x * inverse, image.y * inverse, image.z}, Lanes3{});
+  };
+  Lanes3 sum{};
+  Lanes3 current = start;
+  Lanes3 corner_now = corner(start);
+  Mask walking = start_norm > 0.0F;
+  for (int step = 0; step <= batch.count && any(walking); ++step) {
+    // The origin is a candidate like the others, except where the walk stands on it.
+    const Mask at_origin = (current.x == 0.0F) & (current.y == 0.0F);
+    Lanes3 next = select(at_origin, start, Lanes3{});
+    for (int j = 0; j < batch.count; ++j) {
+      const Lanes3 image{load(at(j)), load(at(j) + kWidth), load(at(j) + 2 * kWidth)};
+      const Mask right = (next.x - current.x) * (image.y - current.y) <
+                         (next.y - current.y) * (image.x - current.x);
+      next = select(right, image, next);
+    }
+    const Lanes3 corner_next = corner(next);
+    const Lanes3 triangle = cross(corner_now, corner_next);
+    const Lanes doubled_area = squareRoot(dot(triangle, triangle));
+    const Mask counts = walking & (doubled_area > 0.0F);
+    const Lanes3 added = select(counts, scaled(triangle, 1.0F / doubled_area), Lanes3{});
+    sum = {sum.x + added.x, sum.y + added.y, sum.z + added.z};
+    walking &= (next.x != start.x) | (next.y != start.y);
+    current = next;
+    corner_now = corner_next;
+  }
+  const Lanes3 normal{sum.x * frame.u.x + sum.y * frame.v.x + sum.z * frame.n.x,
+                      sum.x * frame.u.y + sum.y * frame.v.y + sum.z * frame.n.y,
+                      sum.x * frame.u.z + sum.y * frame.v.z + sum.z * frame.n.z};
+  return select(sum.z > 1e-3F, unit(normal), plane.normal);
+}
