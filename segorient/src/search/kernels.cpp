@@ -72,11 +72,16 @@ inline Counter zeroCounter() {
 inline Counter countLess(Counter c, Vector a, Vector b) {
   return c + (a < b ? 1U : 0U);
 }
-inline Counter countLessEqual(Counter c, Vector a, Vector b) {
-  return c + (a <= b ? 1U : 0U);
+inline Counter addCounters(Counter a, Counter b) {
+  return a + b;
 }
-inline Counter countBefore(Counter c, Vector /*a*/, Vector /*b*/, std::size_t /*lane*/) {
-  return c;
+inline void interleave(const float* d, const std::uint32_t* id, std::uint32_t* out) {
+  __builtin_memcpy(out, d, 4);
+  out[1] = *id;
+}
+inline void deinterleave(const std::uint32_t* in, float* d, std::uint32_t* id) {
+  __builtin_memcpy(d, in, 4);
+  *id = in[1];
 }
 inline std::size_t total(Counter c) {
   return c;
@@ -161,15 +166,20 @@ inline Counter zeroCounter() {
 inline Counter countLess(Counter c, Vector a, Vector b) {
   return _mm_sub_epi32(c, _mm_castps_si128(_mm_cmplt_ps(a, b)));
 }
-inline Counter countLessEqual(Counter c, Vector a, Vector b) {
-  return _mm_sub_epi32(c, _mm_castps_si128(_mm_cmple_ps(a, b)));
+inline Counter addCounters(Counter a, Counter b) {
+  return _mm_add_epi32(a, b);
 }
-inline Counter countBefore(Counter c, Vector a, Vector b, std::size_t lane) {
-  const __m128i later =
-      _mm_cmpgt_epi32(_mm_setr_epi32(0, 1, 2, 3), _mm_set1_epi32(static_cast<int>(lane)));
-  const __m128i less = _mm_castps_si128(_mm_cmplt_ps(a, b));
-  const __m128i equal = _mm_and_si128(_mm_castps_si128(_mm_cmpeq_ps(a, b)), later);
-  return _mm_sub_epi32(c, _mm_or_si128(less, equal));
+inline void interleave(const float* d, const std::uint32_t* id, std::uint32_t* out) {
+  const __m128 a = _mm_loadu_ps(d);
+  const __m128 b = _mm_loadu_ps(reinterpret_cast<const float*>(id));
+  _mm_storeu_ps(reinterpret_cast<float*>(out), _mm_unpacklo_ps(a, b));
+  _mm_storeu_ps(reinterpret_cast<float*>(out + 4), _mm_unpackhi_ps(a, b));
+}
+inline void deinterleave(const std::uint32_t* in, float* d, std::uint32_t* id) {
+  const __m128 a = _mm_loadu_ps(reinterpret_cast<const float*>(in));
+  const __m128 b = _mm_loadu_ps(reinterpret_cast<const float*>(in + 4));
+  _mm_storeu_ps(d, _mm_shuffle_ps(a, b, 0x88));
+  _mm_storeu_ps(reinterpret_cast<float*>(id), _mm_shuffle_ps(a, b, 0xdd));
 }
 inline std::size_t total(Counter c) {
   c = _mm_add_epi32(c, _mm_shuffle_epi32(c, 0x4e));
@@ -264,16 +274,25 @@ inline Counter zeroCounter() {
 inline Counter countLess(Counter c, Vector a, Vector b) {
   return _mm256_sub_epi32(c, _mm256_castps_si256(_mm256_cmp_ps(a, b, _CMP_LT_OQ)));
 }
-inline Counter countLessEqual(Counter c, Vector a, Vector b) {
-  return _mm256_sub_epi32(c, _mm256_castps_si256(_mm256_cmp_ps(a, b, _CMP_LE_OQ)));
+inline Counter addCounters(Counter a, Counter b) {
+  return _mm256_add_epi32(a, b);
 }
-inline Counter countBefore(Counter c, Vector a, Vector b, std::size_t lane) {
-  const __m256i later = _mm256_cmpgt_epi32(_mm256_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7),
-                                           _mm256_set1_epi32(static_cast<int>(lane)));
-  const __m256i less = _mm256_castps_si256(_mm256_cmp_ps(a, b, _CMP_LT_OQ));
-  const __m256i equal =
-      _mm256_and_si256(_mm256_castps_si256(_mm256_cmp_ps(a, b, _CMP_EQ_OQ)), later);
-  return _mm256_sub_epi32(c, _mm256_or_si256(less, equal));
+inline void interleave(const float* d, const std::uint32_t* id, std::uint32_t* out) {
+  const __m256 a = _mm256_loadu_ps(d);
+  const __m256 b = _mm256_loadu_ps(reinterpret_cast<const float*>(id));
+  const __m256 low = _mm256_unpacklo_ps(a, b);
+  const __m256 high = _mm256_unpackhi_ps(a, b);
+  _mm256_storeu_ps(reinterpret_cast<float*>(out), _mm256_permute2f128_ps(low, high, 0x20));
+  _mm256_storeu_ps(reinterpret_cast<float*>(out + 8), _mm256_permute2f128_ps(low, high, 0x31));
+}
+inline __m256 inOrder(__m256 v) {
+  return _mm256_castpd_ps(_mm256_permute4x64_pd(_mm256_castps_pd(v), 0xd8));
+}
+inline void deinterleave(const std::uint32_t* in, float* d, std::uint32_t* id) {
+  const __m256 a = _mm256_loadu_ps(reinterpret_cast<const float*>(in));
+  const __m256 b = _mm256_loadu_ps(reinterpret_cast<const float*>(in + 8));
+  _mm256_storeu_ps(d, inOrder(_mm256_shuffle_ps(a, b, 0x88)));
+  _mm256_storeu_ps(reinterpret_cast<float*>(id), inOrder(_mm256_shuffle_ps(a, b, 0xdd)));
 }
 inline std::size_t total(Counter c) {
   __m128i s = _mm_add_epi32(_mm256_castsi256_si128(c), _mm256_extracti128_si256(c, 1));

@@ -84,8 +84,10 @@ struct SortScratch {
   float* part_distance;
   std::uint32_t* part_id;
   std::uint32_t* rank;
-  float* distance;    ///< where the result is left
-  std::uint32_t* id;  ///< where the result is left
+  std::uint32_t* pairs;         ///< two entries a candidate
+  std::uint32_t* sorted_pairs;  ///< two entries a candidate
+  float* distance;              ///< where the result is left
+  std::uint32_t* id;            ///< where the result is left
 };
 
 /// Most candidates that sortNearest() takes.
@@ -95,6 +97,7 @@ constexpr std::size_t kMostToSort = 1024;
 struct AllPointsTask {
   std::uint32_t k;  ///< at most the number of points
   float epsilon;
+  float margin;            ///< above 1: how much more than the last k-th distance is tried
   pcl::index_t* indices;   ///< output, k entries a row
   float* distances;        ///< output, or null
   std::size_t row_length;  ///< entries from one row of the output to the next

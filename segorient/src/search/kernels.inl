@@ -196,33 +196,70 @@ bool collect(const LayoutView& view, const Path& path, const Sphere& sphere, Can
 // ---------------------------------------------------------------------------------------------------
 // Sorting
 
+// Where equal distances stay in the order they have.
+void rankStable(const float* distance, std::size_t count, std::uint32_t* rank) {
+  for (std::size_t i = 0; i < count; ++i) {
+    std::uint32_t before = 0;
+    for (std::size_t j = 0; j < i; ++j) before += distance[j] <= distance[i] ? 1U : 0U;
+    for (std::size_t j = i; j < count; ++j) before += distance[j] < distance[i] ? 1U : 0U;
+    rank[i] = before;
+  }
+}
+
+// For `kVectors` vectors of distances from vector number `first` on, how many of all are less.
+template <std::size_t kVectors>
+inline Counter rankVectors(const float* distance, std::size_t count, std::size_t first,
+                           std::uint32_t* rank) {
+  const float* const own = distance + first * kWidth;
+  rank += first * kWidth;
+  Vector v[kVectors];
+  Counter c[kVectors];
+  for (std::size_t i = 0; i < kVectors; ++i) {
+    v[i] = load(own + i * kWidth);
+    c[i] = zeroCounter();
+  }
+  for (std::size_t j = 0; j < count; ++j) {
+    const Vector other = broadcast(distance[j]);
+    for (std::size_t i = 0; i < kVectors; ++i) c[i] = countLess(c[i], other, v[i]);
+  }
+  Counter sum = zeroCounter();
+  for (std::size_t i = 0; i < kVectors; ++i) {
+    store(rank + i * kWidth, c[i]);
+    sum = addCounters(sum, c[i]);
+  }
+  return sum;
+}
+
 // Writes the candidates in ascending order. Each one's place is the number of those before it,
 // which takes quadratic but straight work: for some tens of candidates nothing else is as fast.
-void sortByRank(const float* distance, const std::uint32_t* id, std::size_t count,
-                std::uint32_t* rank, float* out_distance, std::uint32_t* out_id) {
-  for (std::size_t first = 0; first < count; first += kWidth) {
-    const Vector own = load(distance + first);
-    Counter counter = zeroCounter();
-    // Equal ones keep their order.
-    for (std::size_t j = 0; j < first; ++j) {
-      counter = countLessEqual(counter, broadcast(distance[j]), own);
-    }
-    const std::size_t end = first + kWidth < count ? first + kWidth : count;
-    for (std::size_t j = first; j < end; ++j) {
-      counter = countBefore(counter, broadcast(distance[j]), own, j - first);
-    }
-    for (std::size_t j = end; j < count; ++j) {
-      counter = countLess(counter, broadcast(distance[j]), own);
-    }
-    store(rank + first, counter);
+void sortByRank(float* distance, std::uint32_t* id, std::size_t count, const SortScratch& scratch,
+                float* out_distance, std::uint32_t* out_id) {
+  const std::size_t vectors = (count + kWidth - 1) / kWidth;
+  const std::size_t padded = vectors * kWidth;
+  for (std::size_t i = count; i < padded; ++i) distance[i] = kInfinity;
+  std::uint32_t* const rank = scratch.rank;
+  Counter sum = zeroCounter();
+  std::size_t v = 0;
+  for (; v + 4 <= vectors; v += 4) {
+    sum = addCounters(sum, rankVectors<4>(distance, count, v, rank));
+  }
+  if (vectors - v == 3) sum = addCounters(sum, rankVectors<3>(distance, count, v, rank));
+  if (vectors - v == 2) sum = addCounters(sum, rankVectors<2>(distance, count, v, rank));
+  if (vectors - v == 1) sum = addCounters(sum, rankVectors<1>(distance, count, v, rank));
+  // Without ties, ranks are 0, 1, 2 ...; each pad counts all the others.
+  const bool ties = total(sum) != count * (count - 1) / 2 + (padded - count) * count;
+  if (ties) rankStable(distance, count, rank);
+  // As pairs, so that there is one write each.
+  for (std::size_t i = 0; i < padded; i += kWidth) {
+    interleave(distance + i, id + i, scratch.pairs + 2 * i);
   }
   for (std::size_t i = 0; i < count; ++i) {
-    out_distance[rank[i]] = distance[i];
-    out_id[rank[i]] = id[i];
+    __builtin_memcpy(scratch.sorted_pairs + 2 * std::size_t{rank[i]}, scratch.pairs + 2 * i, 8);
   }
-  unsigned int ties = 0;
-  for (std::size_t i = 0; i + 1 < count; ++i) ties |= out_distance[i] == out_distance[i + 1];
-  if (ties == 0) return;
+  for (std::size_t i = 0; i < padded; i += kWidth) {
+    deinterleave(scratch.sorted_pairs + 2 * i, out_distance + i, out_id + i);
+  }
+  if (!ties) return;
   for (std::size_t i = 0; i + 1 < count;) {
     std::size_t end = i + 1;
     while (end < count && out_distance[end] == out_distance[i]) ++end;
@@ -251,7 +288,7 @@ std::size_t select(const Candidates& in, float from, float to, float* distance, 
 
 void sortNearest(Candidates& in, std::size_t k, float limit, const SortScratch& scratch) {
   if (in.count <= kMostToRank) {
-    sortByRank(in.distance, in.id, in.count, scratch.rank, scratch.distance, scratch.id);
+    sortByRank(in.distance, in.id, in.count, scratch, scratch.distance, scratch.id);
     return;
   }
   const std::size_t parts = in.count / 32;
@@ -262,8 +299,8 @@ void sortNearest(Candidates& in, std::size_t k, float limit, const SortScratch& 
     const float to = part == parts ? limit : step * static_cast<float>(part);
     const std::size_t count = select(in, from, to, scratch.part_distance, scratch.part_id);
     if (count <= kMostToRank) {
-      sortByRank(scratch.part_distance, scratch.part_id, count, scratch.rank,
-                 scratch.distance + done, scratch.id + done);
+      sortByRank(scratch.part_distance, scratch.part_id, count, scratch, scratch.distance + done,
+                 scratch.id + done);
     } else {
       for (std::size_t i = 0; i < count; ++i) {
         scratch.distance[done + i] = scratch.part_distance[i];
@@ -328,31 +365,18 @@ std::size_t listNeighbors(const LayoutView& view, std::size_t region, float limi
   return count;
 }
 
+// Points of a group: enough to share the work of gathering, few enough to be near each other.
+constexpr std::uint32_t kGroup = 16;
+
 // What is carried from group to group of a region.
 struct RegionState {
   std::size_t region;
   float typical;  // squared distance to the k-th neighbour, lately
+  float most;     // the same, the largest of a group
   float listed;   // reach of the list of neighbouring regions
   std::size_t neighbors;
   float prune;  // factor on squared reaches, 1 where the search is exact
 };
-
-inline Box groupBox(const LayoutView& view, std::uint32_t begin, std::uint32_t end) {
-  const float* coordinates[3] = {view.x, view.y, view.z};
-  Box box;
-  for (int a = 0; a < 3; ++a) {
-    const float* c = coordinates[a];
-    float lo = c[begin];
-    float hi = c[begin];
-    for (std::uint32_t i = begin + 1; i < end; ++i) {
-      lo = smallest(lo, c[i]);
-      hi = largest(hi, c[i]);
-    }
-    box.lo[a] = lo;
-    box.hi[a] = hi;
-  }
-  return box;
-}
 
 // Fills the block with all points nearer to the group's box than the square root of `limit`.
 // \return how many, or more than the block holds
@@ -452,7 +476,7 @@ inline bool searchBlock(const LayoutView& view, std::uint32_t point, std::size_t
   const float q[3] = {view.x[point], view.y[point], view.z[point]};
   const std::size_t k = task.k;
   const std::size_t enough = k + k / 2 + 8;
-  float threshold = smallest(1.3F * state.typical, reach);
+  float threshold = smallest(task.margin * state.typical, reach);
   std::size_t count = blockDistances(task, block, q, threshold);
   float too_low = 0.0F;
   for (int attempt = 0; count < k || (count > enough && attempt < 3); ++attempt) {
@@ -475,52 +499,84 @@ inline bool searchBlock(const LayoutView& view, std::uint32_t point, std::size_t
   if (count > kMostToSort) return false;
   takeBelow(task, block, threshold);
   sortNearest(task.candidates, k, threshold, task.sort);
-  state.typical = task.sort.distance[k - 1];
+  state.typical = largest(task.sort.distance[k - 1], 1e-44F);
+  state.most = largest(state.most, state.typical);
   writeRow(task, view.row[point], view.id[point]);
   return true;
 }
 
-// Points next to each other in the layout that share a block of candidates.
-void searchGroup(const LayoutView& view, std::uint32_t begin, std::uint32_t end, RegionState& state,
-                 AllPointsTask& task) {
-  for (std::uint32_t i = begin; i < end; ++i) {
-    prefetchForWrite(task.indices + view.row[i] * task.row_length);
+// One group: points next to each other in the layout that share a block of candidates.
+struct Group {
+  std::uint32_t points[2 * kGroup];
+  std::size_t count;
+};
+
+inline Box groupBox(const LayoutView& view, const Group& group) {
+  const float* coordinates[3] = {view.x, view.y, view.z};
+  Box box;
+  for (int a = 0; a < 3; ++a) {
+    const float* c = coordinates[a];
+    float lo = c[group.points[0]];
+    float hi = lo;
+    for (std::size_t i = 1; i < group.count; ++i) {
+      lo = smallest(lo, c[group.points[i]]);
+      hi = largest(hi, c[group.points[i]]);
+    }
+    box.lo[a] = lo;
+    box.hi[a] = hi;
   }
-  const Box box = groupBox(view, begin, end);
-  const float reach = 1.7F * state.typical;
-  const std::size_t block = gather(view, box, reach, state, task);
-  if (block > task.block_capacity) {
-    for (std::uint32_t i = begin; i < end; ++i) task.failed[task.failed_count++] = i;
-    state.typical *= 0.5F;
-    return;
-  }
+  return box;
+}
+
+// Searches what is within `reach` of the group; leaves in it the points that this was too little
+// for.
+// \return false if there was no room for all that is within reach
+inline bool searchWithin(const LayoutView& view, float reach, Group& group, RegionState& state,
+                         AllPointsTask& task) {
+  const std::size_t block = gather(view, groupBox(view, group), reach, state, task);
+  if (block > task.block_capacity) return false;
   for (std::size_t i = 0; i < kWidth; ++i) {
     task.block[0][block + i] = kInfinity;
     task.block[1][block + i] = 0.0F;
     task.block[2][block + i] = 0.0F;
     task.block_id[block + i] = 0;
   }
-  float most = 0.0F;
-  for (std::uint32_t i = begin; i < end; ++i) {
-    if (searchBlock(view, i, block, reach, state, task)) {
-      most = largest(most, state.typical);
-    } else {
-      task.failed[task.failed_count++] = i;
-      most = largest(most, reach);
+  std::size_t left = 0;
+  for (std::size_t i = 0; i < group.count; ++i) {
+    if (!searchBlock(view, group.points[i], block, reach, state, task)) {
+      group.points[left++] = group.points[i];
     }
   }
-  state.typical = largest(most, 1e-44F);
+  group.count = left;
+  return true;
 }
 
-// Points of a group: enough to share the work of gathering, few enough to be near each other.
-constexpr std::uint32_t kGroup = 16;
+void searchGroup(const LayoutView& view, std::uint32_t begin, std::uint32_t end, RegionState& state,
+                 AllPointsTask& task) {
+  Group group;
+  group.count = end - begin;
+  for (std::uint32_t i = begin; i < end; ++i) {
+    group.points[i - begin] = i;
+    const pcl::index_t* row = task.indices + view.row[i] * task.row_length;
+    for (std::size_t j = 0; j < task.k; j += 64 / sizeof(pcl::index_t)) prefetchForWrite(row + j);
+  }
+  float reach = task.margin * state.most;
+  state.most = 0.0F;
+  for (int attempt = 0; attempt < 3 && group.count > 0; ++attempt) {
+    reach *= searchWithin(view, reach, group, state, task) ? 1.6F : 0.4F;
+  }
+  for (std::size_t i = 0; i < group.count; ++i) task.failed[task.failed_count++] = group.points[i];
+  if (group.count > 0) state.most = largest(state.most, 0.6F * reach);
+  state.most = largest(state.most, 1e-44F);
+}
 
 void allInRegion(const LayoutView& view, std::size_t r, AllPointsTask& task) {
   const Region& region = view.regions[r];
   const float bound = 1.0F + task.epsilon;
   const float relative = static_cast<float>(task.k) / 16.0F;
-  RegionState state{r, largest(region.spacing16 * relative, 1e-44F), -1.0F, 0,
-                    task.epsilon > 0.0F ? 0.999999F / (bound * bound) : 1.0F};
+  const float spacing = largest(region.spacing16 * relative, 1e-44F);
+  RegionState state{r,     spacing, spacing,
+                    -1.0F, 0,       task.epsilon > 0.0F ? 0.999999F / (bound * bound) : 1.0F};
   task.failed_count = 0;
   if (region.identical != 0) {
     for (std::uint32_t i = region.begin; i < region.end; ++i) task.failed[task.failed_count++] = i;

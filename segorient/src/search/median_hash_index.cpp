@@ -18,6 +18,9 @@ namespace {
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 constexpr std::uint32_t kAll = std::numeric_limits<std::uint32_t>::max();
+// In the all-points search, how many standard deviations of the k-th squared distance, which is
+// about 1/sqrt(k) of it, are allowed for from one query to the next.
+constexpr float kMargin = 0.7F;
 // Most neighbours for which the all-points search shares candidates among queries.
 constexpr std::size_t kMostShared = 256;
 
@@ -30,10 +33,26 @@ float squaredGap(const Box& box, const float* q) {
   return sum;
 }
 
+constexpr std::size_t kSortLength = kMostToSort + Layout::kPadding;
+constexpr std::size_t kSortFloats = 2 * kSortLength;
+constexpr std::size_t kSortIds = 7 * kSortLength;
+
+SortScratch sortScratch(float* f, std::uint32_t* i) {
+  SortScratch sort{};
+  sort.part_distance = f;
+  sort.distance = f + kSortLength;
+  sort.part_id = i;
+  sort.id = i + kSortLength;
+  sort.rank = i + 2 * kSortLength;
+  sort.pairs = i + 3 * kSortLength;
+  sort.sorted_pairs = i + 5 * kSortLength;
+  return sort;
+}
+
 // What one thread needs for its queries; kept from query to query.
 class Workspace {
  public:
-  Workspace() : sort_floats_(2 * kSortLength), sort_ids_(3 * kSortLength) {}
+  Workspace() : sort_floats_(kSortFloats), sort_ids_(kSortIds) {}
 
   // Empty candidates with room for `capacity`.
   Candidates& candidates(std::size_t capacity) {
@@ -45,14 +64,10 @@ class Workspace {
     candidates_.count = 0;
     return candidates_;
   }
-  SortScratch sort() {
-    return {sort_floats_.data(), sort_ids_.data(), sort_ids_.data() + kSortLength,
-            sort_floats_.data() + kSortLength, sort_ids_.data() + 2 * kSortLength};
-  }
+  SortScratch sort() { return sortScratch(sort_floats_.data(), sort_ids_.data()); }
   std::vector<std::pair<float, std::uint32_t>> pairs;
 
  private:
-  static constexpr std::size_t kSortLength = kMostToSort + Layout::kPadding;
   std::vector<float> distance_;
   std::vector<std::uint32_t> id_;
   std::vector<float> sort_floats_;
@@ -95,14 +110,16 @@ class AllPointsWork {
   AllPointsWork(const Layout& layout, std::size_t k) : task{} {
     const std::size_t capacity = 2048 + 16 * k;
     const std::size_t length = capacity + Layout::kPadding;
-    floats_.resize(5 * length + 2 * kSortLength);
-    ids_.resize(2 * length + 3 * kSortLength + layout.regions.size());
+    floats_.resize(5 * length + kSortFloats);
+    ids_.resize(2 * length + kSortIds + layout.regions.size());
     std::size_t most = 0;
     for (const Region& r : layout.regions) most = std::max<std::size_t>(most, r.end - r.begin);
     failed_.resize(most);
     float* f = floats_.data();
     std::uint32_t* i = ids_.data();
     task.k = static_cast<std::uint32_t>(k);
+    // The relative deviation of the k-th squared distance falls with the root of k.
+    task.margin = 1.0F + kMargin / std::sqrt(static_cast<float>(k));
     for (float*& coordinate : task.block) {
       coordinate = f;
       f += length;
@@ -113,15 +130,14 @@ class AllPointsWork {
     task.candidates = {f + length, i + length, 0, capacity};
     f += 2 * length;
     i += 2 * length;
-    task.sort = {f, i, i + kSortLength, f + kSortLength, i + 2 * kSortLength};
-    task.neighbors = i + 3 * kSortLength;
+    task.sort = sortScratch(f, i);
+    task.neighbors = i + kSortIds;
     task.failed = failed_.data();
   }
 
   AllPointsTask task;
 
  private:
-  static constexpr std::size_t kSortLength = kMostToSort + Layout::kPadding;
   std::vector<float> floats_;
   std::vector<std::uint32_t> ids_;
   std::vector<std::uint32_t> failed_;
