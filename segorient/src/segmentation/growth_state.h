@@ -65,6 +65,17 @@ struct PairLimits {
     const float dz = q.z - p.z;
     return dx * dx + dy * dy + dz * dz <= gap_sqr * p.spacing * q.spacing;
   }
+  /// Whether two points look at each other across a thin wall: each lies along the other's normal.
+  static bool facing(const Node& p, const Node& q) {
+    constexpr float kSqrCosine = 0.5F;  // within 45 degrees
+    const float dx = q.x - p.x;
+    const float dy = q.y - p.y;
+    const float dz = q.z - p.z;
+    const float along_p = dx * p.nx + dy * p.ny + dz * p.nz;
+    const float along_q = dx * q.nx + dy * q.ny + dz * q.nz;
+    const float limit = kSqrCosine * (dx * dx + dy * dy + dz * dz);
+    return along_p * along_p > limit && along_q * along_q > limit;
+  }
   /// Whether q lies in the surface around p: p's tangent plane alone, as the normal of a candidate
   /// near an edge leans over.
   bool admissible(const Node& p, const Node& q) const {
@@ -83,6 +94,7 @@ struct GrowthState {
   int neighbors = 0;  ///< entries of each row to use, the first one (the point itself) included
   float scale = 1.F;  ///< coordinates of the nodes for one unit of the cloud
   PairLimits limits;
+  float typical_offset = 0.F;  ///< of a neighbour from a tangent plane, in spacings: the noise
   std::vector<Node> nodes;
   std::vector<std::int32_t> labels;  ///< -1 = none
   std::vector<std::int8_t> signs;
@@ -102,6 +114,10 @@ void grow(const SegmentationOptions& options, GrowthState& state);
 
 /// The three clean-up passes; sets the kinds.
 void cleanUp(const SegmentationOptions& options, GrowthState& state, SegmentationReport& report);
+
+/// Moves points along sharp borders to the segment whose surface passes nearest to them.
+/// \return how many moved
+std::size_t settleEdges(const SegmentationOptions& options, GrowthState& state);
 
 /// Final labels and segment data.
 Segmentation finish(const PointView& points, const GrowthState& state);

@@ -15,8 +15,8 @@ class CleanUp {
   CleanUp(const SegmentationOptions& options, GrowthState& state)
       : options_(options),
         state_(state),
-        small_size_(static_cast<std::uint32_t>(
-            std::min<std::size_t>(options.small_size, std::numeric_limits<std::int32_t>::max()))),
+        small_size_(
+            static_cast<std::uint32_t>(std::min(options.small_size, state.nodes.size() + 1))),
         adjacency_(state, small_size_),
         cos_join_(std::cos(std::min(options.beta + options.epsilon, kRightAngle))),
         cos_alpha_(std::cos(std::min(options.alpha, kRightAngle))) {}
@@ -201,6 +201,7 @@ void CleanUp::connectSmall() {
     adjacency_.forEachNeighbor(slot, [&](std::size_t q) {
       const std::int32_t other = state_.labels[q];
       if (other == own || !isSmall(other)) return;
+      if (PairLimits::facing(state_.nodes[adjacency_.point(slot)], state_.nodes[q])) return;
       const std::int32_t a = find(own);
       const std::int32_t b = find(other);
       // The smaller label stays the root: the result does not depend on the order of the unions.
@@ -233,6 +234,7 @@ void cleanUp(const SegmentationOptions& options, GrowthState& state, Segmentatio
   CleanUp passes(options, state);
   if (options.absorb_small) passes.absorbSmall(report);
   if (options.extract_edges) passes.extractEdges(report);
+  if (options.settle_edges) report.settled = settleEdges(options, state);
   state.kinds.assign(state.clusters.size(), SegmentKind::Regular);
   for (std::size_t s = 0; s < state.clusters.size(); ++s) {
     if (state.clusters[s].size < options.small_size) state.kinds[s] = SegmentKind::Isolated;

@@ -163,9 +163,10 @@ void prepare(const PointView& points, const PointView& normals, const Segmentati
   constexpr float kNoLimit = std::numeric_limits<float>::max();
   state.limits.gap_sqr = options.max_gap > 0.F ? options.max_gap * options.max_gap : kNoLimit;
   state.limits.offset = kNoLimit;
+  state.typical_offset = typicalOffset(state);
   if (options.max_offset > 0.F) {
     // Two deviations of a noisy neighbour, and never so much that a wall of one spacing would leak.
-    state.limits.offset = std::clamp(2.F * typicalOffset(state), options.max_offset,
+    state.limits.offset = std::clamp(2.F * state.typical_offset, options.max_offset,
                                      std::max(0.9F, options.max_offset));
   }
 }

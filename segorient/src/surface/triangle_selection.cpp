@@ -200,7 +200,7 @@ float criticalLength(const std::vector<float>& lengths, const TriangulationOptio
   float width = 0.25F * medianOf(lengths);
   std::size_t bins = 1;
   if (options.bins > 0) {
-    bins = static_cast<std::size_t>(options.bins);
+    bins = std::min(static_cast<std::size_t>(options.bins), kMostBins);
     width = range / static_cast<float>(bins);
   } else {
     bins = static_cast<std::size_t>(std::min(range / width, static_cast<float>(kMostBins))) + 1;

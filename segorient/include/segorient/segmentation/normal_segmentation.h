@@ -113,6 +113,11 @@ class NormalSegmentation : public pcl::PCLBase<PointT> {
   void setMaximumOffset(float spacings);
   float getMaximumOffset() const { return options_.max_offset; }
 
+  /// Points along sharp edges go to the segment whose flat part, continued, passes nearest; default
+  /// true.
+  void setSettleEdges(bool value);
+  bool getSettleEdges() const { return options_.settle_edges; }
+
   /// Clean-up passes 1 to 3; all on by default. Without pass 3 small segments stay apart, as
   /// isolated.
   void setAbsorbSmall(bool value);

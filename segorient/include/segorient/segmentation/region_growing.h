@@ -34,6 +34,9 @@ struct SegmentationOptions {
   bool absorb_small = true;  ///< clean-up pass 1: small segments join a neighbouring segment
   bool extract_edges =
       true;  ///< clean-up pass 2: points of small segments join regular ones singly
+  /// Beyond the paper, after pass 2: normals along a sharp edge are means over both faces, so a
+  /// point there goes to the segment whose flat part, continued, passes nearest to it.
+  bool settle_edges = true;
   bool connect_small = true;  ///< clean-up pass 3: small segments that touch become connected ones
   int threads = 0;            ///< see resolveThreads()
 };
@@ -44,6 +47,7 @@ struct SegmentationReport {
   std::size_t small = 0;      ///< small ones among them
   std::size_t absorbed = 0;   ///< small segments that pass 1 joined with another one
   std::size_t extracted = 0;  ///< points that pass 2 moved to regular segments
+  std::size_t settled = 0;    ///< points that changed their segment along sharp edges
   std::size_t regular = 0;    ///< segments of each kind at the end
   std::size_t connected = 0;
   std::size_t isolated = 0;

@@ -151,6 +151,12 @@ void NormalSegmentation<PointT, NormalT>::setConnectSmall(bool value) {
 }
 
 template <typename PointT, typename NormalT>
+void NormalSegmentation<PointT, NormalT>::setSettleEdges(bool value) {
+  options_.settle_edges = value;
+  outdated();
+}
+
+template <typename PointT, typename NormalT>
 CloudSegmentation::Search NormalSegmentation<PointT, NormalT>::searchFunction() {
   if (!search_) return {};
   // Unless it is on this cloud already, possibly on more of it than our indices.

@@ -1,0 +1,189 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the segorient authors
+#include <segorient/common/threads.h>
+
+#include <array>
+
+#include "growth_state.h"
+
+namespace segorient::segmentation {
+namespace {
+
+/// Flat points of a segment whose tangent planes speak for it.
+constexpr std::size_t kWitnesses = 5;
+/// Segments that are compared at one point; three meet at a corner.
+constexpr std::size_t kCandidates = 6;
+/// 80 degrees. The normal of a point right at an edge may lean far over; near a right angle to the
+/// reference normal its sign would be arbitrary.
+constexpr double kMostLean = 1.3962634;
+/// A point changes between regular segments only if its own surface is this far off, in spacings,
+/// and the other one less than half as far: a smooth border stays where it is.
+constexpr float kClearlyOff = 0.2F;
+
+/// A regular segment near a point, with its flattest points near there.
+struct Candidate {
+  std::int32_t label = -1;
+  std::size_t count = 0;
+  std::array<std::int32_t, kWitnesses> points{};
+  std::array<float, kWitnesses> curvature{};
+
+  void offer(std::int32_t point, float value) {
+    if (count == kWitnesses && !(value < curvature[count - 1])) return;
+    for (std::size_t i = 0; i < count; ++i) {
+      if (points[i] == point) return;
+    }
+    std::size_t at = count < kWitnesses ? count++ : count - 1;
+    for (; at > 0 && value < curvature[at - 1]; --at) {
+      curvature[at] = curvature[at - 1];
+      points[at] = points[at - 1];
+    }
+    curvature[at] = value;
+    points[at] = point;
+  }
+};
+
+class Settler {
+ public:
+  Settler(const SegmentationOptions& options, const GrowthState& state)
+      : state_(state), small_size_(options.small_size) {}
+
+  /// Label that a point should have.
+  std::int32_t settle(std::size_t p) const {
+    std::array<Candidate, kCandidates> candidates;
+    const std::size_t count = listCandidates(p, candidates);
+    const std::int32_t own = state_.labels[p];
+    const bool own_regular = isRegular(own);
+    if (count == 0 || (count == 1 && own_regular)) return own;
+    gatherWitnesses(p, candidates, count);
+    std::int32_t best = -1;
+    float best_offset = std::numeric_limits<float>::max();
+    float own_offset = std::numeric_limits<float>::max();
+    for (std::size_t i = 0; i < count; ++i) {
+      const float offset = meanOffset(p, candidates[i]);
+      if (candidates[i].label == own) own_offset = offset;
+      if (offset < best_offset && (candidates[i].label == own || fits(p, candidates[i].label))) {
+        best_offset = offset;
+        best = candidates[i].label;
+      }
+    }
+    if (best < 0 || best == own) return own;
+    const float unit = state_.nodes[p].spacing;
+    if (!own_regular) return best_offset <= state_.limits.offset * unit ? best : own;
+    const float clearly_off = std::max(kClearlyOff, state_.typical_offset) * unit;
+    return own_offset > clearly_off && best_offset < 0.5F * own_offset ? best : own;
+  }
+
+ private:
+  bool isRegular(std::int32_t label) const {
+    return label >= 0 && state_.clusters[static_cast<std::size_t>(label)].size >= small_size_;
+  }
+
+  std::size_t listCandidates(std::size_t p, std::array<Candidate, kCandidates>& candidates) const {
+    std::size_t count = 0;
+    const pcl::index_t* row = state_.neighborhoods->indices(p);
+    const int size = state_.rowSize(p);
+    for (int j = 0; j < size && count < kCandidates; ++j) {
+      const auto q = static_cast<std::size_t>(row[j]);
+      const std::int32_t label = state_.labels[q];
+      if (!isRegular(label) || !state_.limits.near(state_.nodes[p], state_.nodes[q])) continue;
+      const auto last = candidates.begin() + static_cast<std::ptrdiff_t>(count);
+      const auto found = std::find_if(candidates.begin(), last,
+                                      [&](const Candidate& c) { return c.label == label; });
+      if (found == last) candidates[count++].label = label;
+    }
+    return count;
+  }
+
+  // From the neighbours and their neighbours: those nearest to an edge have its bad normals
+  // themselves.
+  void gatherWitnesses(std::size_t p, std::array<Candidate, kCandidates>& candidates,
+                       std::size_t count) const {
+    const pcl::index_t* row = state_.neighborhoods->indices(p);
+    const int size = state_.rowSize(p);
+    for (int j = 1; j < size; ++j) {
+      const auto middle = static_cast<std::size_t>(row[j]);
+      if (!state_.limits.near(state_.nodes[p], state_.nodes[middle])) continue;
+      const pcl::index_t* next = state_.neighborhoods->indices(middle);
+      const int next_size = state_.rowSize(middle);
+      for (int i = 0; i < next_size; ++i) {
+        const auto q = static_cast<std::size_t>(next[i]);
+        if (q == p) continue;
+        for (std::size_t c = 0; c < count; ++c) {
+          if (candidates[c].label != state_.labels[q]) continue;
+          candidates[c].offer(static_cast<std::int32_t>(q), state_.nodes[q].curvature);
+          break;
+        }
+      }
+    }
+  }
+
+  float meanOffset(std::size_t p, const Candidate& candidate) const {
+    if (candidate.count < 3) return std::numeric_limits<float>::max();
+    const Node& node = state_.nodes[p];
+    float sum = 0.F;
+    for (std::size_t i = 0; i < candidate.count; ++i) {
+      const Node& q = state_.nodes[static_cast<std::size_t>(candidate.points[i])];
+      sum += std::abs((node.x - q.x) * q.nx + (node.y - q.y) * q.ny + (node.z - q.z) * q.nz);
+    }
+    return sum / static_cast<float>(candidate.count);
+  }
+
+  bool fits(std::size_t p, std::int32_t label) const {
+    const NormalSum& reference = state_.clusters[static_cast<std::size_t>(label)].normal;
+    return std::abs(reference.dot(state_.nodes[p])) >=
+           std::cos(kMostLean) * std::sqrt(reference.squaredNorm());
+  }
+
+  const GrowthState& state_;
+  std::size_t small_size_;
+};
+
+void move(std::size_t p, std::int32_t into, GrowthState& state) {
+  Node& node = state.nodes[p];
+  Cluster& source = state.clusters[static_cast<std::size_t>(state.labels[p])];
+  Cluster& target = state.clusters[static_cast<std::size_t>(into)];
+  source.normal.add(node, -1.0);
+  --source.size;
+  if (target.normal.dot(node) < 0.0) {
+    node.nx = -node.nx;
+    node.ny = -node.ny;
+    node.nz = -node.nz;
+    state.signs[p] = static_cast<std::int8_t>(-state.signs[p]);
+  }
+  target.normal.add(node);
+  ++target.size;
+  state.labels[p] = into;
+}
+
+}  // namespace
+
+std::size_t settleEdges(const SegmentationOptions& options, GrowthState& state) {
+  std::vector<pcl::index_t> border;
+  for (std::size_t p = 0; p < state.nodes.size(); ++p) {
+    if (state.on_border[p] != 0 && state.labels[p] >= 0)
+      border.push_back(static_cast<pcl::index_t>(p));
+  }
+  // All decide on the old labels; so the order does not matter.
+  std::vector<std::int32_t> wanted(border.size());
+  const Settler settler(options, state);
+  const auto n = static_cast<std::ptrdiff_t>(border.size());
+#pragma omp parallel for num_threads(resolveThreads(options.threads)) schedule(dynamic, 256)
+  for (std::ptrdiff_t i = 0; i < n; ++i) {
+    const auto at = static_cast<std::size_t>(i);
+    wanted[at] = settler.settle(static_cast<std::size_t>(border[at]));
+  }
+  std::size_t moved = 0;
+  for (std::size_t i = 0; i < border.size(); ++i) {
+    const auto p = static_cast<std::size_t>(border[i]);
+    const std::int32_t own = state.labels[p];
+    // A regular segment stays one.
+    if (wanted[i] == own ||
+        state.clusters[static_cast<std::size_t>(own)].size == options.small_size)
+      continue;
+    move(p, wanted[i], state);
+    ++moved;
+  }
+  return moved;
+}
+
+}  // namespace segorient::segmentation
