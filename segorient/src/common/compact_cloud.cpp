@@ -125,7 +125,8 @@ void sortWithinCells(const Source& source, std::vector<Keyed>& items) {
     while (j < items.size() && items[j].key == items[i].key) ++j;
     if (j - i > 1) {
       std::sort(items.begin() + static_cast<std::ptrdiff_t>(i),
-                items.begin() + static_cast<std::ptrdiff_t>(j), [&](const Keyed& a, const Keyed& b) {
+                items.begin() + static_cast<std::ptrdiff_t>(j),
+                [&](const Keyed& a, const Keyed& b) {
                   const float* p = source.at(static_cast<std::size_t>(a.row));
                   const float* q = source.at(static_cast<std::size_t>(b.row));
                   return equalXyz(p, q) ? a.row < b.row : lessXyz(p, q);
@@ -156,7 +157,8 @@ CompactCloud compactCloud(const PointView& points, const std::vector<pcl::index_
       out.xyz.insert(out.xyz.end(), {p[0], p[1], p[2], 0.0F});
       last = p;
     }
-    out.row_of[static_cast<std::size_t>(item.row)] = static_cast<pcl::index_t>(out.source.size() - 1);
+    out.row_of[static_cast<std::size_t>(item.row)] =
+        static_cast<pcl::index_t>(out.source.size() - 1);
   }
   return out;
 }

@@ -8,8 +8,10 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <cstring>
 #include <limits>
 
+#include "auto_stages.h"
 #include "cloud_scale.h"
 #include "segment_members.h"
 
@@ -25,6 +27,7 @@ class Stages {
       : progress_(progress), report_(report) {}
 
   void begin(const char* stage, double fraction) {
+    if (stage_ != nullptr && std::strcmp(stage_, stage) == 0) return;
     end();
     stage_ = stage;
     start_ = Clock::now();
@@ -124,6 +127,25 @@ void applyOrientation(Working& work) {
   }
 }
 
+// The default method brings its own stages; its normals come out oriented.
+void runAutomatic(const PipelineOptions& options, Stages& stages, Working& work,
+                  PipelineReport& report) {
+  detail::AutoStages result = detail::runAutoStages(
+      work.cloud, options,
+      [&stages](const char* stage, double fraction) { stages.begin(stage, fraction); });
+  report.k = result.k;
+  report.spacing = result.spacing;
+  report.noise = result.noise;
+  report.denoised = result.denoised;
+  report.contradictions = std::move(result.orientation.contradictions);
+  work.normals = std::move(result.normals);
+  work.segmentation = std::move(result.segmentation);
+  work.orientation.segments = std::move(result.segments);
+  work.orientation.components = std::move(result.orientation.result.components);
+  work.orientation.point_confidences = std::move(result.confidences);
+  work.orientation.point_components = std::move(result.components);
+}
+
 // From distinct points to input rows.
 void scatter(const Working& work, OrientedCloud& out) {
   const std::size_t rows = work.cloud.row_of.size();
@@ -184,15 +206,19 @@ OrientedCloud orientCloud(const PointView& points, const std::vector<pcl::index_
   // Fractions: shares of the time on clouds of a million points.
   stages.begin("search", 0.0);
   work.cloud = compactCloud(points, indices, options.threads);
-  findNeighbors(options, work, out.report);
-  stages.begin("normals", 0.4);
-  findNormals(options, work);
-  stages.begin("segmentation", 0.5);
-  findSegments(options, work);
-  stages.begin("orientation", 0.75);
-  findOrientation(options, work);
+  if (options.orientation.method == OrientationMethod::AUTO) {
+    runAutomatic(options, stages, work, out.report);
+  } else {
+    findNeighbors(options, work, out.report);
+    stages.begin("normals", 0.4);
+    findNormals(options, work);
+    stages.begin("segmentation", 0.5);
+    findSegments(options, work);
+    stages.begin("orientation", 0.75);
+    findOrientation(options, work);
+  }
   stages.begin("output", 0.95);
-  applyOrientation(work);
+  if (options.orientation.method != OrientationMethod::AUTO) applyOrientation(work);
   scatter(work, out);
   fillReport(work, out, out.report);
   stages.end();

@@ -44,7 +44,8 @@ class CloudPoints {
 
  private:
   static bool inPlace(const PointT& p) {
-    if (!std::is_same_v<std::decay_t<decltype(p.x)>, float> || sizeof(PointT) % sizeof(float) != 0) {
+    if (!std::is_same_v<std::decay_t<decltype(p.x)>, float> ||
+        sizeof(PointT) % sizeof(float) != 0) {
       return false;
     }
     const auto* x = reinterpret_cast<const char*>(&p.x);

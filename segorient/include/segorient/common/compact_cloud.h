@@ -9,17 +9,17 @@
 
 namespace segorient {
 
-/// The distinct finite points of a cloud, in an order that depends on where they are and not on where
-/// they stood in the input.
+/// The distinct finite points of a cloud, in an order that depends on where they are and not on
+/// where they stood in the input.
 ///
 /// Every stage of the pipeline works on this. Three things follow: exact duplicates cannot fill a
-/// neighbourhood, NaN points are nobody's neighbour, and the result is the same for any order of the
-/// input. Points near each other in space are near each other in memory (Z-order), which is what the
-/// stages after the search spend their time on.
+/// neighbourhood, NaN points are nobody's neighbour, and the result is the same for any order of
+/// the input. Points near each other in space are near each other in memory (Z-order), which is
+/// what the stages after the search spend their time on.
 struct CompactCloud {
-  std::vector<float> xyz;             ///< 4 floats a point, the fourth is 0
-  std::vector<pcl::index_t> row_of;   ///< for each input row its compact row, -1 where not finite
-  std::vector<pcl::index_t> source;   ///< for each compact row the first input row that holds it
+  std::vector<float> xyz;            ///< 4 floats a point, the fourth is 0
+  std::vector<pcl::index_t> row_of;  ///< for each input row its compact row, -1 where not finite
+  std::vector<pcl::index_t> source;  ///< for each compact row the first input row that holds it
 
   std::size_t size() const { return source.size(); }
   PointView view() const { return {xyz.data(), 4, source.size()}; }
@@ -29,7 +29,7 @@ struct CompactCloud {
 /// \param indices rows to use, or null for all; out of range entries are left out. With indices,
 ///        row_of and source refer to positions in `indices`
 /// \param threads see resolveThreads()
-CompactCloud compactCloud(const PointView& points, const std::vector<pcl::index_t>* indices = nullptr,
-                          int threads = 0);
+CompactCloud compactCloud(const PointView& points,
+                          const std::vector<pcl::index_t>* indices = nullptr, int threads = 0);
 
 }  // namespace segorient

@@ -13,12 +13,13 @@ namespace segorient {
 /// The k nearest neighbours of every point, in one flat table: what all stages share, so that
 /// neighbours are found once (paper, section 2.1).
 ///
-/// Row i belongs to point i of the cloud that was searched (or to its i-th index, where indices were
-/// given). A row is ascending by distance, ties by index, and begins with the point itself at distance
-/// 0, as in PCL. A stage that needs fewer neighbours reads a prefix of each row. Rows of points with
-/// NaN or infinite coordinates are empty.
+/// Row i belongs to point i of the cloud that was searched (or to its i-th index, where indices
+/// were given). A row is ascending by distance, ties by index, and begins with the point itself at
+/// distance 0, as in PCL. A stage that needs fewer neighbours reads a prefix of each row. Rows of
+/// points with NaN or infinite coordinates are empty.
 ///
-/// Memory: k * (sizeof(pcl::index_t) + 4) bytes a row, or k * sizeof(pcl::index_t) without distances.
+/// Memory: k * (sizeof(pcl::index_t) + 4) bytes a row, or k * sizeof(pcl::index_t) without
+/// distances.
 class Neighborhoods {
  public:
   /// Makes room for `rows` rows of at most `k` entries; every row is empty afterwards.

@@ -10,8 +10,8 @@ namespace segorient {
 /// Read-only view of points (or normals) in memory that belongs to somebody else: row i is three
 /// consecutive floats at `data + i * stride`.
 ///
-/// This is what every stage computes on. A PCL cloud whose point type has x, y, z in a row is viewed
-/// without a copy (see `pointView` in common/cloud_access.h).
+/// This is what every stage computes on. A PCL cloud whose point type has x, y, z in a row is
+/// viewed without a copy (see `pointView` in common/cloud_access.h).
 struct PointView {
   const float* data = nullptr;  ///< first row
   std::size_t stride = 4;       ///< floats from one row to the next

@@ -5,10 +5,13 @@
 #include <pcl/types.h>
 #include <segorient/common/point_view.h>
 #include <segorient/features/local_normals.h>
+#include <segorient/features/sheet_normals.h>
+#include <segorient/orientation/auto_orientation.h>
 #include <segorient/orientation/orient_segments.h>
 #include <segorient/orientation/orientation_result.h>
 #include <segorient/segmentation/region_growing.h>
 #include <segorient/segmentation/segmentation.h>
+#include <segorient/segmentation/sheet_segmentation.h>
 
 #include <cstddef>
 #include <functional>
@@ -24,6 +27,13 @@ struct PipelineOptions {
   SegmentationOptions segmentation;  ///< its threads and neighbors are not used
   OrientationOptions orientation;    ///< its threads are not used
   int threads = 0;                   ///< see resolveThreads()
+
+  // The steps of OrientationMethod::AUTO; the other methods use none of these.
+  SheetNormalOptions sheet_normals;  ///< its threads is not used
+  SheetSegmentationOptions sheets;
+  AutoOrientationOptions automatic;  ///< its threads is not used
+  bool denoise = true;    ///< smooth positions first where the noise is above about a spacing
+  int filter_rounds = 2;  ///< of filterOrientedNormals(); 0 = off
 };
 
 /// Called when a stage begins and as it goes on, from the calling thread.
@@ -50,8 +60,12 @@ struct PipelineReport {
   int k = 0;                      ///< neighbours used, the point itself not counted
   NormalEstimator estimator = NormalEstimator::Plane;
   OrientationMethod method = OrientationMethod::AUTO;
-  float spacing = 0.F;  ///< h: median over points of the mean distance to the 6 nearest
-  float noise = 0.F;    ///< rms distance of a neighbourhood from its plane, in spacings, median
+  float spacing = 0.F;    ///< h: median over points of the mean distance to the 6 nearest
+  float noise = 0.F;      ///< rms distance of a neighbourhood from its plane, in spacings, median
+  bool denoised = false;  ///< whether neighbours were sought after smoothing the positions
+  /// Borders where sure evidence had to be overruled, in input coordinates; a surface without two
+  /// sides has some.
+  std::vector<Contradiction> contradictions;
   std::vector<StageTime> stages;
   double seconds = 0.0;                                ///< all stages
   std::size_t peak_memory = 0;                         ///< of the process so far, bytes

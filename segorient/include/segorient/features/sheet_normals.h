@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the segorient authors
+#pragma once
+
+#include <segorient/common/neighborhoods.h>
+#include <segorient/common/point_view.h>
+
+#include <cstdint>
+#include <vector>
+
+namespace segorient {
+
+/// Most neighbours of a point that sheet estimation looks at.
+constexpr int kSheetNeighbors = 32;
+
+/// Options of estimateSheetNormals(). Each step can be switched off to see what it is worth.
+struct SheetNormalOptions {
+  bool split_walls = true;     ///< keep the points of a parallel wall nearby out of the fit
+  bool dominant_plane = true;  ///< at edges, fit the plane that most neighbours lie on
+  int threads = 0;             ///< see resolveThreads()
+};
+
+/// Normals that each come from one sheet of the surface (one wall of a plate, one face at an edge),
+/// with what is known about that sheet around each point. All arrays have one entry a point.
+///
+/// A neighbour q of p lies on p's sheet, as far as p can tell, if its offset (q - p) . n is between
+/// `below` and `above`; points of another wall fall outside.
+struct SheetNormals {
+  std::vector<float> normals;  ///< 4 floats: unoriented unit normal, rms residual in spacings; NaN
+                               ///< where the neighbourhood has no plane
+  std::vector<float> spacing;  ///< h: mean distance to the 6 nearest
+  std::vector<float> below;    ///< lower end of the offsets of p's own sheet
+  std::vector<float> above;    ///< upper end
+  std::vector<std::uint8_t> reliable;  ///< 1 where the fit is central and as good as most
+  float noise = 0.F;     ///< median residual of the smallest neighbourhoods, in spacings
+  float residual = 0.F;  ///< median residual of the final fits, in spacings
+  int scale = 0;         ///< smallest neighbourhood that the noise allowed
+};
+
+/// Estimates sheet normals.
+///
+/// For each point: planes over 8, 12, 18 and 32 neighbours, from the largest down a smaller one
+/// where it is clearly flatter; at edges the plane through the point that most of its neighbours
+/// lie on; then twice: Otsu's threshold on the offsets along the normal tells two walls apart, and
+/// the plane is fitted again to the point's own.
+///
+/// \param points distinct finite points
+/// \param neighborhoods their neighbours: kSheetNeighbors beside the point itself, or as many as
+/// there
+///        are
+SheetNormals estimateSheetNormals(const PointView& points, const Neighborhoods& neighborhoods,
+                                  const SheetNormalOptions& options = {});
+
+/// How noisy a cloud is, from some thousand of its points.
+struct NoiseLevel {
+  float fine = 0.F;    ///< median rms distance from a plane over 8 neighbours, in spacings
+  float coarse = 0.F;  ///< the same over 32
+};
+NoiseLevel measureNoise(const PointView& points, const Neighborhoods& neighborhoods,
+                        int threads = 0);
+
+}  // namespace segorient

@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the segorient authors
+#pragma once
+
+#include <segorient/common/neighborhoods.h>
+#include <segorient/common/point_view.h>
+#include <segorient/segmentation/segmentation.h>
+#include <segorient/segmentation/sheet_segmentation.h>
+
+#include <cstdint>
+#include <vector>
+
+namespace segorient {
+
+/// What the points along one border say about the relative sign of two segments.
+struct BorderVote {
+  std::int32_t a = 0;       ///< smaller label
+  std::int32_t b = 0;       ///< larger label
+  float weight = 0.F;       ///< sum of votes: above 0 where the two agree as they are
+  float absolute = 0.F;     ///< sum of their absolute values
+  float reliable = 0.F;     ///< part of `absolute` from points whose normal is reliable
+  std::uint32_t count = 0;  ///< votes
+  pcl::index_t where = -1;  ///< a point of the border
+  /// |weight| / absolute: 1 where all votes agree.
+  float unanimity() const {
+    return absolute > 0.F ? (weight < 0.F ? -weight : weight) / absolute : 0.F;
+  }
+};
+
+/// Votes of all borders, ascending by (a, b).
+///
+/// A border point compares its own group of neighbours with each foreign group on its sheet. With
+/// mean normals n and m and the chord D between the groups' means, its vote is n.m - 2 (n.D)(m.D) /
+/// |D|^2: the cosine between the normals after reflection at the chord's perpendicular plane, which
+/// is 1 for consistent normals at any dihedral angle, convex or concave, if the chord is symmetric.
+/// Groups on another wall vote -n.m: the walls of a plate face apart. Where two segments also meet
+/// at an edge, their walls have no say.
+///
+/// \return the same for any number of threads
+std::vector<BorderVote> borderVotes(const PointView& points, const Neighborhoods& neighborhoods,
+                                    const SheetField& field, const Segmentation& segmentation,
+                                    int threads = 0);
+
+}  // namespace segorient

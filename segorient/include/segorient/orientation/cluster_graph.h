@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the segorient authors
+#pragma once
+
+#include <segorient/orientation/border_votes.h>
+
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <vector>
+
+namespace segorient {
+
+/// Signed graph of segments that is contracted border by border, the surest first.
+///
+/// Where two clusters are joined, one is turned over if the evidence says so, and the borders that
+/// both have with a third add up with their signs: contradictions cancel and show as low unanimity,
+/// so that no single weak border decides anything.
+class ClusterGraph {
+ public:
+  /// Evidence between two clusters.
+  struct Edge {
+    std::int32_t a = 0;
+    std::int32_t b = 0;
+    float weight = 0.F;    ///< above 0 where the two agree as they are
+    float absolute = 0.F;  ///< sum of absolute votes
+    float reliable = 0.F;  ///< part of it from reliable points
+    bool alive = true;
+    float unanimity() const {
+      return absolute > 0.F ? (weight < 0.F ? -weight : weight) / absolute : 0.F;
+    }
+  };
+
+  /// What may be joined.
+  struct Rule {
+    float unanimity = 0.F;  ///< least |weight| / absolute
+    float weight = 0.F;     ///< least |weight|
+    float reliable = 0.F;   ///< least share of reliable evidence
+    /// Two clusters that both have more points than this are not joined.
+    std::uint32_t both_larger = std::numeric_limits<std::uint32_t>::max();
+  };
+
+  /// \param sizes points of each segment
+  ClusterGraph(const std::vector<std::uint32_t>& sizes, const std::vector<BorderVote>& votes);
+
+  /// Joins all that the rule allows, by |weight| * unanimity.
+  void contract(const Rule& rule);
+
+  /// The cluster that a segment belongs to: one of its segments stands for it.
+  /// \param sign +1 or -1: what turns the segment to agree with the cluster
+  std::int32_t find(std::int32_t segment, int& sign) const;
+
+  std::vector<Edge> edges() const;             ///< between the present clusters
+  std::vector<std::int32_t> clusters() const;  ///< present clusters, ascending
+  std::uint32_t points(std::int32_t cluster) const {
+    return sizes_[static_cast<std::size_t>(cluster)];
+  }
+
+ private:
+  struct Candidate;
+
+  std::int32_t other(std::uint32_t edge, std::int32_t cluster) const {
+    return edges_[edge].a == cluster ? edges_[edge].b : edges_[edge].a;
+  }
+  std::uint32_t edgeBetween(std::int32_t a, std::int32_t b) const;
+  bool allowed(const Edge& e, const Rule& rule) const;
+  void push(std::vector<Candidate>& heap, std::uint32_t edge, const Rule& rule) const;
+  void merge(std::int32_t keep, std::int32_t gone, int sign, const Rule& rule,
+             std::vector<Candidate>& heap);
+
+  std::vector<Edge> edges_;
+  std::vector<std::vector<std::uint32_t>> incident_;  // a cluster's edges, dead ones included
+  std::vector<std::uint32_t> sizes_;
+  std::vector<std::int32_t> parent_;
+  std::vector<std::int8_t> parity_;
+};
+
+}  // namespace segorient

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the segorient authors
+#pragma once
+
+#include <segorient/common/neighborhoods.h>
+#include <segorient/common/point_view.h>
+
+#include <vector>
+
+namespace segorient {
+
+struct FilteredNormals {
+  std::vector<float> normals;  ///< 4 floats a point: oriented unit normal, residual as given; NaN
+                               ///< only where no neighbour has a normal either
+  std::vector<float> confidences;  ///< 0 to 1: how far the oriented normals around agree
+};
+
+/// Final normals from the oriented normals around each point, that of the point itself being one of
+/// them.
+///
+/// A bilateral mean: every neighbour offers its tangent plane, and counts by how near the point is
+/// to that plane, by how well the plane fitted, and by how near the neighbour is. At an edge only
+/// the planes of the point's own face pass near it, on a thin wall only those of its own side;
+/// where the noise leaves two faces possible, the mean stands between them. A point without a
+/// normal, or with a wrong sign among right ones, gets that of its surroundings.
+///
+/// \param oriented 4 floats a point: oriented normal, rms residual in spacings
+/// \param spacing one a point
+/// \param residual median residual of the cloud, in spacings
+FilteredNormals filterOrientedNormals(const PointView& points, const Neighborhoods& neighborhoods,
+                                      const std::vector<float>& oriented,
+                                      const std::vector<float>& spacing, float residual,
+                                      int rounds = 2, int threads = 0);
+
+}  // namespace segorient

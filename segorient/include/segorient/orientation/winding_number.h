@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the segorient authors
+#pragma once
+
+#include <segorient/common/point_view.h>
+
+#include <cstdint>
+#include <vector>
+
+namespace segorient {
+
+/// Winding number of oriented points (Barill et al. 2018, "Fast winding numbers for soups and
+/// clouds"): w(x) = sum a n.(p - x) / (4 pi max(|p - x|, r)^3): 1 inside a closed outward cloud, 0
+/// outside, 1/2 on it.
+///
+/// A tree over runs of points that are near each other in memory; a node far enough away counts as
+/// one dipole. Building is linear, evaluating logarithmic.
+class WindingNumber {
+ public:
+  /// \param points all points, near ones side by side (CompactCloud's order)
+  /// \param dipoles 4 floats a point: area-weighted normal, area
+  /// \param rows points to use, ascending; empty = all
+  void build(const PointView& points, const std::vector<float>& dipoles,
+             const std::vector<std::uint32_t>& rows);
+
+  /// \param x where \param radius below which points are smoothed, usually the spacing
+  float evaluate(const float* x, float radius) const;
+
+  bool empty() const { return count_ == 0; }
+
+ private:
+  struct Node {
+    float center[3];
+    float radius;
+    float dipole[3];
+    std::uint32_t skip;   // next node when this one is used or done
+    std::uint32_t first;  // leaf: first point
+    std::uint32_t size;   // leaf: points, 0 for inner nodes
+  };
+  std::uint32_t buildNode(std::uint32_t first, std::uint32_t last);
+
+  std::vector<float> data_;  // 8 floats a point: x y z -, dipole, area
+  std::vector<Node> nodes_;
+  std::size_t count_ = 0;
+};
+
+}  // namespace segorient

@@ -1,0 +1,215 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the segorient authors
+#include "sheet_fit.h"
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+
+namespace segorient::detail {
+namespace {
+
+constexpr std::array<int, 4> kScales{8, 12, 18, kSheetNeighbors};
+
+// How much of the neighbourhood lies on the plane through the point: falls smoothly to 0 at the
+// tolerance.
+float support(const Offsets& o, const Eigen::Vector3f& n, float inverse_tolerance) {
+  const float nx = n.x() * inverse_tolerance;
+  const float ny = n.y() * inverse_tolerance;
+  const float nz = n.z() * inverse_tolerance;
+  float sum = 0.F;
+  for (std::size_t j = 0; j < kSheetNeighbors; ++j) {
+    const float t = o.x[j] * nx + o.y[j] * ny + o.z[j] * nz;
+    const float q = 1.F - t * t;
+    sum += o.weight[j] * (q > 0.F ? q : 0.F);
+  }
+  return sum;
+}
+
+Eigen::Vector3f bestSupported(const Offsets& o, const Eigen::Vector3f& start, float tolerance) {
+  constexpr int kNearest = 12;         // 66 planes: the point's own face holds several of these
+  constexpr float kLeastSine2 = 0.1F;  // thinner triangles say little about a plane
+  const float inverse = 1.F / tolerance;
+  Eigen::Vector3f best = start;
+  float most = support(o, start, inverse);
+  const int m = std::min(o.n, kNearest);
+  for (int a = 0; a < m; ++a) {
+    const auto i = static_cast<std::size_t>(a);
+    const Eigen::Vector3f da(o.x[i], o.y[i], o.z[i]);
+    for (int b = a + 1; b < m; ++b) {
+      const auto j = static_cast<std::size_t>(b);
+      const Eigen::Vector3f db(o.x[j], o.y[j], o.z[j]);
+      Eigen::Vector3f n = da.cross(db);
+      const float l2 = n.squaredNorm();
+      if (l2 <= kLeastSine2 * da.squaredNorm() * db.squaredNorm()) continue;
+      n /= std::sqrt(l2);
+      const float s = support(o, n, inverse);
+      if (s > most) {
+        most = s;
+        best = n;
+      }
+    }
+  }
+  return best;
+}
+
+}  // namespace
+
+Plane fitPlane(const Moments& m) {
+  Plane plane;
+  if (m.n < 3.F) return plane;
+  const float w = 1.F / m.n;
+  plane.mean = Eigen::Vector3f(m.x, m.y, m.z) * w;
+  Eigen::Matrix3f c;
+  c(0, 0) = m.xx * w - plane.mean.x() * plane.mean.x();
+  c(1, 1) = m.yy * w - plane.mean.y() * plane.mean.y();
+  c(2, 2) = m.zz * w - plane.mean.z() * plane.mean.z();
+  c(0, 1) = c(1, 0) = m.xy * w - plane.mean.x() * plane.mean.y();
+  c(0, 2) = c(2, 0) = m.xz * w - plane.mean.x() * plane.mean.z();
+  c(1, 2) = c(2, 1) = m.yz * w - plane.mean.y() * plane.mean.z();
+  Eigen::SelfAdjointEigenSolver<Eigen::Matrix3f> solver;
+  solver.computeDirect(c);
+  plane.lambda = solver.eigenvalues().cwiseMax(0.F);
+  plane.normal = solver.eigenvectors().col(0);
+  plane.valid = plane.lambda[1] > 1e-6F * plane.lambda[2] && plane.normal.allFinite();
+  return plane;
+}
+
+float meanDistance(const PointView& points, const Neighborhoods& nb, std::size_t i, int k) {
+  const pcl::index_t* row = nb.indices(i);
+  const int n = std::min(nb.count(i) - 1, k);
+  const float* p = points[i];
+  double sum = 0.0;  // in double: squares of far or tiny offsets leave the range of float
+  for (int j = 1; j <= n; ++j) {
+    const float* q = points[static_cast<std::size_t>(row[j])];
+    double square = 0.0;
+    for (int a = 0; a < 3; ++a) {
+      const double d = static_cast<double>(q[a]) - static_cast<double>(p[a]);
+      square += d * d;
+    }
+    sum += std::sqrt(square);
+  }
+  return n > 0 ? static_cast<float>(sum / n) : 0.F;
+}
+
+Offsets gatherOffsets(const PointView& points, const Neighborhoods& nb, std::size_t i,
+                      float spacing) {
+  Offsets o;
+  o.n = std::clamp(nb.count(i) - 1, 0, kSheetNeighbors);
+  const pcl::index_t* row = nb.indices(i);
+  const float* p = points[i];
+  const float s = spacing > 0.F ? 1.F / spacing : 0.F;
+  for (int j = 0; j < kSheetNeighbors; ++j) {
+    const auto k = static_cast<std::size_t>(j);
+    if (j < o.n) {
+      const float* q = points[static_cast<std::size_t>(row[j + 1])];
+      o.x[k] = (q[0] - p[0]) * s;
+      o.y[k] = (q[1] - p[1]) * s;
+      o.z[k] = (q[2] - p[2]) * s;
+      o.weight[k] = 1.F - 0.5F * static_cast<float>(j) / static_cast<float>(kSheetNeighbors);
+    } else {
+      o.x[k] = o.y[k] = o.z[k] = o.weight[k] = 0.F;
+    }
+  }
+  return o;
+}
+
+Plane fitAdaptive(const Offsets& o, int smallest) {
+  constexpr float kClearlyFlatter = 0.6F;
+  std::array<Plane, kScales.size()> planes;
+  Moments m;
+  m.addOrigin();
+  std::size_t j = 0;
+  for (std::size_t s = 0; s < kScales.size(); ++s) {
+    for (; j < static_cast<std::size_t>(std::min(kScales[s], o.n)); ++j)
+      m.add(o.x[j], o.y[j], o.z[j]);
+    if (static_cast<int>(s) >= smallest) planes[s] = fitPlane(m);
+  }
+  Plane best = planes.back();
+  for (int s = static_cast<int>(kScales.size()) - 2; s >= smallest; --s) {
+    const Plane& p = planes[static_cast<std::size_t>(s)];
+    if (!p.valid) continue;
+    if (!best.valid ||
+        p.lambda[0] * best.lambda[1] < kClearlyFlatter * best.lambda[0] * p.lambda[1]) {
+      best = p;
+    }
+  }
+  return best;
+}
+
+Plane fitDominant(const Offsets& o, const Plane& start, float tolerance) {
+  Eigen::Vector3f normal = bestSupported(o, start.normal, tolerance);
+  Plane plane;
+  for (int round = 0; round < 2; ++round) {
+    Moments m;
+    m.addOrigin();
+    for (std::size_t j = 0; j < static_cast<std::size_t>(o.n); ++j) {
+      if (std::fabs(o.along(j, normal)) < tolerance) m.add(o.x[j], o.y[j], o.z[j]);
+    }
+    const Plane refined = fitPlane(m);
+    // Few points, or a sliver of them, have no plane of their own.
+    if (!refined.valid || m.n < 5.F || refined.lambda[1] < 0.02F * refined.lambda[2]) break;
+    plane = refined;
+    normal = plane.normal;
+  }
+  return plane;
+}
+
+WallSplit splitWalls(const Offsets& o, const Eigen::Vector3f& normal) {
+  constexpr std::size_t kLeast = 4;  // fewer points have no plane with a residual
+  std::array<float, kSheetNeighbors + 1> t;
+  const auto n = static_cast<std::size_t>(o.n) + 1;
+  WallSplit split;
+  if (n < 2 * kLeast) return split;
+  t[0] = 0.F;
+  for (std::size_t j = 1; j < n; ++j) t[j] = o.along(j - 1, normal);
+  std::sort(t.begin(), t.begin() + static_cast<std::ptrdiff_t>(n));
+  float sum = 0.F;
+  float squares = 0.F;
+  for (std::size_t j = 0; j < n; ++j) {
+    sum += t[j];
+    squares += t[j] * t[j];
+  }
+  const auto count = static_cast<float>(n);
+  const float total = squares - sum * sum / count;
+  if (!(total > 0.F)) return split;
+
+  float left = 0.F;
+  float between = -1.F;
+  float apart = 0.F;
+  std::size_t at = 0;
+  for (std::size_t j = 0; j + kLeast < n; ++j) {
+    left += t[j];
+    if (j + 1 < kLeast) continue;
+    const auto a = static_cast<float>(j + 1);
+    const float b = count - a;
+    const float gap = (sum - left) / b - left / a;
+    const float value = a * b / count * gap * gap;
+    if (value > between) {
+      between = value;
+      apart = gap;
+      at = j;
+    }
+  }
+  const float low = t[at];
+  const float high = t[at + 1];
+  // Two classes, each thin, well apart, with nothing in between: two walls.
+  if (total - between >= 0.2F * total || apart <= 0.35F || high - low <= 0.15F * apart)
+    return split;
+  split.found = true;
+  const float middle = 0.5F * (low + high);
+  (middle > 0.F ? split.above : split.below) = middle;
+  return split;
+}
+
+Plane fitWithin(const Offsets& o, const Eigen::Vector3f& normal, const WallSplit& split) {
+  Moments m;
+  m.addOrigin();
+  for (std::size_t j = 0; j < static_cast<std::size_t>(o.n); ++j) {
+    const float t = o.along(j, normal);
+    if (t > split.below && t < split.above) m.add(o.x[j], o.y[j], o.z[j]);
+  }
+  return fitPlane(m);
+}
+
+}  // namespace segorient::detail

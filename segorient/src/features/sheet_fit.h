@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the segorient authors
+#pragma once
+
+#include <segorient/common/neighborhoods.h>
+#include <segorient/common/point_view.h>
+#include <segorient/features/sheet_normals.h>
+
+#include <Eigen/Core>
+#include <array>
+#include <cstddef>
+#include <limits>
+
+namespace segorient::detail {
+
+/// Sums over a set of offsets from the query point: enough for its best-fit plane.
+struct Moments {
+  float n = 0.F;
+  float x = 0.F, y = 0.F, z = 0.F;
+  float xx = 0.F, xy = 0.F, xz = 0.F, yy = 0.F, yz = 0.F, zz = 0.F;
+
+  /// The query point itself, offset 0.
+  void addOrigin() { n += 1.F; }
+  void add(float dx, float dy, float dz) {
+    n += 1.F;
+    x += dx;
+    y += dy;
+    z += dz;
+    xx += dx * dx;
+    xy += dx * dy;
+    xz += dx * dz;
+    yy += dy * dy;
+    yz += dy * dz;
+    zz += dz * dz;
+  }
+};
+
+struct Plane {
+  Eigen::Vector3f normal = Eigen::Vector3f::Zero();
+  Eigen::Vector3f lambda = Eigen::Vector3f::Zero();  ///< variances, ascending
+  Eigen::Vector3f mean = Eigen::Vector3f::Zero();    ///< of the offsets
+  bool valid = false;                                ///< false for fewer than 3 points or a line
+};
+Plane fitPlane(const Moments& moments);
+
+/// The neighbours of one point: offsets from it in units of its spacing, as separate arrays; unused
+/// entries are 0 with weight 0.
+struct Offsets {
+  alignas(32) std::array<float, kSheetNeighbors> x;
+  alignas(32) std::array<float, kSheetNeighbors> y;
+  alignas(32) std::array<float, kSheetNeighbors> z;
+  /// 1 for the nearest down to 1/2 for the farthest.
+  alignas(32) std::array<float, kSheetNeighbors> weight;
+  int n = 0;
+
+  float along(std::size_t j, const Eigen::Vector3f& direction) const {
+    return x[j] * direction.x() + y[j] * direction.y() + z[j] * direction.z();
+  }
+};
+Offsets gatherOffsets(const PointView& points, const Neighborhoods& neighborhoods, std::size_t i,
+                      float spacing);
+
+/// Mean distance to the k nearest.
+float meanDistance(const PointView& points, const Neighborhoods& neighborhoods, std::size_t i,
+                   int k);
+
+/// Over neighbourhood sizes from number `smallest` of {8, 12, 18, 32} on.
+Plane fitAdaptive(const Offsets& offsets, int smallest);
+
+/// The plane through the point that most of its neighbours lie on, within `tolerance` spacings;
+/// invalid where none is clearly a plane.
+Plane fitDominant(const Offsets& offsets, const Plane& start, float tolerance);
+
+/// Which offsets along the normal belong to the point's own wall.
+struct WallSplit {
+  float below = -std::numeric_limits<float>::infinity();
+  float above = std::numeric_limits<float>::infinity();
+  bool found = false;
+};
+WallSplit splitWalls(const Offsets& offsets, const Eigen::Vector3f& normal);
+Plane fitWithin(const Offsets& offsets, const Eigen::Vector3f& normal, const WallSplit& split);
+
+}  // namespace segorient::detail

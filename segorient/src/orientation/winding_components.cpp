@@ -1,0 +1,203 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the segorient authors
+#include <segorient/common/threads.h>
+#include <segorient/orientation/winding_components.h>
+#include <segorient/orientation/winding_number.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+
+namespace segorient {
+namespace {
+
+struct Box {
+  std::array<float, 3> low;
+  std::array<float, 3> high;
+  Box() {
+    low.fill(std::numeric_limits<float>::max());
+    high.fill(std::numeric_limits<float>::lowest());
+  }
+  void add(const float* p) {
+    for (std::size_t a = 0; a < 3; ++a) {
+      low[a] = std::min(low[a], p[a]);
+      high[a] = std::max(high[a], p[a]);
+    }
+  }
+  bool contains(const float* p, float margin) const {
+    for (std::size_t a = 0; a < 3; ++a) {
+      if (p[a] < low[a] - margin || p[a] > high[a] + margin) return false;
+    }
+    return true;
+  }
+  float diagonal() const {
+    float s = 0.F;
+    for (std::size_t a = 0; a < 3; ++a) s += (high[a] - low[a]) * (high[a] - low[a]);
+    return std::sqrt(s);
+  }
+};
+
+// One sample point that a component's field reaches, and the field there.
+struct Reach {
+  std::uint32_t sample;
+  float w;
+};
+
+class Solver {
+ public:
+  Solver(const PointView& points, const std::vector<float>& dipoles,
+         const std::vector<float>& spacing, const std::vector<std::int32_t>& components,
+         std::size_t count, int threads)
+      : points_(points),
+        dipoles_(dipoles),
+        spacing_(spacing),
+        threads_(resolveThreads(threads)),
+        rows_(count),
+        boxes_(count),
+        reach_(count) {
+    for (std::size_t i = 0; i < components.size(); ++i) {
+      if (components[i] < 0) continue;
+      const auto c = static_cast<std::size_t>(components[i]);
+      rows_[c].push_back(static_cast<std::uint32_t>(i));
+      boxes_[c].add(points[i]);
+    }
+  }
+
+  std::vector<ComponentWinding> solve() {
+    takeSamples();
+    for (std::size_t c = 0; c < rows_.size(); ++c) evaluate(c);
+    insertOneByOne();
+    flipWhileBetter();
+    return results();
+  }
+
+ private:
+  // Enough of each component to see it, and of the large ones in proportion: some thousand in all.
+  void takeSamples() {
+    constexpr double kAll = 4000.0;
+    constexpr std::size_t kLeast = 24;
+    for (std::size_t c = 0; c < rows_.size(); ++c) {
+      const auto& rows = rows_[c];
+      const auto share = static_cast<std::size_t>(kAll * static_cast<double>(rows.size()) /
+                                                  static_cast<double>(points_.size));
+      const std::size_t want = std::min(rows.size(), std::max(kLeast, share));
+      for (std::size_t k = 0; k < want; ++k) {
+        samples_.push_back(rows[k * rows.size() / want]);
+        owner_.push_back(static_cast<std::uint32_t>(c));
+        weight_.push_back(static_cast<double>(rows.size()) / static_cast<double>(want));
+      }
+    }
+    field_.assign(samples_.size(), -0.5);
+  }
+
+  void evaluate(std::size_t c) {
+    WindingNumber winding;
+    winding.build(points_, dipoles_, rows_[c]);
+    auto& reach = reach_[c];
+    const float margin = boxes_[c].diagonal();
+    for (std::size_t k = 0; k < samples_.size(); ++k) {
+      if (boxes_[c].contains(points_[samples_[k]], margin)) {
+        reach.push_back({static_cast<std::uint32_t>(k), 0.F});
+      }
+    }
+#pragma omp parallel for num_threads(threads_) schedule(dynamic, 64)
+    for (std::size_t r = 0; r < reach.size(); ++r) {
+      const std::uint32_t i = samples_[reach[r].sample];
+      reach[r].w = winding.evaluate(points_[i], spacing_[i]);
+    }
+  }
+
+  // The largest first, each with the sign that suits what is there already.
+  void insertOneByOne() {
+    signs_.assign(rows_.size(), 0);
+    for (std::size_t c = 0; c < rows_.size(); ++c) {
+      double plus = 0.0;
+      double minus = 0.0;
+      for (const Reach& r : reach_[c]) {
+        if (owner_[r.sample] > c) continue;
+        const double f = field_[r.sample];
+        const auto w = static_cast<double>(r.w);
+        plus += weight_[r.sample] * (f + w) * (f + w);
+        minus += weight_[r.sample] * (f - w) * (f - w);
+      }
+      signs_[c] = minus < plus ? -1 : 1;
+      for (const Reach& r : reach_[c]) field_[r.sample] += signs_[c] * static_cast<double>(r.w);
+    }
+  }
+
+  // What flipping a component would add to the sum of squares.
+  double change(std::size_t c) const {
+    double sum = 0.0;
+    for (const Reach& r : reach_[c]) {
+      const double t = signs_[c] * static_cast<double>(r.w);
+      sum += weight_[r.sample] * 4.0 * t * (t - field_[r.sample]);
+    }
+    return sum;
+  }
+
+  void flipWhileBetter() {
+    constexpr int kRounds = 20;
+    for (int round = 0; round < kRounds; ++round) {
+      bool moved = false;
+      for (std::size_t c = 0; c < rows_.size(); ++c) {
+        if (change(c) >= -1e-6) continue;
+        for (const Reach& r : reach_[c]) {
+          field_[r.sample] -= 2.0 * signs_[c] * static_cast<double>(r.w);
+        }
+        signs_[c] = -signs_[c];
+        moved = true;
+      }
+      if (!moved) break;
+    }
+  }
+
+  std::vector<ComponentWinding> results() const {
+    std::vector<ComponentWinding> out(rows_.size());
+    std::vector<double> squares(rows_.size(), 0.0);
+    std::vector<double> weights(rows_.size(), 0.0);
+    for (std::size_t k = 0; k < samples_.size(); ++k) {
+      squares[owner_[k]] += weight_[k] * field_[k] * field_[k];
+      weights[owner_[k]] += weight_[k];
+    }
+    for (std::size_t c = 0; c < out.size(); ++c) {
+      out[c].sign = static_cast<std::int8_t>(signs_[c]);
+      if (weights[c] <= 0.0) continue;
+      out[c].residual = static_cast<float>(squares[c] / weights[c]);
+      double now = 0.0;
+      for (const Reach& r : reach_[c]) {
+        now += weight_[r.sample] * field_[r.sample] * field_[r.sample];
+      }
+      const double d = change(c);
+      out[c].evidence = static_cast<float>(std::max(0.0, d / (2.0 * now + d + 1e-12)));
+    }
+    return out;
+  }
+
+  const PointView& points_;
+  const std::vector<float>& dipoles_;
+  const std::vector<float>& spacing_;
+  int threads_;
+  std::vector<std::vector<std::uint32_t>> rows_;
+  std::vector<Box> boxes_;
+  std::vector<std::vector<Reach>> reach_;
+  std::vector<std::uint32_t> samples_;
+  std::vector<std::uint32_t> owner_;
+  std::vector<double> weight_;  // points that a sample stands for
+  std::vector<double> field_;   // w - 1/2 at the samples
+  std::vector<int> signs_;
+};
+
+}  // namespace
+
+std::vector<ComponentWinding> solveComponents(const PointView& points,
+                                              const std::vector<float>& dipoles,
+                                              const std::vector<float>& spacing,
+                                              const std::vector<std::int32_t>& components,
+                                              std::size_t count, int threads) {
+  if (count == 0) return {};
+  return Solver(points, dipoles, spacing, components, count, threads).solve();
+}
+
+}  // namespace segorient
