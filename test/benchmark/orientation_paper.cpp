@@ -117,7 +117,11 @@ std::vector<Column> columns() {
       segorient::SegmentAngle::REFERENCE_NORMALS;
   add("propagation (border)", OrientationMethod::PROPAGATION);
   add("boundary", OrientationMethod::BOUNDARY);
+  add("boundary (triangulated)", OrientationMethod::BOUNDARY).boundary =
+      segorient::BoundaryTest::TRIANGULATED;
   add("extremal", OrientationMethod::EXTREMAL);
+  add("combined (triangulated)", OrientationMethod::COMBINED).boundary =
+      segorient::BoundaryTest::TRIANGULATED;
   add("combined", OrientationMethod::COMBINED);
   return out;
 }

@@ -7,6 +7,7 @@
 #include <segorient/orientation/point_tree.h>
 #include <segorient/orientation/segment_links.h>
 #include <segorient/orientation/segment_methods.h>
+#include <segorient/orientation/triangulated_boundary.h>
 
 #include <algorithm>
 #include <cmath>
@@ -41,6 +42,19 @@ std::vector<SegmentOrientationResult> runMethod(const SegmentEvidence& evidence,
       break;
   }
   return orientCombined(evidence, method_options);
+}
+
+std::vector<BoundaryVote> boundaryVotes(const PointView& points, const PointView& normals,
+                                        const Neighborhoods& neighborhoods,
+                                        const Segmentation& segmentation, const SegmentLinks& links,
+                                        const OrientationOptions& options) {
+  if (options.boundary == BoundaryTest::LOCAL) {
+    return localBoundaryVotes(points, normals, neighborhoods, segmentation, links, options.threads);
+  }
+  TriangulationOptions triangulation = options.triangulation;
+  triangulation.threads = options.threads;
+  return triangulatedBoundaryVotes(points, segmentation, links,
+                                   triangulateSegments(points, segmentation, triangulation));
 }
 
 // Signs of the points of regular segments; the others stay open.
@@ -109,7 +123,7 @@ OrientationResult orientSegments(const PointView& points, const PointView& norma
   const std::vector<float> cosines =
       segmentCosines(points, normals, segmentation, links, options.angle);
   const std::vector<BoundaryVote> boundary =
-      localBoundaryVotes(points, normals, neighborhoods, segmentation, links, options.threads);
+      boundaryVotes(points, normals, neighborhoods, segmentation, links, options);
   const std::vector<ExtremalEvidence> extremal = gatherExtremalEvidence(
       findExtremalPoints(points, normals, usableRows(points, normals), options.max_box_points),
       segmentation, options.gamma);

@@ -8,6 +8,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "boundary_ballot.h"
+
 namespace segorient {
 namespace {
 
@@ -36,10 +38,6 @@ float referenceCosine(const Segmentation& segmentation, const SegmentLink& link)
 // (sine) count as undecided.
 constexpr float kMostOffPlane = 0.5F;
 
-// Two undecided pairs are added to every border, so that a chance contact of few points never
-// counts as much as a long border.
-constexpr float kPrior = 2.F;
-
 float borderCosine(const PointView& points, const PointView& normals,
                    const Segmentation& segmentation, const SegmentLinks& links,
                    const SegmentLink& link) {
@@ -52,7 +50,7 @@ float borderCosine(const PointView& points, const PointView& normals,
     const float off_plane = std::max(std::abs(chord.dot(in_a)), std::abs(chord.dot(in_b)));
     if (off_plane <= kMostOffPlane * chord.norm()) sum += in_a.dot(in_b);
   }
-  return sum / (static_cast<float>(link.size) + kPrior);
+  return sum / (static_cast<float>(link.size) + kUndecidedPairs);
 }
 
 class LocalBoundary {
@@ -64,32 +62,42 @@ class LocalBoundary {
         neighborhoods_(neighborhoods),
         segmentation_(segmentation) {}
 
-  // Direction of the walk along the border at p, towards the segment of q. Shorter than 1 where the
-  // way across the border leaves the tangent plane; zero where there is none.
+  // Direction of the walk along the border at p, towards the segment of q: at most 1 long, shorter
+  // in the midst of the segment and where the way across the border leaves the tangent plane.
   Vector3f walk(pcl::index_t p, pcl::index_t q) const {
-    const std::int32_t own_label = segmentation_.labels[static_cast<std::size_t>(p)];
+    const auto row = static_cast<std::size_t>(p);
+    const std::int32_t own_label = segmentation_.labels[row];
     const std::int32_t other_label = segmentation_.labels[static_cast<std::size_t>(q)];
     const Vector3f origin = vectorAt(points_, p);
+    const pcl::index_t* neighbors = neighborhoods_.indices(row);
+    const int count = neighborhoods_.count(row);
     Vector3f own = Vector3f::Zero();
     Vector3f other = vectorAt(points_, q) - origin;
     float own_count = 1.F;
     float other_count = 1.F;
-    const auto row = static_cast<std::size_t>(p);
-    const pcl::index_t* neighbors = neighborhoods_.indices(row);
-    for (int j = 1; j < neighborhoods_.count(row); ++j) {
+    float reach = 0.F;
+    for (int j = 1; j < count; ++j) {
+      const Vector3f offset = vectorAt(points_, neighbors[j]) - origin;
       const std::int32_t label = segmentation_.labels[static_cast<std::size_t>(neighbors[j])];
+      reach = std::max(reach, offset.squaredNorm());
       if (label == own_label) {
-        own += vectorAt(points_, neighbors[j]) - origin;
+        own += offset;
         own_count += 1.F;
       } else if (label == other_label) {
-        other += vectorAt(points_, neighbors[j]) - origin;
+        other += offset;
         other_count += 1.F;
       }
     }
-    const Vector3f across = other / other_count - own / own_count;
+    own /= own_count;
+    const Vector3f across = other / other_count - own;
     const float length = across.norm();
-    if (!(length > 0.F)) return Vector3f::Zero();
-    return segmentNormal(normals_, segmentation_, p).cross(across / length);
+    if (!(length > 0.F) || !(reach > 0.F)) return Vector3f::Zero();
+    // Away from the own side, and over to the other: the first is right for blades, too, whose
+    // other side folds back over this one; the second is steadier. The centre of a half disc, which
+    // is what lies on the own side at a border, is 4 / (3 pi) radii from its middle.
+    constexpr float kHalfDisc = 0.4244132F;
+    const Vector3f out = across / length - own / (kHalfDisc * std::sqrt(reach));
+    return segmentNormal(normals_, segmentation_, p).cross(0.5F * out);
   }
 
  private:
@@ -99,30 +107,14 @@ class LocalBoundary {
   const Segmentation& segmentation_;
 };
 
-std::uint32_t distinct(std::vector<pcl::index_t>& rows) {
-  std::sort(rows.begin(), rows.end());
-  return static_cast<std::uint32_t>(std::unique(rows.begin(), rows.end()) - rows.begin());
-}
-
 BoundaryVote voteOf(const LocalBoundary& boundary, const SegmentLinks& links,
                     const SegmentLink& link) {
-  float balance = 0.F;
-  float total = 0.F;
-  std::vector<pcl::index_t> in_a;
-  std::vector<pcl::index_t> in_b;
+  BoundaryBallot ballot;
   for (std::uint32_t i = link.first; i < link.first + link.size; ++i) {
     const BorderPair& pair = links.pairs[i];
-    const float vote =
-        -boundary.walk(pair.in_a, pair.in_b).dot(boundary.walk(pair.in_b, pair.in_a));
-    balance += vote;
-    total += std::abs(vote);
-    in_a.push_back(pair.in_a);
-    in_b.push_back(pair.in_b);
+    ballot.add(pair, -boundary.walk(pair.in_a, pair.in_b).dot(boundary.walk(pair.in_b, pair.in_a)));
   }
-  BoundaryVote out;
-  out.margin = balance / (total + kPrior);
-  out.points = std::min(distinct(in_a), distinct(in_b));
-  return out;
+  return ballot.count();
 }
 
 }  // namespace

@@ -20,8 +20,8 @@ struct ComponentSignOptions {
 /// points of its own subdivision vote for its sign, each by the cosine of its angle. A component
 /// that lies in the material of larger ones is the wall of a cavity and turned inward; whether it
 /// does is told by the solid angle that the larger ones, already turned, fill around it. Holds for
-/// closed components; the confidences tell how sure that is. \param result all points oriented
-/// relative to each other within their components
+/// closed components; the confidences tell how sure that is.
+/// \param result all points oriented relative to each other within their components
 void orientComponents(const PointView& points, const PointView& normals,
                       const Neighborhoods& neighborhoods, const ComponentSignOptions& options,
                       OrientationResult& result);

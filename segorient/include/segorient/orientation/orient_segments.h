@@ -8,6 +8,7 @@
 #include <segorient/orientation/orientation_result.h>
 #include <segorient/orientation/segment_relations.h>
 #include <segorient/segmentation/segmentation.h>
+#include <segorient/surface/segment_mesh.h>
 
 #include <cstddef>
 
@@ -21,6 +22,8 @@ struct OrientationOptions {
   float gamma = 0.6108652F;
   SegmentAngle angle = SegmentAngle::ACROSS_BORDER;
   bool point_tree = false;  ///< PROPAGATION over points instead of segments (Hoppe et al. 1992)
+  BoundaryTest boundary = BoundaryTest::LOCAL;
+  TriangulationOptions triangulation;  ///< for BoundaryTest::TRIANGULATED; its threads are not used
   float min_margin = 0.5F;  ///< majority that a boundary needs to decide, see BoundaryVote
   std::size_t max_box_points =
       120;  ///< most points in a box of the subdivision for extremal points

@@ -17,10 +17,11 @@ struct OrientedSegmentation {
 };
 
 /// Orients a cloud that has normals: the stage after segmentation, on any rows (NaN and repeated
-/// points included). A row that repeats a point follows that point. \param normals one a row, signs
-/// arbitrary; NaN = the point has none \param segmentation of these rows, or null to make one by
-/// `segmentation_options` \param k neighbours of a point, itself not counted; <= 0 = 12 \return
-/// empty if the sizes do not agree or a label is out of range
+/// points included). A row that repeats a point follows that point.
+/// \param normals one a row, signs arbitrary; NaN = the point has none
+/// \param segmentation of these rows, or null to make one by `segmentation_options`
+/// \param k neighbours of a point, itself not counted; <= 0 = 12
+/// \return empty if the sizes do not agree or a label is out of range
 OrientedSegmentation orientSegmentation(const PointView& points, const PointView& normals,
                                         const Segmentation* segmentation, int k,
                                         const SegmentationOptions& segmentation_options,

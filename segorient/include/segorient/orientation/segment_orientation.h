@@ -75,6 +75,10 @@ class SegmentOrientation : public pcl::PCLBase<PointT> {
   void setSegmentAngle(SegmentAngle angle) { options_.angle = angle; }
   SegmentAngle getSegmentAngle() const { return options_.angle; }
 
+  /// How boundaries are told: from neighbours (default) or from triangulations (the paper's).
+  void setBoundaryTest(BoundaryTest test) { options_.boundary = test; }
+  BoundaryTest getBoundaryTest() const { return options_.boundary; }
+
   /// PROPAGATION over the points themselves instead of segments; default false.
   void setPointTree(bool value) { options_.point_tree = value; }
   bool getPointTree() const { return options_.point_tree; }

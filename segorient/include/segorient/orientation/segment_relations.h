@@ -28,6 +28,13 @@ std::vector<float> segmentCosines(const PointView& points, const PointView& norm
                                   const Segmentation& segmentation, const SegmentLinks& links,
                                   SegmentAngle angle);
 
+/// How boundaries are told.
+enum class BoundaryTest : std::uint8_t {
+  LOCAL,        ///< from the neighbours of border points, see localBoundaryVotes()
+  TRIANGULATED  ///< from triangulations of the segments: the paper's, see
+                ///< triangulatedBoundaryVotes()
+};
+
 /// What the boundaries of two neighbouring segments say about their relative orientation.
 struct BoundaryVote {
   float margin = 0.F;        ///< in [-1, 1]: sum of votes / sum of |votes|; positive: consistent
@@ -43,10 +50,11 @@ struct BoundaryVote {
 /// with the segment on its left, seen from the tip of its normals; two segments are consistent if
 /// they walk their common border in opposite directions.
 ///
-/// At a border point p of segment a the direction of the walk is n x c, c the tangent direction out
-/// of a and across the border, from the neighbours on both sides. Holds for any dihedral angle,
-/// convex or concave. One vote a pair; where the border is not clear (thin segments, overlapping
-/// sheets, noise) votes cancel and the margin shows it. \param threads see resolveThreads()
+/// At a border point p of segment a the direction of the walk is n x c, c the tangent direction
+/// out of a and across the border, from the neighbours on both sides. Holds for any dihedral angle
+/// of about 45 degrees and more, convex or concave. One vote a pair; where the border is not clear
+/// (thin segments, overlapping sheets, blades, noise) votes cancel and the margin shows it.
+/// \param threads see resolveThreads()
 std::vector<BoundaryVote> localBoundaryVotes(const PointView& points, const PointView& normals,
                                              const Neighborhoods& neighborhoods,
                                              const Segmentation& segmentation,

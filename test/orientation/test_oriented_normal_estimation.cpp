@@ -1,0 +1,222 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the segorient authors
+#include <gtest/gtest.h>
+#include <pcl/console/print.h>
+#include <segorient/orientation/oriented_normal_estimation.h>
+
+#include <cmath>
+#include <limits>
+
+#include "class_clouds.h"
+
+namespace segorient {
+namespace {
+
+using Estimation = OrientedNormalEstimation<pcl::PointXYZ, pcl::Normal>;
+using test::LabelledCloud;
+
+class Quiet : public testing::Test {
+ protected:
+  void SetUp() override { pcl::console::setVerbosityLevel(pcl::console::L_ALWAYS); }
+  void TearDown() override { pcl::console::setVerbosityLevel(pcl::console::L_INFO); }
+};
+using OrientedNormalEstimationTest = Quiet;
+
+LabelledCloud sphere(std::size_t n = 3000) {
+  return test::sample("sphere", {test::sphere({0, 0, 0}, 1)}, n, 61);
+}
+
+TEST_F(OrientedNormalEstimationTest, NeedsNothingButACloud) {
+  const LabelledCloud cloud = sphere();
+  Estimation estimation;
+  estimation.setInputCloud(test::toPcl(cloud));
+  pcl::PointCloud<pcl::Normal> normals;
+  estimation.compute(normals);
+  ASSERT_EQ(normals.size(), cloud.size());
+  EXPECT_TRUE(normals.is_dense);
+  for (std::size_t i = 0; i < cloud.size(); ++i) EXPECT_TRUE(test::agrees(normals[i], cloud, i));
+  EXPECT_EQ(estimation.getLabels().size(), cloud.size());
+  EXPECT_EQ(estimation.getConfidences().size(), cloud.size());
+  EXPECT_EQ(estimation.getComponents().size(), cloud.size());
+  EXPECT_EQ(estimation.getSegments().size(), estimation.getSegmentation().segments.size());
+  EXPECT_EQ(estimation.getReport().points, cloud.size());
+  EXPECT_EQ(estimation.getReport().components.size(), 1U);
+}
+
+TEST_F(OrientedNormalEstimationTest, IsAPclNormalEstimation) {
+  const LabelledCloud cloud = sphere();
+  pcl::NormalEstimation<pcl::PointXYZ, pcl::PointNormal>::Ptr estimation =
+      pcl::make_shared<OrientedNormalEstimation<pcl::PointXYZ, pcl::PointNormal>>();
+  estimation->setInputCloud(test::toPcl(cloud));
+  estimation->setKSearch(15);
+  pcl::PointCloud<pcl::PointNormal> out;
+  estimation->compute(out);
+  ASSERT_EQ(out.size(), cloud.size());
+  for (std::size_t i = 0; i < cloud.size(); ++i) {
+    EXPECT_TRUE(test::agrees(out[i], cloud, i));
+    EXPECT_EQ(out[i].x, cloud.xyz[4 * i]);
+    EXPECT_EQ(out[i].z, cloud.xyz[4 * i + 2]);
+  }
+}
+
+TEST_F(OrientedNormalEstimationTest, KSearchCountsThePointItself) {
+  Estimation estimation;
+  estimation.setInputCloud(test::toPcl(sphere()));
+  estimation.setKSearch(15);
+  pcl::PointCloud<pcl::Normal> normals;
+  estimation.compute(normals);
+  EXPECT_EQ(estimation.getReport().k, 14);
+}
+
+TEST_F(OrientedNormalEstimationTest, OutputBelongsToTheIndices) {
+  const LabelledCloud cloud = sphere();
+  Estimation estimation;
+  estimation.setInputCloud(test::toPcl(cloud));
+  pcl::PointCloud<pcl::Normal> all;
+  estimation.compute(all);
+  const auto labels = estimation.getLabels();
+  const auto indices = pcl::make_shared<pcl::Indices>(
+      pcl::Indices{7, 7, 2999, -1, 3000, 0, std::numeric_limits<pcl::index_t>::max()});
+  estimation.setIndices(indices);
+  pcl::PointCloud<pcl::Normal> some;
+  estimation.compute(some);
+  ASSERT_EQ(some.size(), indices->size());
+  EXPECT_FALSE(some.is_dense);
+  for (const std::size_t i : {std::size_t{0}, std::size_t{1}, std::size_t{2}, std::size_t{5}}) {
+    const auto row = static_cast<std::size_t>((*indices)[i]);
+    EXPECT_EQ(some[i].normal_x, all[row].normal_x);
+    EXPECT_EQ(estimation.getLabels()[i], labels[row]);
+  }
+  for (const std::size_t i : {std::size_t{3}, std::size_t{4}, std::size_t{6}}) {
+    EXPECT_TRUE(std::isnan(some[i].normal_x));
+    EXPECT_EQ(estimation.getLabels()[i], -1);
+  }
+}
+
+TEST_F(OrientedNormalEstimationTest, OrientsPointsOnASearchSurface) {
+  const LabelledCloud surface = sphere();
+  const LabelledCloud few = test::sample("few", {test::sphere({0, 0, 0}, 1)}, 20, 62);
+  Estimation estimation;
+  estimation.setInputCloud(test::toPcl(few));
+  estimation.setSearchSurface(test::toPcl(surface));
+  pcl::PointCloud<pcl::Normal> normals;
+  estimation.compute(normals);
+  ASSERT_EQ(normals.size(), few.size());
+  for (std::size_t i = 0; i < few.size(); ++i) EXPECT_TRUE(test::agrees(normals[i], few, i));
+}
+
+TEST_F(OrientedNormalEstimationTest, KeepsTheShapeOfAnOrganizedCloudWithHoles) {
+  auto cloud = pcl::make_shared<pcl::PointCloud<pcl::PointXYZ>>(40, 30);
+  for (std::uint32_t v = 0; v < 30; ++v) {
+    for (std::uint32_t u = 0; u < 40; ++u) {
+      const auto x = static_cast<float>(u);
+      const auto y = static_cast<float>(v);
+      cloud->at(u, v) = pcl::PointXYZ(x, y, 0.01F * x * x);
+    }
+  }
+  cloud->at(5, 5).z = std::numeric_limits<float>::quiet_NaN();
+  cloud->is_dense = true;  // it is not: PCL would abort
+  Estimation estimation;
+  estimation.setInputCloud(cloud);
+  pcl::PointCloud<pcl::Normal> normals;
+  estimation.compute(normals);
+  EXPECT_EQ(normals.width, 40U);
+  EXPECT_EQ(normals.height, 30U);
+  EXPECT_FALSE(normals.is_dense);
+  EXPECT_TRUE(std::isnan(normals.at(5, 5).normal_x));
+  const bool up = normals.at(0, 0).normal_z > 0;
+  for (std::size_t i = 0; i < normals.size(); ++i) {
+    if (i != 5 * 40 + 5) EXPECT_EQ(normals[i].normal_z > 0, up);
+  }
+}
+
+TEST_F(OrientedNormalEstimationTest, BadInputIsAnEmptyOutput) {
+  pcl::PointCloud<pcl::Normal> normals(3, 1);
+  Estimation none;
+  none.compute(normals);
+  EXPECT_TRUE(normals.empty());
+
+  Estimation null;
+  null.setInputCloud(nullptr);
+  normals.resize(3);
+  null.compute(normals);
+  EXPECT_TRUE(normals.empty());
+
+  Estimation empty;
+  empty.setInputCloud(pcl::make_shared<pcl::PointCloud<pcl::PointXYZ>>());
+  normals.resize(3);
+  empty.compute(normals);
+  EXPECT_TRUE(normals.empty());
+
+  const auto cloud = test::toPcl(sphere(500));
+  Estimation negative;
+  negative.setInputCloud(cloud);
+  negative.setKSearch(-5);
+  normals.resize(3);
+  negative.compute(normals);
+  EXPECT_TRUE(normals.empty());
+
+  Estimation radius;
+  radius.setInputCloud(cloud);
+  radius.setRadiusSearch(0.1);
+  normals.resize(3);
+  radius.compute(normals);
+  EXPECT_TRUE(normals.empty());
+  EXPECT_TRUE(radius.getLabels().empty());
+
+  Estimation no_indices;
+  no_indices.setInputCloud(cloud);
+  no_indices.setIndices(pcl::make_shared<pcl::Indices>());
+  no_indices.compute(normals);
+  EXPECT_TRUE(normals.empty());
+}
+
+TEST_F(OrientedNormalEstimationTest, FewPointsGetNoNormal) {
+  for (const std::size_t n : {1U, 2U}) {
+    Estimation estimation;
+    estimation.setInputCloud(test::toPcl(sphere(n)));
+    pcl::PointCloud<pcl::Normal> normals;
+    estimation.compute(normals);
+    ASSERT_EQ(normals.size(), n);
+    EXPECT_FALSE(normals.is_dense);
+    for (const pcl::Normal& normal : normals) EXPECT_TRUE(std::isnan(normal.normal_x));
+    EXPECT_EQ(estimation.getReport().without_normal, n);
+  }
+}
+
+TEST_F(OrientedNormalEstimationTest, CanBeUsedAgain) {
+  Estimation estimation;
+  for (const unsigned seed : {1U, 2U}) {
+    const LabelledCloud cloud = test::sample("cube", test::cube(), 2000 * seed, seed);
+    estimation.setInputCloud(test::toPcl(cloud));
+    pcl::PointCloud<pcl::Normal> normals;
+    estimation.compute(normals);
+    ASSERT_EQ(normals.size(), cloud.size());
+    std::size_t wrong = 0;
+    for (std::size_t i = 0; i < cloud.size(); ++i) wrong += !test::agrees(normals[i], cloud, i);
+    EXPECT_LE(wrong, cloud.size() / 200);
+    EXPECT_EQ(estimation.getReport().points, cloud.size());
+  }
+}
+
+TEST_F(OrientedNormalEstimationTest, GettersReturnWhatWasSet) {
+  Estimation estimation;
+  estimation.setMethod(OrientationMethod::BOUNDARY);
+  estimation.setNormalEstimator(NormalEstimator::LCT);
+  estimation.setAlpha(0.1F);
+  estimation.setBeta(0.2F);
+  estimation.setGamma(0.3F);
+  estimation.setEpsilon(0.05F);
+  estimation.setNumberOfThreads(3);
+  EXPECT_EQ(estimation.getMethod(), OrientationMethod::BOUNDARY);
+  EXPECT_EQ(estimation.getNormalEstimator(), NormalEstimator::LCT);
+  EXPECT_EQ(estimation.getAlpha(), 0.1F);
+  EXPECT_EQ(estimation.getBeta(), 0.2F);
+  EXPECT_EQ(estimation.getGamma(), 0.3F);
+  EXPECT_EQ(estimation.getEpsilon(), 0.05F);
+  EXPECT_EQ(estimation.getNumberOfThreads(), 3U);
+  EXPECT_EQ(estimation.getOptions().segmentation.beta, 0.2F);
+}
+
+}  // namespace
+}  // namespace segorient

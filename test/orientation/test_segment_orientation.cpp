@@ -1,0 +1,193 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the segorient authors
+#include <gtest/gtest.h>
+#include <pcl/console/print.h>
+#include <segorient/orientation/segment_orientation.h>
+
+#include <cmath>
+#include <limits>
+#include <memory>
+
+#include "class_clouds.h"
+
+namespace segorient {
+namespace {
+
+using Orientation = SegmentOrientation<pcl::PointXYZ, pcl::Normal>;
+using test::LabelledCloud;
+
+class SegmentOrientationTest : public testing::Test {
+ protected:
+  void SetUp() override { pcl::console::setVerbosityLevel(pcl::console::L_ALWAYS); }
+  void TearDown() override { pcl::console::setVerbosityLevel(pcl::console::L_INFO); }
+
+  const LabelledCloud cloud = test::sample("bracket", test::bracket(), 5000, 71);
+  const pcl::PointCloud<pcl::PointXYZ>::Ptr points = test::toPcl(cloud);
+  const std::vector<float> scrambled = test::scrambledNormals(cloud, 72);
+};
+
+TEST_F(SegmentOrientationTest, EachMethodTurnsTrueNormalsOutward) {
+  for (const auto method :
+       {Orientation::AUTO, Orientation::BOUNDARY, Orientation::COMBINED, Orientation::EXTREMAL}) {
+    Orientation orientation;
+    orientation.setInputCloud(points);
+    orientation.setInputNormals(test::toPclNormals(scrambled));
+    orientation.setMethod(method);
+    pcl::PointCloud<pcl::Normal> out;
+    orientation.compute(out);
+    ASSERT_EQ(out.size(), cloud.size());
+    std::size_t wrong = 0;
+    for (std::size_t i = 0; i < cloud.size(); ++i) {
+      wrong += test::agrees(out[i], cloud, i) ? 0 : 1;
+      EXPECT_EQ(std::abs(out[i].normal_x), std::abs(scrambled[4 * i]));
+    }
+    EXPECT_LE(wrong, 5U) << toString(method);  // at most some at the very edges
+  }
+}
+
+TEST_F(SegmentOrientationTest, TakesSegmentsOfOthers) {
+  auto segments = std::make_shared<Segmentation>();
+  segments->labels.assign(cloud.face.begin(), cloud.face.end());
+  segments->segments.resize(8);
+  for (std::size_t i = 0; i < cloud.size(); ++i) {
+    const bool same = test::dot3(&scrambled[4 * i], &cloud.normals[4 * i]) > 0;
+    const bool turned = cloud.face[i] % 2 == 1;
+    segments->signs.push_back(same != turned ? std::int8_t{1} : std::int8_t{-1});
+  }
+  Orientation orientation;
+  orientation.setInputCloud(points);
+  orientation.setInputNormals(test::toPclNormals(scrambled));
+  orientation.setSegmentation(segments);
+  orientation.setMethod(Orientation::BOUNDARY);
+  pcl::PointCloud<pcl::Normal> out;
+  orientation.compute(out);
+  ASSERT_EQ(out.size(), cloud.size());
+  for (std::size_t i = 0; i < cloud.size(); ++i) EXPECT_TRUE(test::agrees(out[i], cloud, i));
+  ASSERT_EQ(orientation.getResult().segments.size(), 8U);
+  for (std::size_t s = 0; s < 8; ++s) {
+    EXPECT_EQ(orientation.getResult().segments[s].sign, s % 2 == 1 ? -1 : 1);
+    EXPECT_GT(orientation.getResult().segments[s].confidence, 0.5F);
+  }
+  EXPECT_EQ(orientation.getLabels(), segments->labels);
+
+  segments->labels[17] = 8;  // no such segment
+  orientation.compute(out);
+  EXPECT_TRUE(out.empty());
+}
+
+TEST_F(SegmentOrientationTest, CopesWithHolesAndRepeatedPoints) {
+  auto normals = test::toPclNormals(scrambled);
+  for (std::size_t i = 0; i < 50; ++i) {
+    (*normals)[i].normal_y = std::numeric_limits<float>::quiet_NaN();
+    (*points)[100 + i].x = std::numeric_limits<float>::infinity();
+    (*normals)[200 + i].getNormalVector3fMap().setZero();
+  }
+  for (std::size_t i = 300; i < 600; ++i) {  // again, with the normal turned over
+    points->push_back((*points)[i]);
+    const pcl::Normal& n = (*normals)[i];
+    normals->push_back(pcl::Normal(-n.normal_x, -n.normal_y, -n.normal_z));
+  }
+  Orientation orientation;
+  orientation.setInputCloud(points);
+  orientation.setInputNormals(normals);
+  orientation.setMethod(Orientation::COMBINED);
+  pcl::PointCloud<pcl::Normal> out;
+  orientation.compute(out);
+  ASSERT_EQ(out.size(), points->size());
+  EXPECT_FALSE(out.is_dense);
+  std::size_t wrong = 0;
+  for (std::size_t i = 0; i < cloud.size(); ++i) {
+    const bool bad = i < 50 || (i >= 100 && i < 150) || (i >= 200 && i < 250);
+    EXPECT_EQ(std::isnan(out[i].normal_x), bad) << i;
+    if (!bad && !test::agrees(out[i], cloud, i)) ++wrong;
+  }
+  EXPECT_LE(wrong, 5U);
+  for (std::size_t i = 0; i < 300; ++i) {
+    EXPECT_EQ(out[cloud.size() + i].normal_x, out[300 + i].normal_x);
+    EXPECT_EQ(out[cloud.size() + i].normal_z, out[300 + i].normal_z);
+  }
+}
+
+TEST_F(SegmentOrientationTest, OutputBelongsToTheIndicesAndMayBeTheInput) {
+  auto normals = test::toPclNormals(scrambled);
+  Orientation orientation;
+  orientation.setInputCloud(points);
+  orientation.setInputNormals(normals);
+  orientation.setIndices(pcl::make_shared<pcl::Indices>(pcl::Indices{10, 4999, -1, 5000}));
+  orientation.compute(*normals);
+  ASSERT_EQ(normals->size(), 4U);
+  EXPECT_TRUE(test::agrees((*normals)[0], cloud, 10));
+  EXPECT_TRUE(test::agrees((*normals)[1], cloud, 4999));
+  EXPECT_TRUE(std::isnan((*normals)[2].normal_x));
+  EXPECT_TRUE(std::isnan((*normals)[3].normal_x));
+}
+
+TEST_F(SegmentOrientationTest, BadInputIsAnEmptyOutput) {
+  pcl::PointCloud<pcl::Normal> out(3, 1);
+  Orientation orientation;
+  orientation.compute(out);
+  EXPECT_TRUE(out.empty());
+  orientation.setInputCloud(points);
+  out.resize(3);
+  orientation.compute(out);
+  EXPECT_TRUE(out.empty());
+  orientation.setInputNormals(test::toPclNormals({0.F, 0.F, 1.F, 0.F}));
+  out.resize(3);
+  orientation.compute(out);
+  EXPECT_TRUE(out.empty());
+  orientation.setInputNormals(test::toPclNormals(scrambled));
+  orientation.setKSearch(-1);
+  out.resize(3);
+  orientation.compute(out);
+  EXPECT_TRUE(out.empty());
+  EXPECT_TRUE(orientation.getLabels().empty());
+  orientation.setKSearch(1000000);  // more than there are
+  orientation.setInputCloud(test::toPcl(test::sample("few", test::cube(), 5, 1)));
+  orientation.setInputNormals(test::toPclNormals(std::vector<float>(20, 0.5F)));
+  orientation.compute(out);
+  EXPECT_EQ(out.size(), 5U);
+}
+
+TEST_F(SegmentOrientationTest, WithoutTurningOutwardTheLargestSegmentKeepsItsSign) {
+  Orientation orientation;
+  orientation.setInputCloud(points);
+  std::vector<float> inward = cloud.normals;
+  for (float& c : inward) c = -c;
+  orientation.setInputNormals(test::toPclNormals(inward));
+  orientation.setMethod(Orientation::BOUNDARY);
+  orientation.setTurnOutward(false);
+  pcl::PointCloud<pcl::Normal> out;
+  orientation.compute(out);
+  std::size_t outward = 0;
+  for (std::size_t i = 0; i < cloud.size(); ++i) outward += test::agrees(out[i], cloud, i) ? 1 : 0;
+  EXPECT_TRUE(outward <= 5 || outward + 5 >= cloud.size());
+  EXPECT_EQ(orientation.getResult().segments[0].by, DecidedBy::SEED);
+  EXPECT_EQ(orientation.getResult().segments[0].sign, 1);
+}
+
+TEST_F(SegmentOrientationTest, GettersReturnWhatWasSet) {
+  Orientation orientation;
+  orientation.setMethod(Orientation::EXTREMAL);
+  orientation.setGamma(0.5F);
+  orientation.setSegmentAngle(SegmentAngle::REFERENCE_NORMALS);
+  orientation.setBoundaryTest(BoundaryTest::TRIANGULATED);
+  orientation.setPointTree(true);
+  orientation.setMinMargin(0.7F);
+  orientation.setMaxBoxPoints(60);
+  orientation.setTurnOutward(false);
+  orientation.setNumberOfThreads(2);
+  orientation.setKSearch(9);
+  EXPECT_EQ(orientation.getMethod(), Orientation::EXTREMAL);
+  EXPECT_EQ(orientation.getGamma(), 0.5F);
+  EXPECT_EQ(orientation.getSegmentAngle(), SegmentAngle::REFERENCE_NORMALS);
+  EXPECT_EQ(orientation.getBoundaryTest(), BoundaryTest::TRIANGULATED);
+  EXPECT_TRUE(orientation.getPointTree());
+  EXPECT_EQ(orientation.getMinMargin(), 0.7F);
+  EXPECT_EQ(orientation.getMaxBoxPoints(), 60U);
+  EXPECT_FALSE(orientation.getTurnOutward());
+  EXPECT_EQ(orientation.getNumberOfThreads(), 2U);
+  EXPECT_EQ(orientation.getKSearch(), 9);
+}
+
+}  // namespace
+}  // namespace segorient
