@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the segorient authors
+#pragma once
+
+#include <segorient/features/recompute_normals.h>
+
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace segorient::detail {
+
+/// What both rules read: the old labels and normals.
+struct RecomputationScene {
+  PointView points;
+  const Neighborhoods& neighborhoods;
+  const std::vector<std::uint8_t>& regular;
+  const std::vector<std::int32_t>& labels;
+  const std::vector<float>& normals;
+  int entries;  ///< most entries of a row to use, the point itself included
+  int threads;
+
+  std::size_t size() const { return points.size; }
+  int count(std::size_t i) const {
+    const int c = neighborhoods.count(i);
+    return c < entries ? c : entries;
+  }
+  std::size_t neighbor(std::size_t i, int j) const {
+    return static_cast<std::size_t>(neighborhoods.indices(i)[j]);
+  }
+  bool isRegular(std::int32_t label) const {
+    return label >= 0 && static_cast<std::size_t>(label) < regular.size() &&
+           regular[static_cast<std::size_t>(label)] != 0;
+  }
+  /// |cos| of the angle between two points' normals; NaN where one is missing.
+  double cosine(std::size_t a, std::size_t b) const {
+    const float* u = &normals[4 * a];
+    const float* v = &normals[4 * b];
+    return std::abs(static_cast<double>(u[0]) * static_cast<double>(v[0]) +
+                    static_cast<double>(u[1]) * static_cast<double>(v[1]) +
+                    static_cast<double>(u[2]) * static_cast<double>(v[2]));
+  }
+
+  /// Whether the neighbourhood holds points of other segments, and normals that differ.
+  /// \param flat normals with a larger cosine do not
+  bool meetsBorder(std::size_t i, double flat) const {
+    bool other = !isRegular(labels[i]);
+    bool bent = false;
+    for (int j = 1; j < count(i); ++j) {
+      const std::size_t q = neighbor(i, j);
+      other = other || labels[q] != labels[i];
+      bent = bent || !(cosine(i, q) > flat);
+    }
+    return other && bent;
+  }
+};
+
+/// What becomes of one point.
+struct Recomputed {
+  std::size_t point = 0;
+  bool accepted = false;
+  std::int32_t label = -1;
+  float normal[3] = {0, 0, 0};
+};
+
+/// One entry for each point that was looked at, ascending by point.
+std::vector<Recomputed> applyOneSidedRule(const RecomputationScene& scene,
+                                          const RecomputationOptions& options);
+std::vector<Recomputed> applyModifiedNeighborhoods(const RecomputationScene& scene,
+                                                   const RecomputationOptions& options);
+
+}  // namespace segorient::detail
