@@ -87,12 +87,12 @@ inline bool forRanges(const LayoutView& view, std::size_t r, const Box& box, flo
   const float squared = range.reach * range.reach;
   const auto most = static_cast<float>(region.counts[0] - 1);
   for (int cz = range.first[2]; cz <= range.last[2]; ++cz) {
-    const auto z = static_cast<float>(cz);
-    const float dz = gap(z, z + 1.0F, range.lo[2], range.hi[2]);
+    const auto low_z = static_cast<float>(cz);
+    const float dz = gap(low_z, low_z + 1.0F, range.lo[2], range.hi[2]);
     const float rest = squared - dz * dz;
     for (int cy = range.first[1]; cy <= range.last[1]; ++cy) {
-      const auto y = static_cast<float>(cy);
-      const float dy = gap(y, y + 1.0F, range.lo[1], range.hi[1]);
+      const auto low_y = static_cast<float>(cy);
+      const float dy = gap(low_y, low_y + 1.0F, range.lo[1], range.hi[1]);
       const float squared_width = rest - dy * dy;
       if (squared_width < 0.0F) continue;
       const float width = squareRoot(squared_width);
@@ -121,18 +121,26 @@ struct CollectFromRange {
   Vector qx, qy, qz, limit;
   Candidates& out;
 
+  // Copies in local variables, here and below: what is written could otherwise be what is read.
   inline bool operator()(std::uint32_t begin, std::uint32_t end) {
-    if (out.count + (end - begin) > out.capacity) return false;
     std::size_t count = out.count;
+    if (count + (end - begin) > out.capacity) return false;
+    const LayoutView v = view;
+    const Vector x = qx;
+    const Vector y = qy;
+    const Vector z = qz;
+    const Vector bound = limit;
+    float* const distance = out.distance;
+    std::uint32_t* const id = out.id;
     for (std::uint32_t i = begin; i < end; i += kWidth) {
-      const Vector dx = sub(qx, load(view.x + i));
-      const Vector dy = sub(qy, load(view.y + i));
-      const Vector dz = sub(qz, load(view.z + i));
+      const Vector dx = sub(x, load(v.x + i));
+      const Vector dy = sub(y, load(v.y + i));
+      const Vector dz = sub(z, load(v.z + i));
       const Vector d = squaredNorm(dx, dy, dz);
-      unsigned int mask = lessMask(d, limit);
+      unsigned int mask = lessMask(d, bound);
       if (end - i < kWidth) mask &= (1U << (end - i)) - 1U;
-      compress(d, mask, out.distance + count);
-      count += compressIds(view.id + i, mask, out.id + count);
+      compress(d, mask, distance + count);
+      count += compressIds(v.id + i, mask, id + count);
     }
     out.count = count;
     return true;
@@ -325,21 +333,29 @@ struct GatherFromRange {
 
   inline bool operator()(std::uint32_t begin, std::uint32_t end) {
     if (count + (end - begin) > task.block_capacity) return false;
+    const LayoutView v = view;
+    float* const block[3] = {task.block[0], task.block[1], task.block[2]};
+    std::uint32_t* const id = task.block_id;
+    const Vector low[3] = {lo[0], lo[1], lo[2]};
+    const Vector high[3] = {hi[0], hi[1], hi[2]};
+    const Vector bound = limit;
     const Vector zero = broadcast(0.0F);
+    std::size_t n = count;
     for (std::uint32_t i = begin; i < end; i += kWidth) {
-      const Vector x = load(view.x + i);
-      const Vector y = load(view.y + i);
-      const Vector z = load(view.z + i);
-      const Vector dx = largestOf(largestOf(sub(lo[0], x), sub(x, hi[0])), zero);
-      const Vector dy = largestOf(largestOf(sub(lo[1], y), sub(y, hi[1])), zero);
-      const Vector dz = largestOf(largestOf(sub(lo[2], z), sub(z, hi[2])), zero);
-      unsigned int mask = lessMask(squaredNorm(dx, dy, dz), limit);
+      const Vector x = load(v.x + i);
+      const Vector y = load(v.y + i);
+      const Vector z = load(v.z + i);
+      const Vector dx = largestOf(largestOf(sub(low[0], x), sub(x, high[0])), zero);
+      const Vector dy = largestOf(largestOf(sub(low[1], y), sub(y, high[1])), zero);
+      const Vector dz = largestOf(largestOf(sub(low[2], z), sub(z, high[2])), zero);
+      unsigned int mask = lessMask(squaredNorm(dx, dy, dz), bound);
       if (end - i < kWidth) mask &= (1U << (end - i)) - 1U;
-      compress(x, mask, task.block[0] + count);
-      compress(y, mask, task.block[1] + count);
-      compress(z, mask, task.block[2] + count);
-      count += compressIds(view.id + i, mask, task.block_id + count);
+      compress(x, mask, block[0] + n);
+      compress(y, mask, block[1] + n);
+      compress(z, mask, block[2] + n);
+      n += compressIds(v.id + i, mask, id + n);
     }
+    count = n;
     return true;
   }
 };
@@ -367,6 +383,8 @@ std::size_t listNeighbors(const LayoutView& view, std::size_t region, float limi
 
 // Points of a group: enough to share the work of gathering, few enough to be near each other.
 constexpr std::uint32_t kGroup = 16;
+// A group may be smaller rather than longer than this many cells.
+constexpr std::uint32_t kMostCells = 3;
 
 // What is carried from group to group of a region.
 struct RegionState {
@@ -410,13 +428,17 @@ inline std::size_t blockDistances(const AllPointsTask& task, std::size_t block, 
   const Vector qy = broadcast(q[1]);
   const Vector qz = broadcast(q[2]);
   const Vector threshold = broadcast(limit);
+  const float* const x = task.block[0];
+  const float* const y = task.block[1];
+  const float* const z = task.block[2];
+  float* const distance = task.block_distance;
   Counter counter = zeroCounter();
   for (std::size_t i = 0; i < block; i += kWidth) {
-    const Vector dx = sub(qx, load(task.block[0] + i));
-    const Vector dy = sub(qy, load(task.block[1] + i));
-    const Vector dz = sub(qz, load(task.block[2] + i));
+    const Vector dx = sub(qx, load(x + i));
+    const Vector dy = sub(qy, load(y + i));
+    const Vector dz = sub(qz, load(z + i));
     const Vector d = squaredNorm(dx, dy, dz);
-    store(task.block_distance + i, d);
+    store(distance + i, d);
     counter = countLess(counter, d, threshold);
   }
   return total(counter);
@@ -424,9 +446,10 @@ inline std::size_t blockDistances(const AllPointsTask& task, std::size_t block, 
 
 inline std::size_t countBelow(const AllPointsTask& task, std::size_t block, float limit) {
   const Vector threshold = broadcast(limit);
+  const float* const distance = task.block_distance;
   Counter counter = zeroCounter();
   for (std::size_t i = 0; i < block; i += kWidth) {
-    counter = countLess(counter, load(task.block_distance + i), threshold);
+    counter = countLess(counter, load(distance + i), threshold);
   }
   return total(counter);
 }
@@ -434,12 +457,16 @@ inline std::size_t countBelow(const AllPointsTask& task, std::size_t block, floa
 // Copies the distances below `limit` and their ids out of the block.
 inline void takeBelow(AllPointsTask& task, std::size_t block, float limit) {
   const Vector threshold = broadcast(limit);
+  const float* const distance = task.block_distance;
+  const std::uint32_t* const id = task.block_id;
+  float* const out_distance = task.candidates.distance;
+  std::uint32_t* const out_id = task.candidates.id;
   std::size_t count = 0;
   for (std::size_t i = 0; i < block; i += kWidth) {
-    const Vector d = load(task.block_distance + i);
+    const Vector d = load(distance + i);
     const unsigned int mask = lessMask(d, threshold);
-    compress(d, mask, task.candidates.distance + count);
-    count += compressIds(task.block_id + i, mask, task.candidates.id + count);
+    compress(d, mask, out_distance + count);
+    count += compressIds(id + i, mask, out_id + count);
   }
   task.candidates.count = count;
 }
@@ -583,17 +610,21 @@ void allInRegion(const LayoutView& view, std::size_t r, AllPointsTask& task) {
     return;
   }
   const std::uint16_t* starts = view.starts + region.first_start;
+  const std::uint32_t row_length = region.counts[0];
   const std::size_t rows = static_cast<std::size_t>(region.counts[1]) * region.counts[2];
   for (std::size_t row = 0; row < rows; ++row) {
-    const std::uint16_t* cells = starts + row * region.counts[0];
+    const std::uint16_t* cells = starts + row * row_length;
     std::uint32_t begin = cells[0];
-    for (std::uint32_t c = 0; c < region.counts[0]; ++c) {
+    std::uint32_t first_cell = 0;
+    for (std::uint32_t c = 0; c < row_length; ++c) {
       const std::uint32_t end = cells[c + 1];
-      const bool last = c + 1U == region.counts[0];
+      if (begin == end) first_cell = c + 1;
+      const bool last = c + 1 == row_length || c + 1 == first_cell + kMostCells;
       while (end - begin >= kGroup || (last && begin != end)) {
         const std::uint32_t size = end - begin < 2 * kGroup ? end - begin : kGroup;
         searchGroup(view, region.begin + begin, region.begin + begin + size, state, task);
         begin += size;
+        first_cell = c + 1;
       }
     }
   }

@@ -6,11 +6,11 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <memory>
 
 namespace segorient::search {
 namespace {
 
-constexpr std::size_t kBins = 1024;
 // Fewer points than this are a task of their own no longer.
 constexpr std::size_t kTaskSize = 20000;
 
@@ -37,110 +37,117 @@ int longestAxis(const Box& box) {
   return axis;
 }
 
-// Bins of equal width over an interval; halved, since its length may overflow.
-class Binning {
- public:
-  Binning(float lo, float hi)
-      : lo_(0.5F * lo), scale_(0.5F * static_cast<float>(kBins) / length(lo, hi)) {}
-  std::size_t operator()(float v) const {
-    const float bin = 2.0F * (0.5F * v - lo_) * scale_;
-    return static_cast<std::size_t>(std::min(std::max(bin, 0.0F), static_cast<float>(kBins - 1)));
+Box merged(const Box& a, const Box& b) {
+  Box box;
+  for (int i = 0; i < 3; ++i) {
+    box.lo[i] = std::min(a.lo[i], b.lo[i]);
+    box.hi[i] = std::max(a.hi[i], b.hi[i]);
   }
-
- private:
-  static float length(float lo, float hi) { return std::max(0.5F * hi - 0.5F * lo, 1e-30F); }
-  float lo_;
-  float scale_;
-};
-
-// The coordinate of the element of rank `rank`, and how many of those equal to it belong to the
-// first `rank` elements. A histogram leaves a small part of the points to select from.
-struct Median {
-  float value;
-  std::size_t equal_on_left;
-};
-
-Median findMedian(const BuildPoint* points, std::size_t count, std::size_t rank, int axis,
-                  const Binning& bin, std::vector<float>& scratch) {
-  std::array<std::array<std::uint32_t, kBins>, 2> histogram{};  // two: no waiting for a store
-  for (std::size_t i = 0; i < count; ++i) ++histogram[i & 1][bin(points[i].xyz[axis])];
-  std::size_t below = 0;
-  std::size_t b = 0;
-  for (;; ++b) {
-    const std::size_t in_bin = histogram[0][b] + histogram[1][b];
-    if (below + in_bin > rank) break;
-    below += in_bin;
-  }
-  scratch.clear();
-  for (std::size_t i = 0; i < count; ++i) {
-    const float v = points[i].xyz[axis];
-    if (bin(v) == b) scratch.push_back(v);
-  }
-  const auto nth = scratch.begin() + static_cast<std::ptrdiff_t>(rank - below);
-  std::nth_element(scratch.begin(), nth, scratch.end());
-  const auto less = static_cast<std::size_t>(
-      std::count_if(scratch.begin(), nth, [&](float v) { return v < *nth; }));
-  return {*nth, rank - below - less};
+  return box;
 }
 
-// Copies to `to`, the first `rank` points by coordinate in front, in the order they had; the others
-// in reverse order, so that no branch depends on the data.
-void partition(const BuildPoint* from, std::size_t count, BuildPoint* to, int axis,
-               const Median& median) {
+// What a sample tells: along which axis to divide, and an interval that the median is most likely
+// in.
+struct Estimate {
+  int axis;
+  float lo, hi;
+};
+
+Estimate estimate(const BuildPoint* points, std::size_t count, FastVector<BuildPoint>& sample) {
+  const std::size_t size =
+      std::min(std::max<std::size_t>(count / 8, 64), std::min<std::size_t>(count, 1024));
+  sample.resize(size);
+  for (std::size_t i = 0; i < size; ++i) sample[i] = points[i * count / size];
+  const int axis = longestAxis(boxOf(sample.data(), size));
+  const auto less = [axis](const BuildPoint& p, const BuildPoint& q) {
+    return p.xyz[axis] < q.xyz[axis];
+  };
+  // 2.5 standard deviations of the rank, which is that of a fair coin.
+  const auto deviation = static_cast<std::size_t>(1.25 * std::sqrt(static_cast<double>(size))) + 1;
+  const std::size_t middle = size / 2;
+  const auto low =
+      sample.begin() + static_cast<std::ptrdiff_t>(middle - std::min(deviation, middle));
+  const auto high =
+      sample.begin() + static_cast<std::ptrdiff_t>(std::min(middle + deviation, size - 1));
+  std::nth_element(sample.begin(), low, sample.end(), less);
+  std::nth_element(low, high, sample.end(), less);
+  return {axis, low->xyz[axis], high->xyz[axis]};
+}
+
+// Copies to `to`, the `half` points of the least coordinates in front. What is below or above the
+// estimated interval is in place after one pass without a branch; the rest is selected from.
+// \return the least coordinate of the second half
+float divideInTwo(const BuildPoint* from, std::size_t count, BuildPoint* to, std::size_t half,
+                  const Estimate& guess, FastVector<BuildPoint>& between) {
+  const int axis = guess.axis;
+  between.resize(count + 1);
+  BuildPoint* const inside = between.data();
   std::size_t left = 0;
   std::size_t right = count;
-  std::size_t equal_left = median.equal_on_left;
+  std::size_t middle = 0;
   for (std::size_t i = 0; i < count; ++i) {
     const BuildPoint p = from[i];
     const float v = p.xyz[axis];
-    const bool equal = v == median.value && equal_left > 0;
-    const bool goes_left = v < median.value || equal;
-    equal_left -= equal ? 1 : 0;
+    const bool below = v < guess.lo;
+    const bool above = v > guess.hi;
     to[left] = p;
     to[right - 1] = p;
-    left += goes_left ? 1 : 0;
-    right -= goes_left ? 0 : 1;
+    inside[middle] = p;
+    left += below ? 1 : 0;
+    right -= above ? 1 : 0;
+    middle += below || above ? 0 : 1;
   }
+  const auto less = [axis](const BuildPoint& p, const BuildPoint& q) {
+    return p.xyz[axis] < q.xyz[axis];
+  };
+  if (left > half || left + middle <= half) {  // the estimate was wrong
+    std::copy(inside, inside + middle, to + left);
+    std::nth_element(to, to + half, to + count, less);
+    return to[half].xyz[axis];
+  }
+  std::nth_element(inside, inside + (half - left), inside + middle, less);
+  std::copy(inside, inside + middle, to + left);
+  return to[half].xyz[axis];
 }
 
 class Subdivision {
  public:
-  Subdivision(std::vector<BuildPoint>& points, std::size_t levels, Layout& layout)
-      : points_(points), other_(points.size()), levels_(levels), layout_(layout) {
+  Subdivision(BuildPoint* points, BuildPoint* other, std::size_t levels, Layout& layout)
+      : points_(points), other_(other), levels_(levels), layout_(layout) {
     layout.boxes.resize(std::size_t{2} << levels);
     layout.splits.resize(std::size_t{1} << levels);
     layout.regions.resize(std::size_t{1} << levels);
   }
 
-  // Leaves the points region by region in the vector that it returns.
-  std::vector<BuildPoint>& run(int threads) {
+  // \return the points region by region, in one of the two arrays
+  BuildPoint* run(std::size_t count, int threads) {
 #pragma omp parallel num_threads(threads) if (threads > 1)
 #pragma omp single
-    divide(1, 0, 0, points_.size());
+    divide(1, 0, 0, count);
+    for (std::size_t node = layout_.regions.size() - 1; node > 0; --node) {
+      layout_.boxes[node] = merged(layout_.boxes[2 * node], layout_.boxes[2 * node + 1]);
+    }
     return levels_ % 2 == 0 ? points_ : other_;
   }
 
  private:
   void divide(std::size_t node, std::size_t level, std::size_t begin, std::size_t end) {
-    BuildPoint* from = (level % 2 == 0 ? points_ : other_).data() + begin;
-    BuildPoint* to = (level % 2 == 0 ? other_ : points_).data() + begin;
+    const BuildPoint* from = (level % 2 == 0 ? points_ : other_) + begin;
     const std::size_t count = end - begin;
-    const Box box = boxOf(from, count);
-    layout_.boxes[node] = box;
     if (level == levels_) {
+      layout_.boxes[node] = boxOf(from, count);
       Region& region = layout_.regions[node - layout_.regions.size()];
       region.begin = static_cast<std::uint32_t>(begin);
       region.end = static_cast<std::uint32_t>(end);
       return;
     }
     const std::size_t half = count / 2;
-    const int axis = longestAxis(box);
     {
-      std::vector<float> scratch;
-      const Median median =
-          findMedian(from, count, half, axis, Binning(box.lo[axis], box.hi[axis]), scratch);
-      layout_.splits[node] = {median.value, static_cast<std::uint32_t>(axis)};
-      partition(from, count, to, axis, median);
+      thread_local FastVector<BuildPoint> scratch;
+      const Estimate guess = estimate(from, count, scratch);
+      BuildPoint* to = (level % 2 == 0 ? other_ : points_) + begin;
+      const float value = divideInTwo(from, count, to, half, guess, scratch);
+      layout_.splits[node] = {value, static_cast<std::uint32_t>(guess.axis)};
     }
     const std::size_t middle = begin + half;
 #pragma omp task if (count > kTaskSize)
@@ -150,8 +157,8 @@ class Subdivision {
 #pragma omp taskwait
   }
 
-  std::vector<BuildPoint>& points_;
-  std::vector<BuildPoint> other_;
+  BuildPoint* points_;
+  BuildPoint* other_;
   std::size_t levels_;
   Layout& layout_;
 };
@@ -163,18 +170,26 @@ float squaredDistance(const BuildPoint& p, const BuildPoint& q) {
   return dx * dx + dy * dy + dz * dz;
 }
 
-// Median over three points of the squared distance to the 16th neighbour inside the region.
-float typicalSpacing(const BuildPoint* points, std::size_t count, std::vector<float>& scratch) {
-  if (count < 2) return 0.0F;
-  const std::size_t rank = std::min<std::size_t>(16, count - 1);
+// Squared distance from a point to its 16th neighbour, or to the farthest of fewer.
+float squaredSpacing(const BuildPoint& point, const BuildPoint* points, std::size_t count) {
+  constexpr std::size_t kRank = 16;
+  std::array<float, kRank + 1> nearest;  // the point itself among them, ascending
+  std::size_t found = 0;
+  for (std::size_t i = 0; i < count; ++i) {
+    const float d = squaredDistance(point, points[i]);
+    if (found > kRank && !(d < nearest[kRank])) continue;
+    std::size_t at = found > kRank ? kRank : found++;
+    for (; at > 0 && d < nearest[at - 1]; --at) nearest[at] = nearest[at - 1];
+    nearest[at] = d;
+  }
+  return nearest[found - 1];
+}
+
+// The median over three points.
+float typicalSpacing(const BuildPoint* points, std::size_t count) {
   std::array<float, 3> found{};
   for (std::size_t s = 0; s < 3; ++s) {
-    const BuildPoint& sample = points[(2 * s + 1) * count / 6];
-    scratch.resize(count);
-    for (std::size_t i = 0; i < count; ++i) scratch[i] = squaredDistance(sample, points[i]);
-    const auto nth = scratch.begin() + static_cast<std::ptrdiff_t>(rank);
-    std::nth_element(scratch.begin(), nth, scratch.end());
-    found[s] = *nth;
+    found[s] = squaredSpacing(points[(2 * s + 1) * count / 6], points, count);
   }
   std::sort(found.begin(), found.end());
   return found[1];
@@ -243,20 +258,16 @@ void sortIntoCells(BuildPoint* points, const Box& box, const Region& region, Lay
   starts[0] = 0;
 }
 
-void hashRegions(std::vector<BuildPoint>& points, Layout& layout, int threads) {
+void hashRegions(BuildPoint* points, Layout& layout, int threads) {
   const auto regions = static_cast<std::ptrdiff_t>(layout.regions.size());
-#pragma omp parallel num_threads(threads) if (threads > 1)
-  {
-    std::vector<float> scratch;
-#pragma omp for schedule(dynamic, 8)
-    for (std::ptrdiff_t i = 0; i < regions; ++i) {
-      const auto r = static_cast<std::size_t>(i);
-      Region& region = layout.regions[r];
-      const Box& box = layout.boxes[layout.regions.size() + r];
-      const std::size_t count = region.end - region.begin;
-      region.identical = box.lo[0] == box.hi[0] && box.lo[1] == box.hi[1] && box.lo[2] == box.hi[2];
-      chooseGrid(box, count, typicalSpacing(points.data() + region.begin, count, scratch), region);
-    }
+#pragma omp parallel for num_threads(threads) schedule(dynamic, 8) if (threads > 1)
+  for (std::ptrdiff_t i = 0; i < regions; ++i) {
+    const auto r = static_cast<std::size_t>(i);
+    Region& region = layout.regions[r];
+    const Box& box = layout.boxes[layout.regions.size() + r];
+    const std::size_t count = region.end - region.begin;
+    region.identical = box.lo[0] == box.hi[0] && box.lo[1] == box.hi[1] && box.lo[2] == box.hi[2];
+    chooseGrid(box, count, typicalSpacing(points + region.begin, count), region);
   }
   std::size_t starts = 0;
   for (Region& region : layout.regions) {
@@ -271,24 +282,28 @@ void hashRegions(std::vector<BuildPoint>& points, Layout& layout, int threads) {
     for (std::ptrdiff_t i = 0; i < regions; ++i) {
       const auto r = static_cast<std::size_t>(i);
       const Region& region = layout.regions[r];
-      sortIntoCells(points.data() + region.begin, layout.boxes[layout.regions.size() + r], region,
-                    layout, cell);
+      sortIntoCells(points + region.begin, layout.boxes[layout.regions.size() + r], region, layout,
+                    cell);
     }
   }
 }
 
 }  // namespace
 
-Layout buildLayout(std::vector<BuildPoint> points, std::size_t region_size, int threads) {
+Layout buildLayout(BuildPoint* points, std::size_t count, std::size_t region_size, int threads) {
   Layout layout;
-  if (points.empty()) return layout;
+  if (count == 0) return layout;
   std::size_t levels = 0;
-  while ((points.size() >> levels) + 1 > region_size && (points.size() >> levels) > 1) ++levels;
-  Subdivision subdivision(points, levels, layout);
-  std::vector<BuildPoint>& sorted = subdivision.run(threads);
-  const std::size_t padded = points.size() + Layout::kPadding;
-  for (auto* array : {&layout.x, &layout.y, &layout.z}) array->resize(padded);
+  while ((count >> levels) + 1 > region_size && (count >> levels) > 1) ++levels;
+  const std::unique_ptr<BuildPoint[]> other(new BuildPoint[count]);
+  BuildPoint* const sorted = Subdivision(points, other.get(), levels, layout).run(count, threads);
+  const std::size_t padded = count + Layout::kPadding;
+  for (auto* array : {&layout.x, &layout.y, &layout.z}) {
+    array->resize(padded);
+    std::fill(array->end() - Layout::kPadding, array->end(), 0.0F);
+  }
   layout.id.resize(padded);
+  std::fill(layout.id.end() - Layout::kPadding, layout.id.end(), 0U);
   hashRegions(sorted, layout, threads);
   return layout;
 }

@@ -4,6 +4,8 @@
 // How the points of a MedianHashIndex lie in memory.
 #pragma once
 
+#include <segorient/common/fast_vector.h>
+
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
@@ -42,9 +44,9 @@ struct Layout {
   /// Vectors are read beyond the last point by up to this many entries.
   static constexpr std::size_t kPadding = 16;
 
-  std::vector<float> x, y, z;         ///< padded
-  std::vector<std::uint32_t> id;      ///< index that is reported; padded
-  std::vector<std::uint32_t> row;     ///< row that was given to build(); empty where row = id
+  FastVector<float> x, y, z;          ///< padded
+  FastVector<std::uint32_t> id;       ///< index that is reported; padded
+  FastVector<std::uint32_t> row;      ///< row that was given to build(); empty where row = id
   std::vector<Region> regions;        ///< a power of two of them, or none
   std::vector<Box> boxes;             ///< by node; the first is unused
   std::vector<Split> splits;          ///< by inner node; the first is unused
@@ -86,10 +88,10 @@ struct BuildPoint {
 };
 
 /// Sorts points into a layout.
-/// \param points consumed
+/// \param points used up
 /// \param region_size most points in a region; from 1 to kMostRegionSize
 /// \param threads at least 1; the layout does not depend on it
-Layout buildLayout(std::vector<BuildPoint> points, std::size_t region_size, int threads);
+Layout buildLayout(BuildPoint* points, std::size_t count, std::size_t region_size, int threads);
 
 /// So that starts fit 16 bits.
 constexpr std::size_t kMostRegionSize = 32768;

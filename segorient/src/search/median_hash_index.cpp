@@ -321,17 +321,17 @@ void MedianHashIndex::build(const PointView& points, const std::vector<pcl::inde
   self.options = options;
   self.rows = indices != nullptr ? indices->size() : points.size;
   self.number = ++built;
-  std::vector<BuildPoint> finite;
-  finite.reserve(self.rows);
+  const std::unique_ptr<BuildPoint[]> finite(new BuildPoint[self.rows]);
+  std::size_t count = 0;
   for (std::size_t i = 0; i < self.rows; ++i) {
     const auto at = indices != nullptr ? static_cast<std::size_t>((*indices)[i]) : i;
     if (at >= points.size || !isFinite(points[at])) continue;
     const float* p = points[at];
-    finite.push_back({{p[0], p[1], p[2]}, static_cast<std::uint32_t>(i)});
+    finite[count++] = {{p[0], p[1], p[2]}, static_cast<std::uint32_t>(i)};
   }
   const std::size_t region_size =
       std::min(std::max<std::size_t>(options.region_size, 8), kMostRegionSize);
-  self.layout = buildLayout(std::move(finite), region_size, resolveThreads(options.threads));
+  self.layout = buildLayout(finite.get(), count, region_size, resolveThreads(options.threads));
   if (indices != nullptr) self.layout.useIndices(*indices);
 }
 

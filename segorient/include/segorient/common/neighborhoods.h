@@ -3,6 +3,7 @@
 #pragma once
 
 #include <pcl/types.h>
+#include <segorient/common/fast_vector.h>
 
 #include <cstddef>
 #include <cstdint>
@@ -68,8 +69,8 @@ class Neighborhoods {
  private:
   std::size_t rows_ = 0;
   int k_ = 0;
-  std::vector<pcl::index_t> indices_;
-  std::vector<float> distances_;
+  FastVector<pcl::index_t> indices_;
+  FastVector<float> distances_;
   std::vector<std::uint32_t> counts_;
 };
 

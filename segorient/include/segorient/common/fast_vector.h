@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the segorient authors
+#pragma once
+
+#include <memory>
+#include <utility>
+#include <vector>
+
+namespace segorient {
+
+/// Leaves new numbers as they are in memory instead of setting them to 0: for tables that are
+/// written right after, where the zeros would cost as much as the table.
+template <typename T>
+struct UninitializedAllocator : std::allocator<T> {
+  template <typename U>
+  struct rebind {
+    using other = UninitializedAllocator<U>;
+  };
+  using std::allocator<T>::allocator;
+
+  template <typename U>
+  void construct(U* at) {
+    ::new (static_cast<void*>(at)) U;
+  }
+  template <typename U, typename... Arguments>
+  void construct(U* at, Arguments&&... arguments) {
+    ::new (static_cast<void*>(at)) U(std::forward<Arguments>(arguments)...);
+  }
+};
+
+/// A vector whose resize() does not set new elements.
+template <typename T>
+using FastVector = std::vector<T, UninitializedAllocator<T>>;
+
+}  // namespace segorient
