@@ -13,6 +13,9 @@
 
 namespace segorient::segmentation {
 
+/// Neighbours of the first ring, as on a hexagonal grid.
+constexpr int kRing = 6;
+
 /// What one comparison of two neighbours needs, in half a cache line. Coordinates are scaled to the
 /// unit cube by a power of two; the normal takes on its segment's sign when the point is accepted.
 struct alignas(32) Node {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026, the segorient authors
 #include <cstring>
+#include <memory>
 
 #include "growth_state.h"
 
@@ -41,11 +42,13 @@ class SeedOrder {
       if (begin == end) continue;
       const auto left = std::remove_if(
           begin, end, [&](pcl::index_t p) { return labels[static_cast<std::size_t>(p)] >= 0; });
-      std::sort(begin, left, [&](pcl::index_t p, pcl::index_t q) {
+      const auto earlier = [&](pcl::index_t p, pcl::index_t q) {
         const std::uint32_t a = orderedBits(nodes_[static_cast<std::size_t>(p)].curvature);
         const std::uint32_t c = orderedBits(nodes_[static_cast<std::size_t>(q)].curvature);
         return a != c ? a < c : p < q;
-      });
+      };
+      // On exact planes all are equal.
+      if (!std::is_sorted(begin, left, earlier)) std::sort(begin, left, earlier);
       for (auto it = begin; it != left; ++it) {
         if (labels[static_cast<std::size_t>(*it)] < 0) visit(static_cast<std::size_t>(*it));
       }
@@ -63,29 +66,37 @@ class SeedOrder {
   std::vector<pcl::index_t> points_;
 };
 
-/// Grows one segment after the other; the queue is one array for all of them.
+/// Grows one segment after the other; the queue is one array for all of them. The arrays are held
+/// by plain pointers: this loop is most of the time that segmentation takes.
 class Grower {
  public:
   Grower(const SegmentationOptions& options, GrowthState& state)
-      : state_(state),
+      : hood_(*state.neighborhoods),
+        limits_(state.limits),
+        row_size_(state.neighbors),
         cos_alpha_(options.alpha < kRightAngle ? std::cos(options.alpha) : 0.F),
         cos_beta_(options.beta < kRightAngle ? std::cos(options.beta) : -1.F),
         sqr_cos_beta_(static_cast<double>(cos_beta_) * static_cast<double>(cos_beta_)),
-        max_curvature_(options.max_curvature) {}
+        max_curvature_(options.max_curvature),
+        nodes_(state.nodes.data()),
+        labels_(state.labels.data()),
+        signs_(state.signs.data()),
+        on_border_(state.on_border.data()),
+        clusters_(state.clusters),
+        queue_(new pcl::index_t[state.nodes.size()]) {}
 
   void grow(std::size_t seed) {
-    label_ = static_cast<std::int32_t>(state_.clusters.size());
+    label_ = static_cast<std::int32_t>(clusters_.size());
     cluster_ = Cluster{};
-    queue_.clear();
+    tail_ = 0;
     accept(seed, 1);
-    for (std::size_t head = 0; head < queue_.size(); ++head) {
-      if (head + kAhead < queue_.size()) {
-        __builtin_prefetch(
-            state_.neighborhoods->indices(static_cast<std::size_t>(queue_[head + kAhead])));
+    for (std::size_t head = 0; head < tail_; ++head) {
+      if (head + kAhead < tail_) {
+        __builtin_prefetch(hood_.indices(static_cast<std::size_t>(queue_[head + kAhead])));
       }
       spread(static_cast<std::size_t>(queue_[head]));
     }
-    state_.clusters.push_back(cluster_);
+    clusters_.push_back(cluster_);
   }
 
  private:
@@ -93,40 +104,41 @@ class Grower {
   static constexpr float kRightAngle = 1.5707963F;
 
   void accept(std::size_t q, int sign) {
-    Node& node = state_.nodes[q];
+    Node& node = nodes_[q];
     if (sign < 0) {
       node.nx = -node.nx;
       node.ny = -node.ny;
       node.nz = -node.nz;
     }
-    state_.labels[q] = label_;
-    state_.signs[q] = static_cast<std::int8_t>(sign);
+    labels_[q] = label_;
+    signs_[q] = static_cast<std::int8_t>(sign);
     cluster_.normal.add(node);
     ++cluster_.size;
     threshold_ = sqr_cos_beta_ * cluster_.normal.squaredNorm();
     if (node.curvature > max_curvature_ && cluster_.size > 1) return;
-    queue_.push_back(static_cast<pcl::index_t>(q));
+    queue_[tail_++] = static_cast<pcl::index_t>(q);
   }
 
   void spread(std::size_t p) {
-    const pcl::index_t* row = state_.neighborhoods->indices(p);
-    const int count = state_.rowSize(p);
-    const Node node = state_.nodes[p];
+    const pcl::index_t* row = hood_.indices(p);
+    const int count = std::min(hood_.count(p), row_size_);
+    const Node node = nodes_[p];
     std::uint8_t border = 0;
     for (int j = 1; j < count; ++j) {
       const auto q = static_cast<std::size_t>(row[j]);
-      if (state_.labels[q] == label_) continue;
-      if (state_.labels[q] >= 0 || !tryAccept(node, q)) border = 1;
+      const std::int32_t label = labels_[q];
+      if (label == label_) continue;
+      if (label >= 0 || !tryAccept(node, q)) border = 1;
     }
-    state_.on_border[p] = border;
+    on_border_[p] = border;
   }
 
   // Without signs the angle to the neighbour is |cos|; the sign that it gives must also bring the
   // normal within beta of the reference.
   bool tryAccept(const Node& p, std::size_t q) {
-    const Node& candidate = state_.nodes[q];
+    const Node& candidate = nodes_[q];
     const float cosine = dotNormals(p, candidate);
-    if (!(std::abs(cosine) >= cos_alpha_) || !state_.limits.admissible(p, candidate)) return false;
+    if (!(std::abs(cosine) >= cos_alpha_) || !limits_.admissible(p, candidate)) return false;
     const int sign = cosine < 0.F ? -1 : 1;
     const double along = sign * cluster_.normal.dot(candidate);
     if (cos_beta_ > 0.F && !(along > 0.0 && along * along >= threshold_)) return false;
@@ -134,15 +146,23 @@ class Grower {
     return true;
   }
 
-  GrowthState& state_;
+  const Neighborhoods& hood_;
+  PairLimits limits_;
+  int row_size_;
   float cos_alpha_;
   float cos_beta_;  ///< negative = no condition on the reference normal
   double sqr_cos_beta_;
   float max_curvature_;
+  Node* nodes_;
+  std::int32_t* labels_;
+  std::int8_t* signs_;
+  std::uint8_t* on_border_;
+  std::vector<Cluster>& clusters_;
+  std::unique_ptr<pcl::index_t[]> queue_;
+  std::size_t tail_ = 0;
   std::int32_t label_ = 0;
   Cluster cluster_;
   double threshold_ = 0.0;  ///< squared length that the sum must have along a candidate
-  std::vector<pcl::index_t> queue_;
 };
 
 }  // namespace

@@ -10,8 +10,6 @@
 namespace segorient::segmentation {
 namespace {
 
-/// Neighbours that the local spacing is averaged over: the first ring.
-constexpr int kRing = 6;
 /// On a surface with one random sample per square of side 1 the squared distance to the i-th
 /// neighbour is i / pi in the mean, so over the first six it is 3.5 / pi.
 constexpr float kSqrSpacingPerMean = 3.14159265F / 3.5F;
@@ -96,10 +94,10 @@ void packNodes(const PointView& points, const PointView& normals, const Scaling&
     node.y = (p[1] - scaling.center[1]) * scaling.scale;
     node.z = (p[2] - scaling.center[2]) * scaling.scale;
     // A zero normal becomes NaN: not usable.
-    const float length = std::sqrt(m[0] * m[0] + m[1] * m[1] + m[2] * m[2]);
-    node.nx = m[0] / length;
-    node.ny = m[1] / length;
-    node.nz = m[2] / length;
+    const float factor = 1.F / std::sqrt(m[0] * m[0] + m[1] * m[1] + m[2] * m[2]);
+    node.nx = m[0] * factor;
+    node.ny = m[1] * factor;
+    node.nz = m[2] * factor;
     node.curvature = m[3];
   }
 }

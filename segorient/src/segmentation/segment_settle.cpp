@@ -53,7 +53,7 @@ class Settler {
     const std::size_t count = listCandidates(p, candidates);
     const std::int32_t own = state_.labels[p];
     const bool own_regular = isRegular(own);
-    if (count == 0 || (count == 1 && own_regular)) return own;
+    if (count == 0 || (own_regular && (count == 1 || !meetsOther(p)))) return own;
     gatherWitnesses(p, candidates, count);
     std::int32_t best = -1;
     float best_offset = std::numeric_limits<float>::max();
@@ -92,6 +92,17 @@ class Settler {
       if (found == last) candidates[count++].label = label;
     }
     return count;
+  }
+
+  // Whether a point of another segment is in the first ring: farther from the edge its own normals
+  // are good enough.
+  bool meetsOther(std::size_t p) const {
+    const pcl::index_t* row = state_.neighborhoods->indices(p);
+    const int size = std::min(state_.rowSize(p), kRing + 1);
+    for (int j = 1; j < size; ++j) {
+      if (state_.labels[static_cast<std::size_t>(row[j])] != state_.labels[p]) return true;
+    }
+    return false;
   }
 
   // From the neighbours and their neighbours: those nearest to an edge have its bad normals
