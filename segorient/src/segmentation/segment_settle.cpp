@@ -13,6 +13,8 @@ namespace {
 constexpr std::size_t kWitnesses = 5;
 /// Segments that are compared at one point; three meet at a corner.
 constexpr std::size_t kCandidates = 6;
+/// Neighbours of each row that are looked at, at most: the witnesses are to be near.
+constexpr int kReach = 12;
 /// 80 degrees. The normal of a point right at an edge may lean far over; near a right angle to the
 /// reference normal its sign would be arbitrary.
 constexpr double kMostLean = 1.3962634;
@@ -110,12 +112,12 @@ class Settler {
   void gatherWitnesses(std::size_t p, std::array<Candidate, kCandidates>& candidates,
                        std::size_t count) const {
     const pcl::index_t* row = state_.neighborhoods->indices(p);
-    const int size = state_.rowSize(p);
+    const int size = std::min(state_.rowSize(p), kReach + 1);
     for (int j = 1; j < size; ++j) {
       const auto middle = static_cast<std::size_t>(row[j]);
       if (!state_.limits.near(state_.nodes[p], state_.nodes[middle])) continue;
       const pcl::index_t* next = state_.neighborhoods->indices(middle);
-      const int next_size = state_.rowSize(middle);
+      const int next_size = std::min(state_.rowSize(middle), kReach + 1);
       for (int i = 0; i < next_size; ++i) {
         const auto q = static_cast<std::size_t>(next[i]);
         if (q == p) continue;
