@@ -21,11 +21,16 @@ struct Command {
 };
 
 constexpr std::array kCommands{
-    Command{"orient", "IN OUT      one oriented normal a point: the main job", runOrient},
-    Command{"normals", "IN OUT      unoriented normals", runNormals},
-    Command{"segment", "IN OUT      segments: labels, colours, kinds", runSegment},
+    Command{"orient", "IN OUT        one oriented normal a point: the main job", runOrient},
+    Command{"normals", "IN OUT        unoriented normals", runNormals},
+    Command{"segment", "IN OUT        segments: labels, colours, kinds", runSegment},
+    Command{"triangulate", "IN OUT        the segments' triangulations as one mesh",
+            runTriangulate},
+    Command{"knn", "IN [OUT.csv]  nearest neighbours of all points, and how fast", runKnn},
+    Command{"compare", "IN            beside PCL's normal estimation", runCompare},
     Command{"evaluate", "TRUTH RESULT  how many points are oriented as the truth", runEvaluate},
-    Command{"render", "IN OUT.png  a picture", runRender},
+    Command{"render", "IN OUT.png    a picture", runRender},
+    Command{"view", "IN            the same in a window", runView},
 };
 
 void printHelp(std::ostream& out) {

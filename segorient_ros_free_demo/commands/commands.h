@@ -12,7 +12,11 @@ namespace segorient::program {
 int runOrient(const std::vector<std::string>& words);
 int runNormals(const std::vector<std::string>& words);
 int runSegment(const std::vector<std::string>& words);
+int runTriangulate(const std::vector<std::string>& words);
+int runKnn(const std::vector<std::string>& words);
+int runCompare(const std::vector<std::string>& words);
 int runEvaluate(const std::vector<std::string>& words);
 int runRender(const std::vector<std::string>& words);
+int runView(const std::vector<std::string>& words);
 
 }  // namespace segorient::program

@@ -32,11 +32,8 @@ int runNormals(const std::vector<std::string>& words) {
   requireEnding(line.argument("OUT"), {".pcd", ".ply"});
 
   OutputFile file(line.argument("OUT"));
-  const CloudTable table = readCloud(line.argument("IN"));
+  const CloudTable table = readUsableCloud(line.argument("IN"));
   const LocalPoints points(table);
-  if (points.finite() == 0) {
-    throw FileError(line.argument("IN"), "has no point with finite coordinates");
-  }
   Stages stages(points.view(), options, !common.quiet);
   stages.findNormals();
   const std::vector<float> normals = stages.normals();

@@ -143,13 +143,10 @@ int runOrient(const std::vector<std::string>& words) {
   OutputFile out(line.argument("OUT"));
   std::optional<OutputFile> report;
   if (!report_path.empty()) report.emplace(report_path);
-  const CloudTable table = readCloud(line.argument("IN"));
+  const CloudTable table = readUsableCloud(line.argument("IN"));
   OrientedCloud cloud;
   {
     const LocalPoints points(table);
-    if (points.finite() == 0) {
-      throw FileError(line.argument("IN"), "has no point with finite coordinates");
-    }
     ProgressBar bar(!common.quiet, table.size);
     cloud = orientCloud(points.view(), nullptr, options,
                         [&](const char* stage, double fraction) { bar.update(stage, fraction); });

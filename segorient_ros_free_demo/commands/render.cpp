@@ -38,11 +38,10 @@ int runRender(const std::vector<std::string>& words) {
 
   OutputFile out(line.argument("OUT.png"));
   const std::string path = line.argument("IN");
-  const CloudTable table = readCloud(path);
+  const CloudTable table = readUsableCloud(path);
   const LocalPoints points(table);
-  if (points.finite() == 0) throw FileError(path, "has no point with finite coordinates");
   const Coloring coloring = parseColoring(color, table, path);
-  writePng(drawViews(makeScene(table, points, coloring, threads), view, !single), out);
+  writePng(drawViews(makeScene(table, points, nullptr, coloring, threads), view, !single), out);
   out.commit();
   return 0;
 }

@@ -2,6 +2,7 @@
 // Copyright (c) 2026, the segorient authors
 #include <algorithm>
 #include <cctype>
+#include <cmath>
 
 #include "io/file_endings.h"
 #include "io/readers.h"
@@ -60,6 +61,15 @@ CloudTable readCloud(const std::string& path) {
   checkCoordinates(file, table);
   if (table.size == 0) file.fail("has no points");
   return table;
+}
+
+CloudTable readUsableCloud(const std::string& path) {
+  CloudTable table = readCloud(path);
+  for (std::size_t i = 0; i < table.size; ++i) {
+    const auto p = table.position(i);
+    if (std::isfinite(p[0]) && std::isfinite(p[1]) && std::isfinite(p[2])) return table;
+  }
+  throw FileError(path, "has no point with finite coordinates");
 }
 
 }  // namespace segorient::program

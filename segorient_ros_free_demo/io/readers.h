@@ -27,6 +27,9 @@ CloudTable readText(InputFile& file);
 /// coordinates in floating point.
 CloudTable readCloud(const std::string& path);
 
+/// The same, and at least one point has finite coordinates.
+CloudTable readUsableCloud(const std::string& path);
+
 /// Bounds the memory that `size` rows of the table may take by what the file holds: throws if its
 /// remaining bytes cannot hold that many rows of at least `least_bytes`. Then allocates the rows.
 void allocateRows(const InputFile& file, CloudTable& table, std::uint64_t size,

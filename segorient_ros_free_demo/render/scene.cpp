@@ -62,12 +62,28 @@ class Palette {
   const Field* field_ = nullptr;
 };
 
-std::array<float, 3> unitNormal(const CloudTable& table, std::size_t row) {
-  std::array<double, 3> n = table.triple(table.normals(), row);
-  const double length = std::hypot(n[0], n[1], n[2]);
-  return {static_cast<float>(n[0] / length), static_cast<float>(n[1] / length),
-          static_cast<float>(n[2] / length)};
-}
+// Unit normals of a table or of an array; NaN where there is none.
+class NormalSource {
+ public:
+  NormalSource(const CloudTable& table, const float* normals) : table_(table), normals_(normals) {}
+  bool any() const { return normals_ != nullptr || table_.hasNormals(); }
+  std::array<float, 3> at(std::size_t row) const {
+    if (!any()) return {NAN, NAN, NAN};
+    std::array<double, 3> n{};
+    if (normals_ == nullptr) {
+      n = table_.triple(table_.normals(), row);
+    } else {
+      std::copy_n(normals_ + 4 * row, 3, n.begin());
+    }
+    const double length = std::hypot(n[0], n[1], n[2]);
+    return {static_cast<float>(n[0] / length), static_cast<float>(n[1] / length),
+            static_cast<float>(n[2] / length)};
+  }
+
+ private:
+  const CloudTable& table_;
+  const float* normals_;
+};
 
 std::array<float, 3> positionOf(const PointView& points, std::size_t i) {
   return {points[i][0], points[i][1], points[i][2]};
@@ -136,8 +152,8 @@ void addCuts(const std::vector<std::int32_t>& splat_of, const pcl::index_t* neig
   }
 }
 
-void addSplats(const CloudTable& table, const PointView& points, Coloring coloring, int threads,
-               Scene& scene) {
+void addSplats(const CloudTable& table, const PointView& points, const NormalSource& normals,
+               Coloring coloring, int threads, Scene& scene) {
   search::MedianHashIndex index;
   search::MedianHashIndex::Options options;
   options.threads = threads;
@@ -147,20 +163,18 @@ void addSplats(const CloudTable& table, const PointView& points, Coloring colori
 
   const Palette palette(table, coloring);
   const std::vector<float> radii = splatRadii(neighborhoods);
-  const bool normals = table.hasNormals();
   std::vector<std::int32_t> splat_of(points.size, -1);
   for (std::size_t i = 0; i < points.size; ++i) {
     if (!isFinite(points[i])) continue;
     splat_of[i] = static_cast<std::int32_t>(scene.splats.size());
     Splat s;
     s.position = positionOf(points, i);
-    s.normal.fill(NAN);
-    if (normals) s.normal = unitNormal(table, i);
+    s.normal = normals.at(i);
     s.radius = radii[i];
     palette.set(i, std::isfinite(s.normal[0]), s.front, s.back);
     scene.splats.push_back(s);
   }
-  for (std::size_t i = 0; i < points.size && normals; ++i) {
+  for (std::size_t i = 0; i < points.size && normals.any(); ++i) {
     if (splat_of[i] < 0) continue;
     addCuts(splat_of, neighborhoods.indices(i), neighborhoods.count(i),
             static_cast<std::size_t>(splat_of[i]), scene);
@@ -191,13 +205,13 @@ Coloring parseColoring(const std::string& name, const CloudTable& table, const s
   return normals && !rgb ? Coloring::Normal : Coloring::Rgb;
 }
 
-Scene makeScene(const CloudTable& table, const LocalPoints& points, Coloring coloring,
-                int threads) {
+Scene makeScene(const CloudTable& table, const LocalPoints& points, const float* normals,
+                Coloring coloring, int threads) {
   Scene scene;
   if (!table.triangles.empty()) {
     addMesh(table, points.view(), coloring, scene);
   } else {
-    addSplats(table, points.view(), coloring, threads, scene);
+    addSplats(table, points.view(), NormalSource(table, normals), coloring, threads, scene);
   }
   return scene;
 }

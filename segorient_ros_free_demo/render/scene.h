@@ -24,7 +24,9 @@ Coloring parseColoring(const std::string& name, const CloudTable& table, const s
 /// The cloud's triangles if it has any, else its points as splats: as wide as the points around are
 /// apart, so that surfaces look closed, and cut where a sharp edge is, so that they do not stick
 /// out.
-Scene makeScene(const CloudTable& table, const LocalPoints& points, Coloring coloring, int threads);
+/// \param normals 4 floats a point to draw instead of the table's own, or null
+Scene makeScene(const CloudTable& table, const LocalPoints& points, const float* normals,
+                Coloring coloring, int threads);
 
 /// The scene from one direction and, if `both`, beside it from the opposite one.
 Picture drawViews(const Scene& scene, const View& view, bool both);

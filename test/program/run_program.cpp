@@ -18,13 +18,13 @@ std::string quoted(const std::string& word) {
 
 }  // namespace
 
-Run runProgram(const std::vector<std::string>& words) {
+Outcome runProgram(const std::vector<std::string>& words) {
   const ScratchDirectory directory;
   std::string command = quoted(SEGORIENT_PROGRAM);
   for (const std::string& word : words) command += " " + quoted(word);
   command += " > " + directory.file("out") + " 2> " + directory.file("err") + " < /dev/null";
   const int status = std::system(command.c_str());
-  Run run;
+  Outcome run;
   run.status = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
   run.out = readFile(directory.file("out"));
   run.err = readFile(directory.file("err"));

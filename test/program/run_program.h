@@ -10,14 +10,14 @@
 namespace segorient::test {
 
 /// What a run of the program left.
-struct Run {
+struct Outcome {
   int status = -1;  ///< exit status; 128 + signal if one ended it
   std::string out;
   std::string err;
 };
 
 /// Runs the program segorient with these words and waits for its end.
-Run runProgram(const std::vector<std::string>& words);
+Outcome runProgram(const std::vector<std::string>& words);
 
 /// One line of text that ends with a newline.
 bool isOneLine(const std::string& text);

@@ -15,7 +15,7 @@ namespace segorient::test {
 class ScratchDirectory {
  public:
   ScratchDirectory() {
-    for (const std::string parent : {std::string("/dev/shm"), temporary()}) {
+    for (const std::string& parent : {std::string("/dev/shm"), temporary()}) {
       std::string name = parent + "/segorient_test.XXXXXX";
       if (mkdtemp(name.data()) == nullptr) continue;
       path_ = name;

@@ -18,8 +18,9 @@ struct Command {
   const char* name;
   const char* output;
 };
-const std::vector<Command> kCommands{
-    {"orient", "out.pcd"}, {"normals", "out.ply"}, {"segment", "out.pcd"}, {"render", "out.png"}};
+const std::vector<Command> kCommands{{"orient", "out.pcd"},      {"normals", "out.ply"},
+                                     {"segment", "out.pcd"},     {"render", "out.png"},
+                                     {"triangulate", "out.ply"}, {"knn", "out.csv"}};
 
 TEST(BadInput, FilesThatCannotBeUsed) {
   const ScratchDirectory directory;
@@ -40,7 +41,7 @@ TEST(BadInput, FilesThatCannotBeUsed) {
   for (const Command& command : kCommands) {
     for (const std::string& input : inputs) {
       SCOPED_TRACE(std::string(command.name) + " " + input);
-      const Run run = runProgram({command.name, input, directory.file(command.output)});
+      const Outcome run = runProgram({command.name, input, directory.file(command.output)});
       EXPECT_EQ(run.status, 1);
       EXPECT_TRUE(isOneLine(run.err)) << run.err;
       EXPECT_NE(run.err.find(input + ": "), std::string::npos) << run.err;
@@ -60,22 +61,22 @@ TEST(BadInput, TooFewOrDegeneratePointsGetNoNormal) {
                                         "0 0 0\n1e-40 0 0\n"};
   for (const std::string& text : clouds) {
     const std::string in = directory.write("in.xyz", text);
-    for (const std::string command : {"orient", "normals", "segment"}) {
+    for (const std::string command : {"orient", "normals", "segment", "triangulate"}) {
       SCOPED_TRACE(command + " " + text);
-      const std::string out = directory.file("out.pcd");
-      const Run run = runProgram({command, in, out});
+      const std::string out = directory.file("out.ply");
+      const Outcome run = runProgram({command, in, out});
       ASSERT_EQ(run.status, 0) << run.err;
       const program::CloudTable table = program::readCloud(out);
       EXPECT_EQ(table.size, program::readCloud(in).size);
       for (std::size_t i = 0; i < table.size; ++i) {
         EXPECT_TRUE(std::isnan(table.triple(table.normals(), i)[0]));
       }
-      if (command != "segment") {
+      if (command == "orient" || command == "normals") {
         EXPECT_NE(run.out.find("without normal  " + std::to_string(table.size)), std::string::npos)
             << run.out;
       }
     }
-    const Run picture = runProgram({"render", in, directory.file("out.png")});
+    const Outcome picture = runProgram({"render", in, directory.file("out.png")});
     EXPECT_EQ(picture.status, 0) << picture.err;
   }
 }
@@ -90,7 +91,7 @@ TEST(BadInput, PointsWithoutCoordinatesAndRepeatedOnesKeepTheirPlace) {
     }
   }
   const std::string out = directory.file("out.pcd");
-  const Run run = runProgram({"orient", directory.write("in.xyz", text), out});
+  const Outcome run = runProgram({"orient", directory.write("in.xyz", text), out});
   ASSERT_EQ(run.status, 0) << run.err;
   EXPECT_NE(run.out.find("200 not finite, 200 duplicates"), std::string::npos) << run.out;
   const program::CloudTable table = program::readCloud(out);

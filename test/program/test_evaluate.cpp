@@ -46,7 +46,7 @@ TEST(Evaluate, CountsWhatIsRightFlippedMissingAndTilted) {
   const std::string result =
       directory.write("result.xyz", cloud({up, tilted, none, up, down, down, down, up}, false));
   const std::string report = directory.file("report.json");
-  const Run run = runProgram({"evaluate", truth, result, "--report", report});
+  const Outcome run = runProgram({"evaluate", truth, result, "--report", report});
   ASSERT_EQ(run.status, 0) << run.err;
   const ptree json = readJson(report);
   EXPECT_EQ(json.get<int>("points"), 8);
@@ -65,7 +65,7 @@ TEST(Evaluate, AGlobalFlipIsFoundAndSaid) {
   const std::string truth = directory.write("truth.xyz", cloud({4, {0, 0, 1}}, false));
   const std::string result =
       directory.write("result.xyz", cloud({{0, 0, -1}, {0, 0, -1}, {0, 0, -1}, {0, 0, 1}}, false));
-  const Run run = runProgram({"evaluate", truth, result});
+  const Outcome run = runProgram({"evaluate", truth, result});
   EXPECT_NE(run.out.find("25.0000 %"), std::string::npos) << run.out;
   EXPECT_NE(run.out.find("75.0000 %  (1 wrong; flipped)"), std::string::npos) << run.out;
 }
@@ -78,7 +78,7 @@ TEST(Evaluate, CloudsThatDoNotMatchAreRefused) {
                                         "x y z nx ny nz\n0 0 0 0 0 1\n1 0.01 0 0 0 1\n",
                                         "x y z\n0 0 0\n1 0 0\n"};
   for (const std::string& other : others) {
-    const Run run = runProgram({"evaluate", truth, directory.write("result.xyz", other)});
+    const Outcome run = runProgram({"evaluate", truth, directory.write("result.xyz", other)});
     EXPECT_EQ(run.status, 1);
     EXPECT_TRUE(isOneLine(run.err)) << run.err;
   }
@@ -88,7 +88,7 @@ TEST(Fandisk, IsOrientedOutward) {
   const ScratchDirectory directory;
   const std::string out = directory.file("oriented.pcd");
   const std::string report = directory.file("report.json");
-  const Run run = runProgram({"orient", fandisk(), out, "--report", report});
+  const Outcome run = runProgram({"orient", fandisk(), out, "--report", report});
   ASSERT_EQ(run.status, 0) << run.err;
   EXPECT_TRUE(run.err.empty()) << run.err;  // no progress where there is no terminal
   const ptree json = readJson(report);

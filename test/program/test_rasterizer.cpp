@@ -60,8 +60,8 @@ Shares draw(const CloudTable& table, double elevation) {
   program::View view;
   view.width = view.height = 400;
   view.elevation = elevation;
-  return shares(
-      program::drawScene(program::makeScene(table, points, program::Coloring::Normal, 1), view));
+  return shares(program::drawScene(
+      program::makeScene(table, points, nullptr, program::Coloring::Normal, 1), view));
 }
 
 TEST(Rasterizer, AnOutwardSphereIsAFullDiscWithoutRed) {
@@ -90,7 +90,8 @@ TEST(Rasterizer, AMeshShowsItsFrontAndItsBack) {
       "property float z\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n"
       "0 0 0\n0 1 0\n0 0 1\n3 0 1 2\n"));
   const program::LocalPoints points(table);
-  const program::Scene scene = program::makeScene(table, points, program::Coloring::Normal, 1);
+  const program::Scene scene =
+      program::makeScene(table, points, nullptr, program::Coloring::Normal, 1);
   program::View view;
   view.elevation = 0.0;
   view.azimuth = 0.0;
@@ -108,8 +109,9 @@ TEST(Rasterizer, EveryDegenerateCloudGivesAPicture) {
         "nan 0 0\n0 0 0\n1 0 inf\n", "0 0 0 0 0 0\n1 0 0 0 0 0\n"}) {
     const CloudTable table = program::readCloud(directory.write("a.xyz", text));
     const program::LocalPoints points(table);
-    const Picture picture = program::drawViews(
-        program::makeScene(table, points, program::Coloring::Rgb, 1), program::View{}, true);
+    const Picture picture =
+        program::drawViews(program::makeScene(table, points, nullptr, program::Coloring::Rgb, 1),
+                           program::View{}, true);
     EXPECT_EQ(picture.width, 800U) << text;
   }
 }

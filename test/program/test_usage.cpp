@@ -8,14 +8,15 @@
 namespace segorient::test {
 namespace {
 
-const std::vector<std::string> kCommands{"orient", "normals", "segment", "evaluate", "render"};
+const std::vector<std::string> kCommands{"orient",  "normals",  "segment", "triangulate", "knn",
+                                         "compare", "evaluate", "render",  "view"};
 
 TEST(Usage, HelpOfTheProgramAndOfEveryCommand) {
-  const Run help = runProgram({"--help"});
+  const Outcome help = runProgram({"--help"});
   EXPECT_EQ(help.status, 0);
   for (const std::string& command : kCommands) {
     EXPECT_NE(help.out.find("\n  " + command + " "), std::string::npos) << command;
-    const Run own = runProgram({command, "--help"});
+    const Outcome own = runProgram({command, "--help"});
     EXPECT_EQ(own.status, 0) << command;
     EXPECT_NE(own.out.find("Usage: segorient " + command), std::string::npos) << command;
     EXPECT_NE(own.out.find("Example:\n  segorient " + command), std::string::npos) << command;
@@ -53,7 +54,7 @@ TEST(Usage, WrongUsageIsStatus2AndOneLine) {
     std::string line;
     for (const std::string& word : words) line += word + " ";
     SCOPED_TRACE(line);
-    const Run run = runProgram(words);
+    const Outcome run = runProgram(words);
     EXPECT_EQ(run.status, 2);
     EXPECT_TRUE(isOneLine(run.err)) << run.err;
     EXPECT_TRUE(run.out.empty());
@@ -65,13 +66,13 @@ TEST(Usage, OutputThatCannotBeWrittenIsStatus1) {
   const ScratchDirectory directory;
   std::filesystem::create_directory(directory.file("taken.pcd"));
   for (const std::string out : {"missing/out.pcd", "taken.pcd"}) {
-    const Run run = runProgram({"orient", fandisk(), directory.file(out)});
+    const Outcome run = runProgram({"orient", fandisk(), directory.file(out)});
     EXPECT_EQ(run.status, 1) << out;
     EXPECT_TRUE(isOneLine(run.err)) << run.err;
     EXPECT_NE(run.err.find(out), std::string::npos) << run.err;
   }
-  const Run report = runProgram({"orient", fandisk(), directory.file("out.pcd"), "--report",
-                                 directory.file("missing/report.json")});
+  const Outcome report = runProgram({"orient", fandisk(), directory.file("out.pcd"), "--report",
+                                     directory.file("missing/report.json")});
   EXPECT_EQ(report.status, 1);
   EXPECT_FALSE(std::filesystem::exists(directory.file("out.pcd")));
 }
@@ -89,7 +90,7 @@ TEST(Usage, InputAndOutputMayBeTheSameFile) {
   const ScratchDirectory directory;
   const std::string both = directory.write("both.pcd", readFile(fandisk()));
   ASSERT_EQ(runProgram({"orient", both, both, "--quiet"}).status, 0);
-  const Run run = runProgram({"evaluate", fandisk(), both});
+  const Outcome run = runProgram({"evaluate", fandisk(), both});
   EXPECT_EQ(run.status, 0) << run.err;
 }
 

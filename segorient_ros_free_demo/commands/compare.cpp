@@ -1,0 +1,198 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the segorient authors
+#include <pcl/features/normal_3d_omp.h>
+#include <pcl/point_types.h>
+#include <pcl/search/kdtree.h>
+#include <segorient/common/threads.h>
+#include <segorient/orientation/pipeline.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <optional>
+
+#include "commands/commands.h"
+#include "io/cloud_writer.h"
+#include "io/output_file.h"
+#include "io/readers.h"
+#include "render/scene.h"
+#include "support/command_line.h"
+#include "support/poisson.h"
+#include "support/progress_bar.h"
+#include "support/stage_options.h"
+#include "support/stages.h"
+#include "support/stopwatch.h"
+
+namespace segorient::program {
+namespace po = boost::program_options;
+namespace {
+
+constexpr double kDegrees = 57.295779513082320877;
+
+using Normals = std::vector<float>;  // 4 floats a point
+
+// As most PCL programs do it: k neighbours by KdTree, turned towards the viewpoint.
+Normals normalsByPcl(const PointView& points, const CloudTable& table,
+                     const std::array<double, 3>& origin, int k, int threads) {
+  pcl::PointCloud<pcl::PointXYZ>::Ptr cloud(new pcl::PointCloud<pcl::PointXYZ>);
+  std::vector<std::size_t> rows;
+  for (std::size_t i = 0; i < points.size; ++i) {
+    if (!isFinite(points[i])) continue;
+    cloud->push_back({points[i][0], points[i][1], points[i][2]});
+    rows.push_back(i);
+  }
+  pcl::NormalEstimationOMP<pcl::PointXYZ, pcl::Normal> estimation(static_cast<unsigned>(threads));
+  estimation.setInputCloud(cloud);
+  estimation.setSearchMethod(pcl::make_shared<pcl::search::KdTree<pcl::PointXYZ>>());
+  estimation.setKSearch(k);
+  std::array<float, 3> viewpoint{};
+  for (std::size_t a = 0; a < 3; ++a) {
+    viewpoint[a] = static_cast<float>(table.viewpoint[a] - origin[a]);
+  }
+  estimation.setViewPoint(viewpoint[0], viewpoint[1], viewpoint[2]);
+  pcl::PointCloud<pcl::Normal> normals;
+  estimation.compute(normals);
+  Normals out(4 * points.size, NAN);
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    std::copy_n(normals[i].normal, 3, &out[4 * rows[i]]);
+    out[4 * rows[i] + 3] = normals[i].curvature;
+  }
+  return out;
+}
+
+Normals ownNormals(const CloudTable& table) {
+  Normals out(4 * table.size, 0.F);
+  for (std::size_t i = 0; i < table.size; ++i) {
+    const auto n = table.triple(table.normals(), i);
+    const double length = std::hypot(n[0], n[1], n[2]);
+    for (std::size_t a = 0; a < 3; ++a) out[4 * i + a] = static_cast<float>(n[a] / length);
+  }
+  return out;
+}
+
+struct Difference {
+  std::size_t compared = 0;
+  std::size_t opposite = 0;
+  double median = 0.0;
+  double p90 = 0.0;
+  double rms = 0.0;
+  double share(std::size_t n) const {
+    return compared == 0 ? 0.0 : 100.0 * static_cast<double>(n) / static_cast<double>(compared);
+  }
+};
+
+Difference compareNormals(const Normals& a, const Normals& b) {
+  Difference d;
+  std::vector<double> angles;
+  double sum = 0.0;
+  for (std::size_t i = 0; 4 * i < a.size(); ++i) {
+    double dot = 0.0;
+    for (std::size_t c = 0; c < 3; ++c) {
+      dot += static_cast<double>(a[4 * i + c]) * static_cast<double>(b[4 * i + c]);
+    }
+    if (!std::isfinite(dot)) continue;
+    if (dot < 0.0) ++d.opposite;
+    angles.push_back(kDegrees * std::acos(std::min(1.0, std::abs(dot))));
+    sum += angles.back() * angles.back();
+  }
+  d.compared = angles.size();
+  if (angles.empty()) return d;
+  std::sort(angles.begin(), angles.end());
+  d.median = angles[angles.size() / 2];
+  d.p90 = angles[angles.size() * 9 / 10];
+  d.rms = std::sqrt(sum / static_cast<double>(angles.size()));
+  return d;
+}
+
+void printAgainstTruth(const char* name, const Normals& truth, const Normals& normals) {
+  const Difference d = compareNormals(truth, normals);
+  std::printf(
+      "  %-10s %.3f %% oriented alike (%.3f %% after a global flip), angle rms %.2f median %.2f "
+      "deg\n",
+      name, d.share(d.compared - d.opposite),
+      d.share(std::max(d.opposite, d.compared - d.opposite)), d.rms, d.median);
+}
+
+Scene sceneOf(const CloudTable& table, const LocalPoints& points, const Normals& normals,
+              int threads) {
+  return makeScene(table, points, normals.data(), Coloring::Normal, threads);
+}
+
+}  // namespace
+
+int runCompare(const std::vector<std::string>& words) {
+  CommandLine line(
+      "compare IN [options]",
+      "Normals of pcl::NormalEstimationOMP, turned to the viewpoint of IN, beside those\n"
+      "of segorient orient: time, angles, share of points oriented differently; and both\n"
+      "against IN's own normals if it has any. Pictures show PCL left, ours right.",
+      "segorient compare scan.ply --picture compare.png --poisson poisson");
+  CommonOptions common;
+  StageOptions stages;
+  std::string picture_path;
+  std::string poisson_prefix;
+  int depth = 0;
+  line.arguments({"IN"});
+  stages.addOrientation(line);
+  stages.addNormals(line);
+  stages.addSegmentation(line);
+  line.options()("picture", po::value(&picture_path), "PNG: PCL left, ours right")(
+      "poisson", po::value(&poisson_prefix),
+      "surfaces of pcl::Poisson from both: writes NAME_pcl.ply, NAME_ours.ply, NAME.png")(
+      "depth", po::value(&depth)->default_value(8), "of pcl::Poisson's octree");
+  common.add(line);
+  if (!line.parse(words)) return 0;
+  common.check();
+  require(depth >= 2 && depth <= 14, "--depth must be 2 to 14");
+  PipelineOptions options;
+  stages.apply(line, common, options);
+  std::optional<OutputFile> picture;
+  if (!picture_path.empty()) {
+    requireEnding(picture_path, {".png"});
+    picture.emplace(picture_path);
+  }
+
+  const CloudTable table = readUsableCloud(line.argument("IN"));
+  const LocalPoints points(table);
+  OrientedCloud ours;
+  const Stopwatch our_time;
+  {
+    ProgressBar bar(!common.quiet, table.size);
+    ours = orientCloud(points.view(), nullptr, options,
+                       [&](const char* stage, double fraction) { bar.update(stage, fraction); });
+  }
+  const double our_seconds = our_time.seconds();
+  const int k = ours.report.k + 1;  // PCL counts the point itself
+  const Stopwatch pcl_time;
+  const Normals pcl_normals =
+      normalsByPcl(points.view(), table, points.origin(), k, resolveThreads(common.threads));
+  const double pcl_seconds = pcl_time.seconds();
+
+  const Difference d = compareNormals(pcl_normals, ours.normals);
+  std::printf("points      %zu; %d neighbours\n", table.size, ours.report.k);
+  std::printf("seconds     PCL %.2f (normals and viewpoint); ours %.2f: %s\n", pcl_seconds,
+              our_seconds, timesText(ours.report.stages).c_str());
+  std::printf("angle       median %.3f  p90 %.3f deg between the two, signs ignored\n", d.median,
+              d.p90);
+  std::printf("orientation %.3f %% of %zu points differ\n", d.share(d.opposite), d.compared);
+  if (table.hasNormals()) {
+    const Normals truth = ownNormals(table);
+    std::printf("against the input's own normals:\n");
+    printAgainstTruth("PCL", truth, pcl_normals);
+    printAgainstTruth("segorient", truth, ours.normals);
+  }
+  if (picture) {
+    View view;
+    writePng(beside({drawScene(sceneOf(table, points, pcl_normals, common.threads), view),
+                     drawScene(sceneOf(table, points, ours.normals, common.threads), view)}),
+             *picture);
+    picture->commit();
+    std::printf("written     %s\n", picture_path.c_str());
+  }
+  if (!poisson_prefix.empty()) {
+    comparePoisson(points, {pcl_normals, ours.normals}, depth, poisson_prefix);
+  }
+  return 0;
+}
+
+}  // namespace segorient::program

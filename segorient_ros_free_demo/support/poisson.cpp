@@ -1,0 +1,118 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the segorient authors
+#include "support/poisson.h"
+
+#include <pcl/conversions.h>
+#include <pcl/point_types.h>
+#include <pcl/surface/poisson.h>
+#include <segorient/search/median_hash_index.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <cstring>
+
+#include "io/cloud_writer.h"
+#include "io/output_file.h"
+#include "render/scene.h"
+
+namespace segorient::program {
+namespace {
+
+// The surface over the points that have a normal, as a table with triangles.
+CloudTable poissonSurface(const LocalPoints& points, const std::vector<float>& normals, int depth) {
+  pcl::PointCloud<pcl::PointNormal>::Ptr cloud(new pcl::PointCloud<pcl::PointNormal>);
+  for (std::size_t i = 0; i < points.view().size; ++i) {
+    if (!std::isfinite(normals[4 * i]) || !isFinite(points.view()[i])) continue;
+    pcl::PointNormal p;
+    std::copy_n(points.view()[i], 3, p.data);
+    std::copy_n(&normals[4 * i], 3, p.normal);
+    cloud->push_back(p);
+  }
+  CloudTable table;
+  for (const char* name : {"x", "y", "z"}) table.addField(name, 'F', 8);
+  if (cloud->empty()) return table;
+  pcl::Poisson<pcl::PointNormal> poisson;
+  poisson.setDepth(depth);
+  poisson.setInputCloud(cloud);
+  pcl::PointCloud<pcl::PointNormal> vertices;
+  std::vector<pcl::Vertices> polygons;
+  poisson.performReconstruction(vertices, polygons);
+  table.size = table.width = vertices.size();
+  table.rows.resize(table.size * table.row_bytes);
+  for (std::size_t i = 0; i < table.size; ++i) {
+    for (std::size_t a = 0; a < 3; ++a) {
+      const double v = static_cast<double>(vertices[i].data[a]) + points.origin()[a];
+      std::memcpy(table.at(table.fields[a], i), &v, sizeof(v));
+    }
+  }
+  for (const pcl::Vertices& p : polygons) {
+    if (p.vertices.size() != 3) continue;
+    table.triangles.push_back({static_cast<std::uint32_t>(p.vertices[0]),
+                               static_cast<std::uint32_t>(p.vertices[1]),
+                               static_cast<std::uint32_t>(p.vertices[2])});
+  }
+  return table;
+}
+
+// Distances from each row of `from` to the nearest row of `to`, ascending.
+std::vector<double> distances(const PointView& from, const PointView& to) {
+  search::MedianHashIndex index;
+  index.build(to, nullptr, {});
+  std::vector<double> out;
+  for (std::size_t i = 0; i < from.size; ++i) {
+    pcl::index_t nearest = 0;
+    float squared = 0.F;
+    if (index.nearestK(from[i], 1, &nearest, &squared) == 1) {
+      out.push_back(std::sqrt(static_cast<double>(squared)));
+    }
+  }
+  std::sort(out.begin(), out.end());
+  return out;
+}
+
+void printDistances(const char* name, const std::vector<double>& d, double extent) {
+  if (d.empty()) return;
+  std::printf("  %-26s median %.4f  p95 %.4f  largest %.4f %% of the extent\n", name,
+              100.0 * d[d.size() / 2] / extent, 100.0 * d[d.size() * 95 / 100] / extent,
+              100.0 * d.back() / extent);
+}
+
+}  // namespace
+
+void comparePoisson(const LocalPoints& points, const std::array<std::vector<float>, 2>& normals,
+                    int depth, const std::string& prefix) {
+  const std::array<std::string, 2> names{"pcl", "ours"};
+  OutputFile picture_file(prefix + ".png");
+  std::vector<Picture> pictures;
+  for (std::size_t i = 0; i < 2; ++i) {
+    OutputFile file(prefix + "_" + names[i] + ".ply");
+    const CloudTable surface = poissonSurface(points, normals[i], depth);
+    OutputCloud out(surface);
+    out.triangles = &surface.triangles;
+    writePly(out, file);
+    file.commit();
+    const LocalPoints vertices(surface);
+    std::vector<float> near(3 * surface.size);  // the vertices in the points' frame
+    for (std::size_t v = 0; v < surface.size; ++v) {
+      const auto p = surface.position(v);
+      for (std::size_t a = 0; a < 3; ++a) {
+        near[3 * v + a] = static_cast<float>(p[a] - points.origin()[a]);
+      }
+    }
+    const PointView view{near.data(), 3, surface.size};
+    std::printf("Poisson surface from %s normals: %zu triangles, %s\n", i == 0 ? "PCL's" : "our",
+                surface.triangles.size(), file.path().c_str());
+    printDistances("surface to nearest point", distances(view, points.view()), points.extent());
+    printDistances("point to nearest vertex", distances(points.view(), view), points.extent());
+    if (!surface.triangles.empty()) {
+      pictures.push_back(drawScene(makeScene(surface, vertices, nullptr, Coloring::Normal, 0), {}));
+    }
+  }
+  if (pictures.empty()) return;
+  writePng(beside(pictures), picture_file);
+  picture_file.commit();
+  std::printf("written     %s\n", picture_file.path().c_str());
+}
+
+}  // namespace segorient::program

@@ -1,0 +1,29 @@
+# SPDX-License-Identifier: BSD-3-Clause
+# Installs the build into a directory of its own, builds the consumer against that, and runs both it and
+# the installed program.
+function(run)
+  execute_process(COMMAND ${ARGN} RESULT_VARIABLE status OUTPUT_VARIABLE output ERROR_VARIABLE output)
+  message("${output}")
+  if(NOT status EQUAL 0)
+    message(FATAL_ERROR "failed: ${ARGN}")
+  endif()
+endfunction()
+
+file(REMOVE_RECURSE ${WORK})
+set(prefix ${WORK}/installed)
+run(${CMAKE_COMMAND} --install ${BUILD_DIRECTORY} --prefix ${prefix})
+# An installed package may not look at where it was built.
+file(GLOB_RECURSE exported ${prefix}/*.cmake)
+foreach(file IN LISTS exported)
+  file(READ ${file} text)
+  string(FIND "${text}" "${BUILD_DIRECTORY}" position)
+  if(NOT position EQUAL -1)
+    message(FATAL_ERROR "${file} names the build directory")
+  endif()
+endforeach()
+run(${CMAKE_COMMAND} -S ${CMAKE_CURRENT_LIST_DIR} -B ${WORK}/build -G ${GENERATOR}
+  -DCMAKE_BUILD_TYPE=Release -DCMAKE_CXX_COMPILER=${COMPILER} -DCMAKE_PREFIX_PATH=${prefix})
+run(${CMAKE_COMMAND} --build ${WORK}/build)
+run(${WORK}/build/consumer)
+run(${WORK}/build/consumer_of_all)
+run(${prefix}/bin/segorient orient ${DATA} ${WORK}/oriented.ply)

@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the segorient authors
+// triangulate, knn, compare and view on the shipped Fandisk.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdlib>
+#include <sstream>
+
+#include "io/readers.h"
+#include "run_program.h"
+
+namespace segorient::test {
+namespace {
+
+using program::CloudTable;
+
+// Fronts of the mesh must look outward: its triangles agree with the true normals of their corners.
+TEST(Triangulate, IsOneMeshWithItsFrontsOutward) {
+  const ScratchDirectory directory;
+  const std::string out = directory.file("mesh.ply");
+  const Outcome run = runProgram({"triangulate", fandisk(), out});
+  ASSERT_EQ(run.status, 0) << run.err;
+  const CloudTable mesh = program::readCloud(out);
+  const CloudTable truth = program::readCloud(fandisk());
+  ASSERT_EQ(mesh.size, truth.size);
+  ASSERT_GT(mesh.triangles.size(), 20000U);
+  std::size_t agreeing = 0;
+  for (const program::Triangle& t : mesh.triangles) {
+    const auto a = mesh.position(t[0]);
+    const auto b = mesh.position(t[1]);
+    const auto c = mesh.position(t[2]);
+    const double u[3] = {b[0] - a[0], b[1] - a[1], b[2] - a[2]};
+    const double v[3] = {c[0] - a[0], c[1] - a[1], c[2] - a[2]};
+    const double n[3] = {u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2],
+                         u[0] * v[1] - u[1] * v[0]};
+    const auto m = truth.triple(truth.normals(), t[0]);
+    if (n[0] * m[0] + n[1] * m[1] + n[2] * m[2] > 0.0) ++agreeing;
+  }
+  EXPECT_GT(static_cast<double>(agreeing), 0.99 * static_cast<double>(mesh.triangles.size()));
+  EXPECT_EQ(runProgram({"triangulate", fandisk(), directory.file("mesh.vtk"), "-q"}).status, 0);
+  EXPECT_EQ(readFile(directory.file("mesh.vtk")).compare(0, 5, "# vtk"), 0);
+}
+
+TEST(Knn, AgreesWithPclAndWritesEveryNeighbour) {
+  const ScratchDirectory directory;
+  const std::string out = directory.file("neighbors.csv");
+  const Outcome run = runProgram({"knn", fandisk(), out, "-k", "3"});
+  ASSERT_EQ(run.status, 0) << run.err;
+  EXPECT_NE(run.out.find(" 0 distances differ"), std::string::npos) << run.out;
+  const CloudTable cloud = program::readCloud(fandisk());
+  std::istringstream lines(readFile(out));
+  std::string line;
+  std::getline(lines, line);
+  EXPECT_EQ(line, "point,rank,neighbor,distance");
+  std::size_t count = 0;
+  while (std::getline(lines, line)) {
+    std::size_t point = 0;
+    std::size_t rank = 0;
+    std::size_t neighbor = 0;
+    double distance = -1.0;
+    ASSERT_EQ(std::sscanf(line.c_str(), "%zu,%zu,%zu,%lf", &point, &rank, &neighbor, &distance), 4);
+    ASSERT_EQ(point, count / 3);
+    ASSERT_EQ(rank, count % 3);
+    const auto p = cloud.position(point);
+    const auto q = cloud.position(neighbor);
+    ASSERT_NEAR(distance, std::hypot(p[0] - q[0], p[1] - q[1], p[2] - q[2]), 1e-6);
+    ++count;
+  }
+  EXPECT_EQ(count, 3 * cloud.size);
+}
+
+TEST(Compare, ShowsWhatTheViewpointGetsWrong) {
+  const ScratchDirectory directory;
+  const Outcome run = runProgram({"compare", fandisk(), "--picture", directory.file("compare.png"),
+                                  "--poisson", directory.file("poisson"), "--depth", "5"});
+  ASSERT_EQ(run.status, 0) << run.err;
+  double pcl_share = 0.0;
+  double our_share = 0.0;
+  const std::size_t pcl_line = run.out.find("\n  PCL ");
+  const std::size_t our_line = run.out.find("\n  segorient ");
+  ASSERT_NE(pcl_line, std::string::npos) << run.out;
+  ASSERT_NE(our_line, std::string::npos) << run.out;
+  ASSERT_EQ(std::sscanf(run.out.c_str() + pcl_line, " PCL %lf", &pcl_share), 1);
+  ASSERT_EQ(std::sscanf(run.out.c_str() + our_line, " segorient %lf", &our_share), 1);
+  EXPECT_LT(pcl_share, 80.0);
+  EXPECT_GT(our_share, 99.5);
+  for (const std::string name : {"compare.png", "poisson.png"}) {
+    EXPECT_EQ(readFile(directory.file(name)).compare(1, 3, "PNG"), 0) << name;
+  }
+  const CloudTable ours = program::readCloud(directory.file("poisson_ours.ply"));
+  EXPECT_GT(ours.triangles.size(), 1000U);
+  EXPECT_GT(program::readCloud(directory.file("poisson_pcl.ply")).size, 1000U);
+}
+
+TEST(View, SaysThatThereIsNoScreen) {
+  unsetenv("DISPLAY");
+  const Outcome run = runProgram({"view", fandisk()});
+  EXPECT_EQ(run.status, 1);
+  EXPECT_TRUE(isOneLine(run.err)) << run.err;
+}
+
+}  // namespace
+}  // namespace segorient::test
