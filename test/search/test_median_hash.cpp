@@ -149,7 +149,7 @@ TEST_P(OnCloud, DistancesAreThoseOfPclToTheLastBit) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Clouds, OnCloud, testing::ValuesIn(searchClouds(1500)));
+INSTANTIATE_TEST_SUITE_P(Clouds, OnCloud, testing::ValuesIn(searchClouds(1000)));
 
 TEST(MedianHash, AllPointsEqualsQueryByQuery) {
   const auto cloud = toPcl(searchClouds(3000).at(1));

@@ -64,10 +64,18 @@ class Workspace {
     candidates_.count = 0;
     return candidates_;
   }
+  // Gives back what an unusually large result took.
+  void shrink() {
+    if (candidates_.capacity <= kMostKept) return;
+    distance_ = {};
+    id_ = {};
+    candidates_ = {nullptr, nullptr, 0, 0};
+  }
   SortScratch sort() { return sortScratch(sort_floats_.data(), sort_ids_.data()); }
   std::vector<std::pair<float, std::uint32_t>> pairs;
 
  private:
+  static constexpr std::size_t kMostKept = std::size_t{1} << 18;
   std::vector<float> distance_;
   std::vector<std::uint32_t> id_;
   std::vector<float> sort_floats_;
@@ -343,6 +351,10 @@ std::size_t MedianHashIndex::memory() const {
   return sizeof(Impl) + impl_->layout.memory();
 }
 
+const char* MedianHashIndex::instructionSet() const {
+  return impl_->kernels->name;
+}
+
 float MedianHashIndex::epsilon() const {
   return impl_->options.epsilon;
 }
@@ -395,7 +407,43 @@ int MedianHashIndex::radius(const float* query, double radius, std::vector<pcl::
   }
   std::copy(distances, distances + count, sqr_distances.begin());
   for (std::size_t i = 0; i < count; ++i) indices[i] = static_cast<pcl::index_t>(ids[i]);
+  work.shrink();
   return static_cast<int>(count);
+}
+
+void MedianHashIndex::nearestKBatch(const PointView& queries, int k,
+                                    std::vector<std::vector<pcl::index_t>>& indices,
+                                    std::vector<std::vector<float>>& sqr_distances,
+                                    float epsilon) const {
+  const auto count = static_cast<std::int64_t>(queries.size);
+  const int threads = resolveThreads(impl_->options.threads);
+  const std::size_t wanted = std::min(static_cast<std::size_t>(std::max(k, 0)), size());
+  indices.resize(queries.size);
+  sqr_distances.resize(queries.size);
+#pragma omp parallel for num_threads(threads) schedule(dynamic, 512) if (threads > 1)
+  for (std::int64_t i = 0; i < count; ++i) {
+    const auto at = static_cast<std::size_t>(i);
+    const float* query = queries[at];
+    const std::size_t found = isFinite(query) ? wanted : 0;
+    indices[at].resize(found);
+    sqr_distances[at].resize(found);
+    nearestK(query, static_cast<int>(found), indices[at].data(), sqr_distances[at].data(), epsilon);
+  }
+}
+
+void MedianHashIndex::radiusBatch(const PointView& queries, double radius,
+                                  std::vector<std::vector<pcl::index_t>>& indices,
+                                  std::vector<std::vector<float>>& sqr_distances,
+                                  unsigned int max_nn, bool sorted) const {
+  const auto count = static_cast<std::int64_t>(queries.size);
+  const int threads = resolveThreads(impl_->options.threads);
+  indices.resize(queries.size);
+  sqr_distances.resize(queries.size);
+#pragma omp parallel for num_threads(threads) schedule(dynamic, 512) if (threads > 1)
+  for (std::int64_t i = 0; i < count; ++i) {
+    const auto at = static_cast<std::size_t>(i);
+    this->radius(queries[at], radius, indices[at], sqr_distances[at], max_nn, sorted);
+  }
 }
 
 void MedianHashIndex::nearestKAll(int k, Neighborhoods& out, bool with_distances,

@@ -127,6 +127,7 @@ class MedianHash : public pcl::search::KdTree<PointT> {
   Access chooseAccess() const;
   bool toFloats(const PointT& point, float* out) const;
   const PointT* inputPoint(pcl::index_t index) const;
+  std::vector<float> batchQueries(const PointCloud& cloud, const Indices& indices) const;
 
   MedianHashIndex::Options options_;
   MedianHashIndex index_;

@@ -41,6 +41,10 @@ class MedianHashIndex {
   std::size_t size() const;    ///< points that can be found
   std::size_t memory() const;  ///< bytes in use
 
+  /// The instruction set in use: the best that this machine has, unless the environment variable
+  /// SEGORIENT_SIMD named another one (scalar, sse2, avx2) at build(). Results do not depend on it.
+  const char* instructionSet() const;
+
   /// The k nearest, ascending. Room for min(k, size()) entries each is the caller's.
   /// \return how many were found: min(k, size()), 0 for k <= 0
   int nearestK(const float* query, int k, pcl::index_t* indices, float* sqr_distances) const {
@@ -55,6 +59,18 @@ class MedianHashIndex {
   /// \param sorted ascending order; otherwise any
   int radius(const float* query, double radius, std::vector<pcl::index_t>& indices,
              std::vector<float>& sqr_distances, unsigned int max_nn, bool sorted) const;
+
+  /// nearestK() for many queries, on several threads; results are resized, empty where a query is
+  /// not finite.
+  void nearestKBatch(const PointView& queries, int k,
+                     std::vector<std::vector<pcl::index_t>>& indices,
+                     std::vector<std::vector<float>>& sqr_distances, float epsilon) const;
+
+  /// radius() for many queries, on several threads.
+  void radiusBatch(const PointView& queries, double radius,
+                   std::vector<std::vector<pcl::index_t>>& indices,
+                   std::vector<std::vector<float>>& sqr_distances, unsigned int max_nn,
+                   bool sorted) const;
 
   /// The k nearest of every row that build() was given: row i of `out` belongs to row i (or to the
   /// i-th index) and begins with that point itself. Rows of points left out are empty.

@@ -145,10 +145,29 @@ int MedianHash<PointT>::nearestKSearch(pcl::index_t index, int k, Indices& k_ind
   return 0;
 }
 
+// The points of a batch in a row, NaN where an index is out of range.
+template <typename PointT>
+std::vector<float> MedianHash<PointT>::batchQueries(const PointCloud& cloud,
+                                                    const Indices& indices) const {
+  const std::size_t count = indices.empty() ? cloud.size() : indices.size();
+  std::vector<float> queries(3 * count, std::numeric_limits<float>::quiet_NaN());
+  for (std::size_t i = 0; i < count; ++i) {
+    const std::size_t at = indices.empty() ? i : static_cast<std::size_t>(indices[i]);
+    if (at < cloud.size()) toFloats(cloud[at], &queries[3 * i]);
+  }
+  return queries;
+}
+
 template <typename PointT>
 void MedianHash<PointT>::nearestKSearch(const PointCloud& cloud, const Indices& indices, int k,
                                         std::vector<Indices>& k_indices,
                                         std::vector<std::vector<float>>& k_sqr_distances) const {
+  if (access_ == Access::kXYZ || access_ == Access::kRepresentation) {
+    const std::vector<float> queries = batchQueries(cloud, indices);
+    index_.nearestKBatch({queries.data(), 3, queries.size() / 3}, k, k_indices, k_sqr_distances,
+                         this->getEpsilon());
+    return;
+  }
   const std::size_t count = indices.empty() ? cloud.size() : indices.size();
   k_indices.resize(count);
   k_sqr_distances.resize(count);
@@ -205,6 +224,12 @@ void MedianHash<PointT>::radiusSearch(const PointCloud& cloud, const Indices& in
                                       double radius, std::vector<Indices>& k_indices,
                                       std::vector<std::vector<float>>& k_sqr_distances,
                                       unsigned int max_nn) const {
+  if (access_ == Access::kXYZ || access_ == Access::kRepresentation) {
+    const std::vector<float> queries = batchQueries(cloud, indices);
+    index_.radiusBatch({queries.data(), 3, queries.size() / 3}, radius, k_indices, k_sqr_distances,
+                       max_nn, this->sorted_results_);
+    return;
+  }
   const std::size_t count = indices.empty() ? cloud.size() : indices.size();
   k_indices.resize(count);
   k_sqr_distances.resize(count);
