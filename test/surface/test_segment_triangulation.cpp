@@ -1,0 +1,215 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the segorient authors
+#include <gtest/gtest.h>
+#include <pcl/console/print.h>
+#include <pcl/conversions.h>
+#include <pcl/point_types.h>
+#include <segorient/segmentation/cloud_segmentation.h>
+#include <segorient/surface/segment_triangulation.h>
+
+#include <limits>
+#include <set>
+
+#include "labelled_solids.h"
+
+namespace segorient::test {
+namespace {
+
+using Cloud = pcl::PointCloud<pcl::PointNormal>;
+using Triangulation = SegmentTriangulation<pcl::PointNormal>;
+
+Cloud::Ptr toPcl(const LabelledCloud& in) {
+  Cloud::Ptr cloud(new Cloud);
+  for (std::size_t i = 0; i < in.size(); ++i) {
+    pcl::PointNormal p;
+    p.getVector3fMap() = Eigen::Map<const Eigen::Vector3f>(&in.xyz[4 * i]);
+    p.getNormalVector3fMap() = Eigen::Map<const Eigen::Vector3f>(&in.normals[4 * i]);
+    p.curvature = 0;
+    cloud->push_back(p);
+  }
+  return cloud;
+}
+
+Segmentation facesOf(const LabelledCloud& in) {
+  CloudSegmentation::Input input;
+  input.points = {in.xyz.data(), 4, in.size()};
+  input.normals = in.normals;
+  CloudSegmentation segmentation;
+  EXPECT_TRUE(segmentation.compute(input, {}));
+  return segmentation.segmentation();
+}
+
+TEST(SegmentTriangulation, FacesOfAHoledSolid) {
+  const LabelledCloud in = sample("holed", holedSolid(), 20000, 1);
+  Triangulation triangulation;
+  triangulation.setInputCloud(toPcl(in));
+  pcl::PolygonMesh mesh;
+  triangulation.reconstruct(mesh);
+  EXPECT_EQ(mesh.cloud.width * mesh.cloud.height, in.size());
+  std::size_t polygons = 0;
+  double area = 0;
+  std::size_t holes = 0;
+  for (const SegmentMesh& m : triangulation.getMeshes()) {
+    polygons += m.triangles.size();
+    area += m.area;
+    holes += static_cast<std::size_t>(std::count(m.is_hole.begin(), m.is_hole.end(), 1));
+  }
+  EXPECT_EQ(mesh.polygons.size(), polygons);
+  EXPECT_NEAR(area, in.area, 0.08 * in.area);
+  EXPECT_EQ(holes, 4U);
+  // All turn the same way as the segments' normals.
+  const Segmentation s = facesOf(in);
+  std::size_t checked = 0;
+  for (const auto& polygon : mesh.polygons) {
+    ASSERT_EQ(polygon.vertices.size(), 3U);
+    const auto point = [&](int i) {
+      const auto v = static_cast<std::size_t>(polygon.vertices[static_cast<std::size_t>(i)]);
+      return Eigen::Vector3f(in.xyz[4 * v], in.xyz[4 * v + 1], in.xyz[4 * v + 2]);
+    };
+    const auto label = s.labels[static_cast<std::size_t>(polygon.vertices[0])];
+    const Eigen::Vector3f normal(
+        s.segments[static_cast<std::size_t>(label)].reference_normal.data());
+    if ((point(1) - point(0)).cross(point(2) - point(0)).dot(normal) > 0) ++checked;
+  }
+  EXPECT_EQ(checked, mesh.polygons.size());
+}
+
+TEST(SegmentTriangulation, GivenSegmentationAndSingleMeshes) {
+  const LabelledCloud in = sample("cube", cube(), 6000, 2);
+  Triangulation triangulation;
+  triangulation.setInputCloud(toPcl(in));
+  triangulation.setSegmentation(facesOf(in));
+  std::vector<pcl::Vertices> polygons;
+  triangulation.reconstruct(polygons);
+  pcl::PolygonMesh one;
+  ASSERT_TRUE(triangulation.getSegmentMesh(0, one));
+  EXPECT_EQ(one.polygons.size(), triangulation.getMeshes()[0].triangles.size());
+  Cloud points;
+  pcl::fromPCLPointCloud2(one.cloud, points);
+  EXPECT_EQ(points.size(), triangulation.getSegmentation().segments[0].size);
+  for (const auto& polygon : one.polygons) {
+    for (const auto v : polygon.vertices) ASSERT_LT(static_cast<std::size_t>(v), points.size());
+  }
+  EXPECT_FALSE(triangulation.getSegmentMesh(1000, one));
+  EXPECT_TRUE(one.polygons.empty());
+
+  const auto meshes = triangulation.getMeshes();
+  triangulation.setNumberOfThreads(2);
+  std::vector<pcl::Vertices> again;
+  triangulation.reconstruct(again);
+  ASSERT_EQ(again.size(), polygons.size());
+  for (std::size_t i = 0; i < again.size(); ++i) ASSERT_EQ(again[i].vertices, polygons[i].vertices);
+}
+
+TEST(SegmentTriangulation, IndicesLimitTheMesh) {
+  const LabelledCloud in = sample("cube", cube(), 6000, 3);
+  for (const bool given : {false, true}) {
+    Triangulation triangulation;
+    triangulation.setInputCloud(toPcl(in));
+    if (given) triangulation.setSegmentation(facesOf(in));
+    pcl::IndicesPtr indices(new pcl::Indices{-3, 1 << 30});
+    for (pcl::index_t i = 0; i < 6000; ++i) {
+      if (in.face[static_cast<std::size_t>(i)] < 3) indices->push_back(i);
+    }
+    triangulation.setIndices(indices);
+    std::vector<pcl::Vertices> polygons;
+    triangulation.reconstruct(polygons);
+    EXPECT_GT(polygons.size(), 5000U);
+    for (const auto& polygon : polygons) {
+      for (const auto v : polygon.vertices) ASSERT_LT(in.face[static_cast<std::size_t>(v)], 3);
+    }
+  }
+}
+
+TEST(SegmentTriangulation, AllSegments) {
+  LabelledCloud in = sample("cube", cube(), 3000, 4);
+  Segmentation s = facesOf(in);
+  for (Segment& segment : s.segments) segment.kind = SegmentKind::Connected;
+  Triangulation triangulation;
+  triangulation.setInputCloud(toPcl(in));
+  triangulation.setSegmentation(s);
+  std::vector<pcl::Vertices> polygons;
+  triangulation.reconstruct(polygons);
+  EXPECT_TRUE(polygons.empty());
+  triangulation.setAllSegments(true);
+  triangulation.reconstruct(polygons);
+  EXPECT_GT(polygons.size(), 5000U);
+}
+
+TEST(SegmentTriangulation, BadInput) {
+  pcl::console::setVerbosityLevel(pcl::console::L_ALWAYS);
+  Triangulation triangulation;
+  pcl::PolygonMesh mesh;
+  std::vector<pcl::Vertices> polygons(2);
+  triangulation.reconstruct(mesh);
+  triangulation.reconstruct(polygons);
+  EXPECT_TRUE(polygons.empty());
+  triangulation.setInputCloud(Cloud::Ptr(new Cloud));
+  triangulation.reconstruct(mesh);
+  EXPECT_TRUE(mesh.polygons.empty());
+
+  const LabelledCloud in = sample("cube", cube(), 1000, 5);
+  const Segmentation faces = facesOf(in);
+  for (std::size_t n : {1U, 2U, 3U}) {
+    Cloud::Ptr few = toPcl(in);
+    few->resize(n);
+    triangulation.setInputCloud(few);
+    triangulation.setSegmentation({});
+    triangulation.reconstruct(polygons);
+    EXPECT_LE(polygons.size(), 1U);
+    triangulation.setSegmentation(faces);  // of another cloud
+    triangulation.reconstruct(polygons);
+    EXPECT_TRUE(polygons.empty());
+  }
+  triangulation.setInputCloud(toPcl(in));
+  Segmentation broken = faces;
+  broken.members[3] = 5000;
+  triangulation.setSegmentation(broken);
+  triangulation.reconstruct(polygons);
+  EXPECT_TRUE(polygons.empty());
+  broken = faces;
+  broken.segments[0].size = 4000;
+  triangulation.setSegmentation(broken);
+  triangulation.reconstruct(polygons);
+  EXPECT_TRUE(polygons.empty());
+
+  Cloud::Ptr nan = toPcl(in);
+  for (auto& p : *nan) p.x = std::numeric_limits<float>::quiet_NaN();
+  triangulation.setInputCloud(nan);
+  for (const Segmentation& s : {Segmentation{}, faces}) {
+    triangulation.setSegmentation(s);
+    triangulation.reconstruct(polygons);
+    EXPECT_TRUE(polygons.empty());
+  }
+  triangulation.setInputCloud(toPcl(in));
+  triangulation.setSegmentation(faces);
+  const float weird[] = {0.F, -1.F, std::numeric_limits<float>::quiet_NaN(),
+                         std::numeric_limits<float>::infinity()};
+  for (const float value : weird) {
+    triangulation.setKappa1(value);
+    triangulation.setKappa2(value);
+    triangulation.setCriticalFactor(value);
+    triangulation.setNumberOfBins(value == 0.F ? -7 : 1 << 30);
+    triangulation.setNumberOfBins(value == 0.F ? -7 : 1);
+    triangulation.reconstruct(polygons);
+  }
+}
+
+TEST(SegmentTriangulation, SettersHaveGetters) {
+  Triangulation t;
+  t.setKappa1(0.2F);
+  t.setKappa2(0.5F);
+  t.setCriticalFactor(1.5F);
+  t.setNumberOfBins(30);
+  t.setAllSegments(true);
+  t.setNumberOfThreads(3);
+  EXPECT_EQ(t.getKappa1(), 0.2F);
+  EXPECT_EQ(t.getKappa2(), 0.5F);
+  EXPECT_EQ(t.getCriticalFactor(), 1.5F);
+  EXPECT_EQ(t.getNumberOfBins(), 30);
+  EXPECT_TRUE(t.getAllSegments());
+  EXPECT_EQ(t.getNumberOfThreads(), 3U);
+}
+
+}  // namespace
+}  // namespace segorient::test
