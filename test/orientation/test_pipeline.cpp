@@ -246,7 +246,7 @@ TEST(Pipeline, DegenerateClouds) {
   clouds.emplace_back("huge", huge);
   clouds.emplace_back("tiny", tiny);
   for (const auto& [name, rows] : clouds) {
-    for (const int k : {-1, 0, 1, 3, 1000000000}) {
+    for (const int k : {0, 1, 1000000000}) {
       for (const auto method :
            {OrientationMethod::AUTO, OrientationMethod::PROPAGATION, OrientationMethod::BOUNDARY,
             OrientationMethod::COMBINED, OrientationMethod::EXTREMAL}) {

@@ -2,7 +2,9 @@
 // Copyright (c) 2026, the segorient authors
 #include <segorient/orientation/completion.h>
 #include <segorient/orientation/component_sign.h>
+#include <segorient/orientation/consistency.h>
 #include <segorient/orientation/extremal.h>
+#include <segorient/orientation/folded_segments.h>
 #include <segorient/orientation/orient_segments.h>
 #include <segorient/orientation/point_tree.h>
 #include <segorient/orientation/segment_links.h>
@@ -99,6 +101,55 @@ void summarizeSegments(const Segmentation& segmentation, DecidedBy by, Orientati
   }
 }
 
+// Segments that run over two sides are not oriented in themselves: they no longer count as regular,
+// and their points are oriented one by one. Enough rounds for segments that only show then.
+constexpr int kMostRounds = 4;
+
+// Oriented regular segments, those of mixed sides left out and marked as hard.
+struct OrientedSegments {
+  std::vector<SegmentOrientationResult> results;
+  std::vector<std::int32_t> mixed;
+  std::vector<BorderBalance> components;
+};
+
+OrientedSegments orientRegularSegments(const PointView& points, const PointView& normals,
+                                       const Neighborhoods& neighborhoods,
+                                       const Segmentation& given, const SegmentGraph& graph,
+                                       const OrientationOptions& options) {
+  const std::vector<ExtremalPoint> extremal_points =
+      findExtremalPoints(points, normals, usableRows(points, normals), options.max_box_points);
+  OrientedSegments out;
+  // Propagation knows no borders to check by.
+  const bool check = options.check_borders && options.method != OrientationMethod::PROPAGATION;
+  Segmentation without_mixed;
+  const Segmentation* segmentation = &given;
+  std::vector<std::int32_t> mixed;
+  if (check) mixed = findFoldedSegments(points, neighborhoods, given);
+  for (int round = 1;; ++round) {
+    if (!mixed.empty()) {
+      if (out.mixed.empty()) without_mixed = given;
+      segmentation = &without_mixed;
+      for (const std::int32_t s : mixed) {
+        without_mixed.segments[static_cast<std::size_t>(s)].kind = SegmentKind::Connected;
+      }
+      out.mixed.insert(out.mixed.end(), mixed.begin(), mixed.end());
+    }
+    const SegmentLinks links = linkRegularSegments(*segmentation, graph, neighborhoods);
+    const std::vector<float> cosines =
+        segmentCosines(points, normals, *segmentation, links, options.angle);
+    const std::vector<BoundaryVote> boundary =
+        boundaryVotes(points, normals, neighborhoods, *segmentation, links, options);
+    const std::vector<ExtremalEvidence> extremal =
+        gatherExtremalEvidence(extremal_points, *segmentation, options.gamma);
+    out.results = runMethod({*segmentation, links, cosines, boundary, extremal}, options);
+    out.components = balanceComponents(links, boundary, out.results);
+    if (!check || round == kMostRounds) break;
+    mixed = findMixedSegments(links, boundary, out.results);
+    if (mixed.empty()) break;
+  }
+  return out;
+}
+
 }  // namespace
 
 OrientationResult orientSegments(const PointView& points, const PointView& normals,
@@ -119,19 +170,18 @@ OrientationResult orientSegments(const PointView& points, const PointView& norma
     return result;
   }
 
-  const SegmentLinks links = linkRegularSegments(segmentation, graph, neighborhoods);
-  const std::vector<float> cosines =
-      segmentCosines(points, normals, segmentation, links, options.angle);
-  const std::vector<BoundaryVote> boundary =
-      boundaryVotes(points, normals, neighborhoods, segmentation, links, options);
-  const std::vector<ExtremalEvidence> extremal = gatherExtremalEvidence(
-      findExtremalPoints(points, normals, usableRows(points, normals), options.max_box_points),
-      segmentation, options.gamma);
-  result.segments = runMethod({segmentation, links, cosines, boundary, extremal}, options);
+  const OrientedSegments oriented =
+      orientRegularSegments(points, normals, neighborhoods, segmentation, graph, options);
+  result.segments = oriented.results;
 
   spreadToPoints(segmentation, result);
   completeOrientation(points, normals, neighborhoods, result);
   summarizeSegments(segmentation, DecidedBy::SURROUNDINGS, result);
+  for (const std::int32_t s : oriented.mixed)
+    result.segments[static_cast<std::size_t>(s)].hard = true;
+  for (std::size_t c = 0; c < oriented.components.size(); ++c) {
+    result.components[c].contradiction = oriented.components[c].contradictingShare();
+  }
   if (options.turn_outward) {
     orientComponents(points, normals, neighborhoods, {options.gamma, options.max_box_points},
                      result);

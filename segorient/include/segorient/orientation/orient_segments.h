@@ -27,6 +27,10 @@ struct OrientationOptions {
   float min_margin = 0.5F;  ///< majority that a boundary needs to decide, see BoundaryVote
   std::size_t max_box_points =
       120;  ///< most points in a box of the subdivision for extremal points
+  /// Whether segments that lie over themselves, or contradict a large part of their borders, are
+  /// dissolved: they run from one side over to another where bodies touch. Their points are then
+  /// oriented one by one. Not for PROPAGATION.
+  bool check_borders = true;
   /// Whether each connected component is turned outward; otherwise its largest segment keeps its
   /// sign.
   bool turn_outward = true;

@@ -38,6 +38,9 @@ struct ComponentOrientationResult {
   std::int8_t sign = 1;    ///< what its relative orientation was multiplied by
   float evidence = 0.F;    ///< sum of signed votes before that, in points that voted
   float confidence = 0.F;  ///< |sum of votes| / sum of |votes|
+  /// Share of the borders between its segments that the result contradicts. Far from 0: the surface
+  /// is not orientable, or segments mix two sides of it.
+  float contradiction = 0.F;
   std::size_t points = 0;
 };
 

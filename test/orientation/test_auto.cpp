@@ -1,0 +1,187 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the segorient authors
+// The default method from points to oriented normals.
+#include <gtest/gtest.h>
+#include <segorient/orientation/pipeline.h>
+
+#include <algorithm>
+#include <numeric>
+#include <random>
+
+#include "sheet_fixture.h"
+
+namespace segorient::test {
+namespace {
+
+OrientedCloud orient(const std::vector<float>& xyz, const PipelineOptions& options = {}) {
+  return orientCloud(viewOf(xyz), nullptr, options);
+}
+
+struct Solid {
+  const char* name;
+  std::vector<Face> faces;
+  double sigma;
+  double least;
+};
+
+void PrintTo(const Solid& solid, std::ostream* os) {
+  *os << solid.name << " sigma " << solid.sigma;
+}
+
+class ClosedSolid : public testing::TestWithParam<Solid> {};
+
+TEST_P(ClosedSolid, IsOrientedOutwardWithoutAFlip) {
+  const Solid& solid = GetParam();
+  const LabelledCloud cloud = sample(solid.name, solid.faces, 8000, 41, solid.sigma);
+  const OrientedCloud oriented = orient(cloud.xyz);
+  EXPECT_GE(shareOutward(oriented.normals, cloud.normals), solid.least);
+  EXPECT_EQ(oriented.report.without_normal, 0U);
+  EXPECT_TRUE(oriented.report.contradictions.empty());
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Auto, ClosedSolid,
+    testing::Values(Solid{"cube", cube(), 0, 0.999}, Solid{"prism", octagonalPrism(), 0, 0.999},
+                    Solid{"steps", steppedSolid(), 0, 0.999},
+                    Solid{"holes", holedSolid(), 0, 0.999}, Solid{"bracket", bracket(), 0, 0.999},
+                    Solid{"cylinder", cylinder(), 0, 0.999},
+                    Solid{"plate4", plate(4, 8000), 0, 0.999},
+                    Solid{"plate2", plate(2, 8000), 0, 0.999}, Solid{"cube", cube(), 0.25, 0.998},
+                    Solid{"cube", cube(), 0.7, 0.99}, Solid{"cube", cube(), 1.5, 0.97},
+                    Solid{"steps", steppedSolid(), 0.7, 0.99},
+                    Solid{"plate2", plate(2, 8000), 0.15, 0.99}));
+
+std::vector<float> wave(std::size_t n, unsigned seed, std::vector<float>& normals) {
+  std::mt19937 rng(seed);
+  std::uniform_real_distribution<double> unit(0, 2);
+  std::vector<float> xyz;
+  for (std::size_t i = 0; i < n; ++i) {
+    const double x = unit(rng);
+    const double y = unit(rng);
+    const double z = 0.2 * std::sin(5 * x) * std::cos(4 * y);
+    const double dx = std::cos(5 * x) * std::cos(4 * y);
+    const double dy = -0.8 * std::sin(5 * x) * std::sin(4 * y);
+    xyz.insert(xyz.end(),
+               {static_cast<float>(x), static_cast<float>(y), static_cast<float>(z), 0.F});
+    normals.insert(normals.end(), {static_cast<float>(-dx), static_cast<float>(-dy), 1.F, 0.F});
+  }
+  return xyz;
+}
+
+TEST(Auto, OpenSurfaceIsOrientedToOneSide) {
+  std::vector<float> normals;
+  const std::vector<float> xyz = wave(6000, 42, normals);
+  const double share = shareOutward(orient(xyz).normals, normals);
+  EXPECT_GE(std::max(share, 1 - share), 0.999);
+}
+
+TEST(Auto, PlaneIsTurnedUpOrToTheViewpoint) {
+  std::mt19937 rng(43);
+  std::uniform_real_distribution<float> unit(0.F, 1.F);
+  std::vector<float> xyz;
+  for (int i = 0; i < 2000; ++i) xyz.insert(xyz.end(), {unit(rng), unit(rng), 0.F, 0.F});
+  const OrientedCloud up = orient(xyz);
+  for (std::size_t i = 0; i < 2000; ++i) ASSERT_GT(up.normals[4 * i + 2], 0.99F);
+  ASSERT_EQ(up.report.components.size(), 1U);
+  EXPECT_EQ(up.report.components[0].by, DecidedBy::NOTHING);
+  EXPECT_EQ(up.report.components[0].confidence, 0.F);
+  PipelineOptions options;
+  options.automatic.has_viewpoint = true;
+  options.automatic.viewpoint = {0.5F, 0.5F, -3.F};
+  const OrientedCloud down = orient(xyz, options);
+  for (std::size_t i = 0; i < 2000; ++i) ASSERT_LT(down.normals[4 * i + 2], -0.99F);
+}
+
+TEST(Auto, MoebiusStripIsReported) {
+  std::mt19937 rng(44);
+  std::uniform_real_distribution<double> unit(0, 1);
+  std::vector<float> xyz;
+  for (int i = 0; i < 8000; ++i) {
+    const double t = 2 * M_PI * unit(rng);
+    const double s = 0.7 * unit(rng) - 0.35;
+    const double r = 1 + s * std::cos(t / 2);
+    xyz.insert(xyz.end(), {static_cast<float>(r * std::cos(t)), static_cast<float>(r * std::sin(t)),
+                           static_cast<float>(s * std::sin(t / 2)), 0.F});
+  }
+  const OrientedCloud strip = orient(xyz);
+  ASSERT_FALSE(strip.report.contradictions.empty());
+  const auto& where = strip.report.contradictions[0].where;
+  EXPECT_NEAR(std::hypot(where[0], where[1]), 1.0, 0.36) << "the place lies on the strip";
+}
+
+TEST(Auto, OrderOfThePointsAndThreadsDoNotMatter) {
+  const LabelledCloud cloud = sample("bracket", bracket(), 5000, 45, 0.1);
+  std::vector<std::size_t> order(cloud.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::shuffle(order.begin(), order.end(), std::mt19937(46));
+  std::vector<float> shuffled(cloud.xyz.size());
+  for (std::size_t i = 0; i < order.size(); ++i) {
+    std::copy_n(&cloud.xyz[4 * order[i]], 4, &shuffled[4 * i]);
+  }
+  PipelineOptions one;
+  one.threads = 1;
+  PipelineOptions four;
+  four.threads = 4;
+  const OrientedCloud a = orient(cloud.xyz, one);
+  const OrientedCloud b = orient(cloud.xyz, four);
+  const OrientedCloud c = orient(shuffled, four);
+  EXPECT_EQ(a.normals, b.normals);
+  EXPECT_EQ(a.segmentation.labels, b.segmentation.labels);
+  EXPECT_EQ(a.confidences, b.confidences);
+  for (std::size_t i = 0; i < order.size(); ++i) {
+    for (std::size_t k = 0; k < 4; ++k) {
+      ASSERT_EQ(c.normals[4 * i + k], a.normals[4 * order[i] + k]) << i;
+    }
+  }
+}
+
+TEST(Auto, DuplicatesAndInvalidRowsKeepTheirPlaces) {
+  const LabelledCloud cloud = sample("cube", cube(), 3000, 47);
+  std::vector<float> xyz = cloud.xyz;
+  std::vector<float> truth = cloud.normals;
+  xyz.insert(xyz.end(), cloud.xyz.begin(), cloud.xyz.begin() + 4000);  // 1000 points again
+  truth.insert(truth.end(), cloud.normals.begin(), cloud.normals.begin() + 4000);
+  for (const float bad : {std::nanf(""), std::numeric_limits<float>::infinity()}) {
+    xyz.insert(xyz.end(), {0.F, bad, 0.F, 0.F});
+  }
+  const OrientedCloud oriented = orient(xyz);
+  EXPECT_EQ(oriented.report.duplicates, 1000U);
+  EXPECT_EQ(oriented.report.non_finite, 2U);
+  EXPECT_EQ(shareOutward(oriented.normals, truth), 1.0);
+  EXPECT_TRUE(std::isnan(oriented.normals[4 * 4000]));
+  EXPECT_TRUE(std::isnan(oriented.normals[4 * 4001]));
+  EXPECT_EQ(oriented.segmentation.labels[4000], -1);
+}
+
+TEST(Auto, FewPointsAreNoTrouble) {
+  for (std::size_t n = 0; n <= 12; ++n) {
+    const LabelledCloud cloud = sample("cube", cube(), n, 48);
+    const OrientedCloud oriented = orient(cloud.xyz);
+    ASSERT_EQ(oriented.normals.size(), 4 * n);
+    for (std::size_t i = 0; i < n; ++i) {
+      const float* v = &oriented.normals[4 * i];
+      EXPECT_TRUE(std::isnan(v[0]) || std::fabs(dot3(v, v) - 1.F) < 1e-4F);
+    }
+  }
+}
+
+TEST(Auto, HugeAndTinyCoordinatesGiveTheSame) {
+  const LabelledCloud cloud = sample("steps", steppedSolid(), 4000, 49);
+  for (const float scale : {1e-15F, 1e15F}) {
+    std::vector<float> xyz = cloud.xyz;
+    for (float& v : xyz) v *= scale;
+    EXPECT_GE(shareOutward(orient(xyz).normals, cloud.normals), 0.999) << scale;
+  }
+}
+
+TEST(Auto, StepsCanBeSwitchedOff) {
+  const LabelledCloud cloud = sample("plate", plate(2, 8000), 8000, 50);
+  PipelineOptions bare;
+  bare.sheet_normals.split_walls = false;
+  bare.sheet_normals.dominant_plane = false;
+  bare.filter_rounds = 0;
+  EXPECT_LT(shareOutward(orient(cloud.xyz, bare).normals, cloud.normals), 0.99);
+}
+
+}  // namespace
+}  // namespace segorient::test

@@ -1,0 +1,162 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the segorient authors
+// Votes across borders at all dihedral angles, and the contraction of what they say.
+#include <gtest/gtest.h>
+#include <segorient/orientation/border_votes.h>
+#include <segorient/orientation/cluster_graph.h>
+
+#include <random>
+
+#include "sheet_fixture.h"
+
+namespace segorient::test {
+namespace {
+
+// Two half planes that meet in the y axis, the second one turned by `degrees` from the first one's
+// continuation; true normals, consistent.
+struct Wedge {
+  std::vector<float> xyz;
+  std::vector<float> normals;
+  Segmentation segmentation;
+};
+
+Wedge makeWedge(double degrees, unsigned seed) {
+  std::mt19937 rng(seed);
+  std::uniform_real_distribution<double> unit(0, 1);
+  const double t = degrees * M_PI / 180;
+  Wedge w;
+  for (int i = 0; i < 1200; ++i) {
+    const double along = unit(rng);
+    const double out = 0.5 * unit(rng);
+    if (i % 2 == 0) {
+      w.xyz.insert(w.xyz.end(), {static_cast<float>(-out), static_cast<float>(along), 0.F, 0.F});
+      w.normals.insert(w.normals.end(), {0.F, 0.F, 1.F, 0.F});
+    } else {
+      w.xyz.insert(w.xyz.end(), {static_cast<float>(out * std::cos(t)), static_cast<float>(along),
+                                 static_cast<float>(out * std::sin(t)), 0.F});
+      w.normals.insert(w.normals.end(), {static_cast<float>(-std::sin(t)), 0.F,
+                                         static_cast<float>(std::cos(t)), 0.F});
+    }
+    w.segmentation.labels.push_back(i % 2);
+    w.segmentation.signs.push_back(1);
+  }
+  w.segmentation.segments.resize(2);
+  w.segmentation.segments[0].size = w.segmentation.segments[1].size = 600;
+  return w;
+}
+
+BorderVote voteOn(const Wedge& w) {
+  const Neighborhoods table = neighborsOf(w.xyz);
+  const std::size_t n = w.xyz.size() / 4;
+  const float far = std::numeric_limits<float>::infinity();
+  const std::vector<float> spacing(n, 0.03F);
+  const std::vector<float> below(n, -far);
+  const std::vector<float> above(n, far);
+  const std::vector<std::uint8_t> reliable(n, 1);
+  SheetField field;
+  field.normals = w.normals.data();
+  field.spacing = spacing.data();
+  field.below = below.data();
+  field.above = above.data();
+  field.reliable = reliable.data();
+  const std::vector<BorderVote> votes = borderVotes(viewOf(w.xyz), table, field, w.segmentation);
+  return votes.size() == 1 ? votes[0] : BorderVote{};
+}
+
+class DihedralAngle : public testing::TestWithParam<int> {};
+
+TEST_P(DihedralAngle, ConsistentNormalsGetAPositiveVote) {
+  Wedge w = makeWedge(GetParam(), 21);
+  const BorderVote agree = voteOn(w);
+  EXPECT_GT(agree.weight, 0.F);
+  EXPECT_GT(agree.unanimity(), 0.6F);
+  for (std::size_t i = 1; i < w.segmentation.signs.size(); i += 2) w.segmentation.signs[i] = -1;
+  const BorderVote differ = voteOn(w);
+  EXPECT_NEAR(differ.weight, -agree.weight, 1e-3F * agree.absolute);
+}
+
+// 0 is flat, positive bends up (concave seen from the normals), negative down.
+INSTANTIATE_TEST_SUITE_P(BorderVotes, DihedralAngle,
+                         testing::Values(-150, -135, -90, -60, -30, 0, 30, 60, 90, 135, 150));
+
+TEST(ClusterGraph, RecoversPlantedSigns) {
+  std::mt19937 rng(22);
+  constexpr std::int32_t kNodes = 200;
+  std::vector<int> planted(kNodes);
+  for (int& s : planted) s = rng() % 2 == 0 ? 1 : -1;
+  std::vector<BorderVote> votes;
+  for (std::int32_t a = 0; a < kNodes; ++a) {
+    for (std::int32_t b = a + 1; b < std::min(kNodes, a + 4); ++b) {
+      // The weakest border of each node lies, the others do not.
+      const bool lies = b == a + 3;
+      BorderVote v;
+      v.a = a;
+      v.b = b;
+      v.absolute = lies ? 1.F : 10.F;
+      v.weight = v.absolute * static_cast<float>(planted[static_cast<std::size_t>(a)] *
+                                                 planted[static_cast<std::size_t>(b)]);
+      if (lies) v.weight = -v.weight;
+      v.reliable = v.absolute;
+      votes.push_back(v);
+    }
+  }
+  ClusterGraph graph(std::vector<std::uint32_t>(kNodes, 1), votes);
+  graph.contract({});
+  EXPECT_EQ(graph.clusters().size(), 1U);
+  int first = 0;
+  const std::int32_t root = graph.find(0, first);
+  for (std::int32_t s = 1; s < kNodes; ++s) {
+    int sign = 0;
+    EXPECT_EQ(graph.find(s, sign), root);
+    EXPECT_EQ(sign * first, planted[static_cast<std::size_t>(s)] * planted[0]) << s;
+  }
+}
+
+TEST(ClusterGraph, JoinsOnlyWhatTheRuleAllows) {
+  std::vector<BorderVote> votes(2);
+  votes[0].a = 0;
+  votes[0].b = 1;
+  votes[0].weight = 5.F;
+  votes[0].absolute = 10.F;
+  votes[1].a = 1;
+  votes[1].b = 2;
+  votes[1].weight = -9.5F;
+  votes[1].absolute = 10.F;
+  ClusterGraph graph({100, 100, 100}, votes);
+  ClusterGraph::Rule rule;
+  rule.unanimity = 0.9F;
+  graph.contract(rule);
+  EXPECT_EQ(graph.clusters().size(), 2U);
+  int one = 0;
+  int two = 0;
+  EXPECT_EQ(graph.find(1, one), graph.find(2, two));
+  EXPECT_EQ(one * two, -1);
+  ASSERT_EQ(graph.edges().size(), 1U);
+  ClusterGraph::Rule large;
+  large.both_larger = 50;
+  graph.contract(large);
+  EXPECT_EQ(graph.clusters().size(), 2U) << "both clusters are larger than 50 points";
+}
+
+TEST(ClusterGraph, ParallelBordersAddUpWithTheirSigns) {
+  // 0-1 is sure; 2 agrees with 0 by 3 and disagrees with 1 by 5.
+  std::vector<BorderVote> votes(3);
+  const std::int32_t ends[3][2] = {{0, 1}, {0, 2}, {1, 2}};
+  const float weights[3] = {20.F, 3.F, -5.F};
+  for (std::size_t e = 0; e < 3; ++e) {
+    votes[e].a = ends[e][0];
+    votes[e].b = ends[e][1];
+    votes[e].weight = weights[e];
+    votes[e].absolute = std::fabs(weights[e]);
+  }
+  ClusterGraph graph({1, 1, 1}, votes);
+  ClusterGraph::Rule sure;
+  sure.weight = 10.F;
+  graph.contract(sure);
+  ASSERT_EQ(graph.edges().size(), 1U);
+  EXPECT_FLOAT_EQ(graph.edges()[0].weight, -2.F);
+  EXPECT_FLOAT_EQ(graph.edges()[0].absolute, 8.F);
+}
+
+}  // namespace
+}  // namespace segorient::test

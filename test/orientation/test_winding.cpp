@@ -1,0 +1,173 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the segorient authors
+// Winding numbers of spheres, components inside one another, and the sensor's place.
+#include <gtest/gtest.h>
+#include <segorient/common/compact_cloud.h>
+#include <segorient/orientation/auto_viewpoint.h>
+#include <segorient/orientation/winding_components.h>
+#include <segorient/orientation/winding_number.h>
+
+#include <algorithm>
+#include <numeric>
+
+#include "sheet_fixture.h"
+
+namespace segorient::test {
+namespace {
+
+struct Balls {
+  std::vector<float> xyz;
+  std::vector<float> dipoles;
+  std::vector<float> normals;
+  std::vector<std::int32_t> components;
+  std::vector<float> spacing;
+};
+
+void addBall(Balls& balls, std::array<double, 3> center, double radius, std::size_t n, float sign) {
+  const auto component =
+      static_cast<std::int32_t>(balls.components.empty() ? 0 : balls.components.back() + 1);
+  const double area = 4 * M_PI * radius * radius / static_cast<double>(n);
+  for (std::size_t i = 0; i < n; ++i) {
+    const double z = 1 - 2 * (static_cast<double>(i) + 0.5) / static_cast<double>(n);
+    const double r = std::sqrt(1 - z * z);
+    const double t = 2.399963229728653 * static_cast<double>(i);
+    const std::array<double, 3> d{r * std::cos(t), r * std::sin(t), z};
+    for (std::size_t a = 0; a < 3; ++a) {
+      balls.xyz.push_back(static_cast<float>(center[a] + radius * d[a]));
+      balls.normals.push_back(sign * static_cast<float>(d[a]));
+      balls.dipoles.push_back(sign * static_cast<float>(area * d[a]));
+    }
+    balls.xyz.push_back(0.F);
+    balls.normals.push_back(0.F);
+    balls.dipoles.push_back(static_cast<float>(area));
+    balls.components.push_back(component);
+    balls.spacing.push_back(static_cast<float>(std::sqrt(area)));
+  }
+}
+
+TEST(WindingNumber, IsOneInsideAndZeroOutside) {
+  Balls ball;
+  addBall(ball, {1, 2, 3}, 1, 4000, 1.F);
+  WindingNumber winding;
+  winding.build(viewOf(ball.xyz), ball.dipoles, {});
+  const float inside[3] = {1.2F, 2.1F, 2.7F};
+  const float outside[3] = {3.F, 2.F, 3.F};
+  EXPECT_NEAR(winding.evaluate(inside, 0.03F), 1.F, 0.01F);
+  EXPECT_NEAR(winding.evaluate(outside, 0.03F), 0.F, 0.01F);
+  EXPECT_NEAR(winding.evaluate(ball.xyz.data(), 0.03F), 0.5F, 0.05F);
+}
+
+TEST(WindingNumber, TreeIsNearTheSum) {
+  const LabelledCloud cloud = sample("bracket", bracket(), 5000, 31);
+  const CompactCloud compact = compactCloud(viewOf(cloud.xyz));
+  std::vector<float> dipoles(4 * compact.size(), 1.F);
+  for (std::size_t i = 0; i < compact.size(); ++i) {
+    const auto row = static_cast<std::size_t>(compact.source[i]);
+    for (std::size_t a = 0; a < 3; ++a) dipoles[4 * i + a] = cloud.normals[4 * row + a];
+  }
+  WindingNumber winding;
+  winding.build(compact.view(), dipoles, {});
+  for (std::size_t k = 0; k < 50; ++k) {
+    const float* x = compact.view()[k * 97];
+    double sum = 0.0;
+    double scale = 0.0;
+    for (std::size_t j = 0; j < compact.size(); ++j) {
+      const float* q = compact.view()[j];
+      double d[3];
+      double s = 0.0;
+      for (std::size_t a = 0; a < 3; ++a) {
+        d[a] = static_cast<double>(q[a]) - static_cast<double>(x[a]);
+        s += d[a] * d[a];
+      }
+      s = std::max(s, 0.02 * 0.02);
+      double dot = 0.0;
+      for (std::size_t a = 0; a < 3; ++a) dot += d[a] * static_cast<double>(dipoles[4 * j + a]);
+      sum += dot / (s * std::sqrt(s));
+      scale += std::fabs(dot) / (s * std::sqrt(s));
+    }
+    EXPECT_NEAR(static_cast<double>(winding.evaluate(x, 0.02F)), sum / (4 * M_PI),
+                0.01 * scale / (4 * M_PI));
+  }
+}
+
+TEST(ComponentSigns, AlternateInNestedShellsWhateverTheyWere) {
+  for (int pattern = 0; pattern < 8; ++pattern) {
+    Balls balls;
+    const auto sign = [&](int bit) { return (pattern >> bit & 1) != 0 ? 1.F : -1.F; };
+    addBall(balls, {0, 0, 0}, 1, 3000, sign(0));
+    addBall(balls, {0, 0, 0}, 0.8, 2000, sign(1));
+    addBall(balls, {0.1, 0, 0}, 0.5, 1000, sign(2));
+    const auto result =
+        solveComponents(viewOf(balls.xyz), balls.dipoles, balls.spacing, balls.components, 3);
+    ASSERT_EQ(result.size(), 3U);
+    // Solid shell with a cavity, and a solid ball in it.
+    EXPECT_EQ(static_cast<float>(result[0].sign) * sign(0), 1.F) << pattern;
+    EXPECT_EQ(static_cast<float>(result[1].sign) * sign(1), -1.F) << pattern;
+    EXPECT_EQ(static_cast<float>(result[2].sign) * sign(2), 1.F) << pattern;
+    EXPECT_LT(result[0].residual, 0.03F);
+    EXPECT_GT(result[0].evidence, 0.5F);
+  }
+}
+
+TEST(ComponentSigns, TurnHundredsOfPartsOutward) {
+  Balls balls;
+  for (int i = 0; i < 300; ++i) {
+    addBall(balls, {3.0 * (i % 20), 3.0 * (i / 20), 0.1 * i}, 1, 150, i % 3 == 0 ? -1.F : 1.F);
+  }
+  const auto result =
+      solveComponents(viewOf(balls.xyz), balls.dipoles, balls.spacing, balls.components, 300);
+  for (int i = 0; i < 300; ++i) {
+    EXPECT_EQ(result[static_cast<std::size_t>(i)].sign, i % 3 == 0 ? -1 : 1) << i;
+  }
+}
+
+TEST(ComponentSigns, APlaneHasNoEvidence) {
+  std::vector<float> xyz;
+  std::vector<float> dipoles;
+  for (int i = 0; i < 40; ++i) {
+    for (int j = 0; j < 40; ++j) {
+      xyz.insert(xyz.end(), {static_cast<float>(i), static_cast<float>(j), 0.F, 0.F});
+      dipoles.insert(dipoles.end(), {0.F, 0.F, 1.F, 1.F});
+    }
+  }
+  const std::vector<std::int32_t> components(1600, 0);
+  const std::vector<float> spacing(1600, 1.F);
+  const auto result = solveComponents(viewOf(xyz), dipoles, spacing, components, 1);
+  EXPECT_LT(result[0].evidence, 0.01F);
+  EXPECT_GT(result[0].residual, 0.2F);
+}
+
+std::vector<std::uint32_t> allRows(std::size_t n) {
+  std::vector<std::uint32_t> rows(n);
+  std::iota(rows.begin(), rows.end(), 0U);
+  return rows;
+}
+
+TEST(Viewpoint, IsFoundForARoomSeenFromInside) {
+  const LabelledCloud room = sample("room", cube(), 3000, 32);
+  const ViewpointFit fit = fitViewpoint(viewOf(room.xyz), room.normals, allRows(room.size()));
+  EXPECT_GT(fit.agreement, 0.99F);
+  EXPECT_EQ(fit.facing, -1) << "the normals of the solid point away from its inside";
+  for (const float c : fit.position) {
+    EXPECT_GT(c, 0.F);
+    EXPECT_LT(c, 1.F);
+  }
+}
+
+TEST(Viewpoint, IsNotFoundForSeparateSolids) {
+  Balls balls;
+  for (int i = 0; i < 5; ++i) addBall(balls, {4.0 * i, 0, 0}, 1, 400, 1.F);
+  const ViewpointFit fit =
+      fitViewpoint(viewOf(balls.xyz), balls.normals, allRows(balls.xyz.size() / 4));
+  EXPECT_LT(fit.agreement, 0.85F);
+}
+
+TEST(Viewpoint, NeedsPoints) {
+  const std::vector<float> none;
+  EXPECT_EQ(fitViewpoint(viewOf(none), none, {}).agreement, 0.F);
+  const std::vector<float> same{1, 1, 1, 0, 1, 1, 1, 0, 1, 1, 1, 0};
+  EXPECT_EQ(fitViewpoint(viewOf(same), same, allRows(3)).agreement, 0.F);
+}
+
+}  // namespace
+}  // namespace segorient::test
