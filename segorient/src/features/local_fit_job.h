@@ -5,6 +5,7 @@
 #include <segorient/features/local_normals.h>
 
 #include <cstddef>
+#include <vector>
 
 namespace segorient::detail {
 
@@ -19,6 +20,9 @@ struct LocalFitJob {
   int entries = 0;  ///< most entries of a row to use, the point itself included
   float* normals = nullptr;
   LocalCurvature* curvatures = nullptr;
+  /// Standard deviation of the neighbours from the quadratic surface, one a row, or null; AwAS
+  /// only.
+  float* residuals = nullptr;
 
   std::size_t row(std::size_t i) const { return rows ? static_cast<std::size_t>(rows[i]) : i; }
   int count(std::size_t r) const {
@@ -26,6 +30,12 @@ struct LocalFitJob {
     return c < entries ? c : entries;
   }
 };
+
+/// estimateNormals() with what only this library needs.
+void estimateNormals(const PointView& queries, const PointView& points,
+                     const Neighborhoods& neighborhoods, const LocalNormalOptions& options,
+                     float* normals, LocalCurvature* curvatures, float* residuals,
+                     const std::vector<pcl::index_t>* rows);
 
 /// Plane of one row in double precision, for neighbourhoods that are too slim for float.
 /// \return false, and NaN in `normal` (nx, ny, nz, curvature), where there is no plane

@@ -25,6 +25,11 @@ inline Lanes3 surfaceNormals(const LocalFitJob& job, const Batch& batch, std::si
                               frame.n.y - q.c[1] * frame.u.y - q.c[2] * frame.v.y,
                               frame.n.z - q.c[1] * frame.u.z - q.c[2] * frame.v.z});
   Lanes3 normal = select(q.valid, fitted, guess);
+  for (std::size_t l = 0; job.residuals && l < used; ++l) {
+    const float length = plane.size[l] * static_cast<float>(batch.unit[l]);
+    job.residuals[batch.rows[l]] =
+        q.valid[l] ? q.residual[l] * length : std::numeric_limits<float>::infinity();
+  }
   const bool cubic = job.estimator == NormalEstimator::AwASCubic;
   if (!cubic && !job.curvatures) return normal;
   for (std::size_t l = 0; l < used; ++l) {

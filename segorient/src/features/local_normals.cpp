@@ -13,6 +13,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 // Vectors are passed between inlined functions of this file only, so their calling convention is of
@@ -78,16 +79,15 @@ const float* packed(const PointView& points, std::vector<float>& copy) {
 }
 
 }  // namespace
-}  // namespace detail
 
 void estimateNormals(const PointView& queries, const PointView& points,
                      const Neighborhoods& neighborhoods, const LocalNormalOptions& options,
-                     float* normals, LocalCurvature* curvatures,
+                     float* normals, LocalCurvature* curvatures, float* residuals,
                      const std::vector<pcl::index_t>* rows) {
   std::vector<float> copy;
-  detail::LocalFitJob job;
+  LocalFitJob job;
   job.queries = queries;
-  job.xyz = detail::packed(points, copy);
+  job.xyz = packed(points, copy);
   job.neighborhoods = &neighborhoods;
   job.rows = rows ? rows->data() : nullptr;
   job.estimator = options.estimator;
@@ -95,8 +95,9 @@ void estimateNormals(const PointView& queries, const PointView& points,
   job.entries = options.k > 0 ? std::min(neighborhoods.k(), options.k + 1) : neighborhoods.k();
   job.normals = normals;
   job.curvatures = curvatures;
+  job.residuals = residuals;
 
-  const detail::Kernel kernel = detail::chooseKernel(options.portable);
+  const Kernel kernel = chooseKernel(options.portable);
   const auto count = static_cast<std::ptrdiff_t>(rows ? rows->size() : neighborhoods.size());
   constexpr std::ptrdiff_t kBlock = 1024;
   const std::ptrdiff_t blocks = (count + kBlock - 1) / kBlock;
@@ -106,6 +107,16 @@ void estimateNormals(const PointView& queries, const PointView& points,
     kernel(job, static_cast<std::size_t>(b * kBlock),
            static_cast<std::size_t>(std::min(count, (b + 1) * kBlock)));
   }
+}
+
+}  // namespace detail
+
+void estimateNormals(const PointView& queries, const PointView& points,
+                     const Neighborhoods& neighborhoods, const LocalNormalOptions& options,
+                     float* normals, LocalCurvature* curvatures,
+                     const std::vector<pcl::index_t>* rows) {
+  detail::estimateNormals(queries, points, neighborhoods, options, normals, curvatures, nullptr,
+                          rows);
 }
 
 }  // namespace segorient

@@ -36,7 +36,8 @@ inline Mask solveOrder6(Lanes m[6][6], Lanes x[6]) {
 
 /// Quadratic surfaces over frames; lengths in units of plane.size.
 struct Quadratic {
-  Lanes c[6];  ///< of 1, x, y, x^2, x y, y^2
+  Lanes c[6];      ///< of 1, x, y, x^2, x y, y^2
+  Lanes residual;  ///< standard deviation of the points from the surface
   Mask valid;
 };
 
@@ -47,6 +48,7 @@ inline Quadratic fitQuadratics(const Batch& batch, const Plane& plane, const Fra
                            scaled(frame.n, unit_length)};
   Lanes x1 = zero, y1 = zero, x2 = zero, xy = zero, y2 = zero, x3 = zero, x2y = zero, xy2 = zero,
         y3 = zero, x4 = zero, x3y = zero, x2y2 = zero, xy3 = zero, y4 = zero;
+  Lanes z2 = zero;
   Quadratic q;
   for (Lanes& c : q.c) c = zero;
   for (int j = 0; j < batch.count; ++j) {
@@ -71,6 +73,7 @@ inline Quadratic fitQuadratics(const Batch& batch, const Plane& plane, const Fra
     x2y2 += xx * yy;
     xy3 += xy_ * yy;
     y4 += yy * yy;
+    z2 += z * z;
     q.c[0] += z;
     q.c[1] += x * z;
     q.c[2] += y * z;
@@ -86,6 +89,11 @@ inline Quadratic fitQuadratics(const Batch& batch, const Plane& plane, const Fra
                    {x2, x3, x2y, x4},
                    {xy, x2y, xy2, x3y, x2y2},
                    {y2, xy2, y3, x2y2, xy3, y4}};
+  Lanes right[6];
+  for (int i = 0; i < 6; ++i) right[i] = q.c[i];
   q.valid = plane.valid & solveOrder6(m, q.c);
+  // The squares that are left, by the normal equations; for each point more than coefficients.
+  for (int i = 0; i < 6; ++i) z2 -= right[i] * q.c[i];
+  q.residual = squareRoot(larger(zero, z2) / larger(count - 6.0F, all(1.0F)));
   return q;
 }

@@ -2,6 +2,7 @@
 // Copyright (c) 2026, the segorient authors
 #pragma once
 
+#include <pcl/types.h>
 #include <segorient/common/neighborhoods.h>
 #include <segorient/common/point_view.h>
 #include <segorient/features/local_normals.h>
@@ -30,8 +31,9 @@ struct RecomputationOptions {
   /// OneSided: a border is sharp for a point if the surfaces of its two sides meet there at this
   /// angle or more.
   float edge_angle = 0.3490659F;
-  /// ModifiedNeighborhoods: a border is sharp if the normals across it differ by this (delta).
-  float delta = 0.6981317F;
+  /// ModifiedNeighborhoods: a border is sharp if the normals across it differ by this on average
+  /// (delta). Less than the edge's own angle: both sides' normals have been averaged over the edge.
+  float delta = 0.5235988F;
   /// ModifiedNeighborhoods: measure delta between the segments' reference normals, as the paper
   /// does, instead of between neighbouring points across the border. Smooth borders between grown
   /// segments then count as sharp wherever beta exceeds delta.
@@ -62,5 +64,18 @@ RecomputationReport recomputeNormals(const PointView& points, const Neighborhood
                                      const RecomputationOptions& options,
                                      std::vector<std::int32_t>& labels,
                                      std::vector<float>& normals);
+
+/// The same for a cloud as it comes, with NaN points and duplicates, and neighbours still to be
+/// found: works on the distinct finite points. All arrays have one entry a point of the cloud.
+/// \param indices points to use; others, and entries out of range, stay as they are
+/// \param neighborhoods of the whole cloud, or null to search
+/// \param rounds how often the rule is applied
+RecomputationReport recomputeCloudNormals(const PointView& points,
+                                          const std::vector<pcl::index_t>& indices,
+                                          const Neighborhoods* neighborhoods,
+                                          const std::vector<std::uint8_t>& regular,
+                                          const RecomputationOptions& options, int rounds,
+                                          std::vector<std::int32_t>& labels,
+                                          std::vector<float>& normals);
 
 }  // namespace segorient

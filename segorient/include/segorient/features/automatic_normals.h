@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the segorient authors
+#pragma once
+
+#include <segorient/common/neighborhoods.h>
+#include <segorient/common/point_view.h>
+#include <segorient/features/local_normals.h>
+
+#include <cstddef>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace segorient {
+
+/// What estimateNormalsAutomatically() found out about a cloud, and what it chose.
+struct AutomaticNormalReport {
+  float noise = 0.F;  ///< standard deviation of the noise over the local spacing
+  /// Neighbourhoods of quadratic surfaces that were tried, largest first, and how many points they
+  /// fit.
+  std::vector<std::pair<int, std::size_t>> surfaces;
+  std::size_t at_edges = 0;   ///< points where none of them fits
+  int edge_k = 0;             ///< neighbourhood used there
+  bool triangulated = false;  ///< by local Delaunay triangulation, else by the smallest surface
+  std::size_t undefined = 0;  ///< points without a normal
+
+  /// The same in a sentence.
+  std::string text() const;
+};
+
+/// Neighbours beside the point itself that estimateNormalsAutomatically() makes use of at most.
+constexpr int kMostAutomaticNeighbors = 64;
+
+/// Normals without a choice to make. The noise is estimated from the residuals of quadratic
+/// surfaces; every point then gets the largest neighbourhood whose residual the noise explains:
+/// large ones on noisy scans, small ones where the surface bends. Where not even the smallest is
+/// explained there is an edge; there a clean cloud gets local Delaunay triangulations, which smooth
+/// least, and a noisy one the smallest surface.
+///
+/// \param points distinct points \param neighborhoods of them, the wider the table the better up to
+///        kMostAutomaticNeighbors; with a narrow one noisy clouds are served less well
+/// \param normals 4 floats a row, as from estimateNormals()
+AutomaticNormalReport estimateNormalsAutomatically(const PointView& points,
+                                                   const Neighborhoods& neighborhoods, int threads,
+                                                   float* normals);
+
+/// Standard deviation of the noise over the local spacing (mean distance to the six nearest), from
+/// the residuals of quadratic surfaces at a few thousand points. 0 for fewer than 16 points.
+float estimateNoise(const PointView& points, const Neighborhoods& neighborhoods, int threads = 0);
+
+}  // namespace segorient

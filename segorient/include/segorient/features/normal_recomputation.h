@@ -1,0 +1,119 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the segorient authors
+#pragma once
+
+#include <pcl/pcl_base.h>
+#include <pcl/point_cloud.h>
+#include <segorient/common/neighborhoods.h>
+#include <segorient/features/recompute_normals.h>
+
+#include <cstdint>
+#include <vector>
+
+namespace segorient {
+
+/// Sharpens the normals near edges with the help of a segmentation (paper, section 2.3.1); see
+/// recomputeNormals() for the two rules.
+///
+/// @code
+/// segorient::NormalRecomputation<pcl::PointXYZ, pcl::Normal> recomputation;
+/// recomputation.setInputCloud(cloud);
+/// recomputation.setInputNormals(normals);
+/// recomputation.setLabels(labels, regular);  // from NormalSegmentation
+/// recomputation.compute(*sharper);
+/// @endcode
+///
+/// Points without a label or a normal, and those with NaN coordinates, keep their normal as it is.
+/// Without a cloud, or with normals or labels of another size, there is an error message and an
+/// empty output.
+template <typename PointT, typename NormalT>
+class NormalRecomputation : public pcl::PCLBase<PointT> {
+ public:
+  using Ptr = pcl::shared_ptr<NormalRecomputation<PointT, NormalT>>;
+  using ConstPtr = pcl::shared_ptr<const NormalRecomputation<PointT, NormalT>>;
+  using Normals = pcl::PointCloud<NormalT>;
+  using NormalsConstPtr = typename Normals::ConstPtr;
+  using NeighborhoodsConstPtr = pcl::shared_ptr<const Neighborhoods>;
+
+  NormalRecomputation() { options_.k = 20; }
+
+  /// One normal a point of the input cloud, in any orientation.
+  void setInputNormals(const NormalsConstPtr& normals) { normals_ = normals; }
+  NormalsConstPtr getInputNormals() const { return normals_; }
+
+  /// \param labels one a point of the input cloud, -1 for none
+  /// \param regular one a label: 1 for the regular segments
+  void setLabels(const std::vector<std::int32_t>& labels,
+                 const std::vector<std::uint8_t>& regular) {
+    labels_ = labels;
+    regular_ = regular;
+  }
+  /// As set, and after compute() as moved.
+  const std::vector<std::int32_t>& getLabels() const { return labels_; }
+
+  /// Uses this table, one row a point of the input cloud, instead of searching. Null: search.
+  void setNeighborhoods(const NeighborhoodsConstPtr& neighborhoods) {
+    neighborhoods_ = neighborhoods;
+  }
+  NeighborhoodsConstPtr getNeighborhoods() const { return neighborhoods_; }
+
+  void setRule(RecomputationRule rule) { options_.rule = rule; }
+  RecomputationRule getRule() const { return options_.rule; }
+
+  /// How often the rule is applied; each round starts from the labels and normals of the last one.
+  /// Default 2: a third changes next to nothing.
+  void setNumberOfRounds(int rounds) { rounds_ = rounds; }
+  int getNumberOfRounds() const { return rounds_; }
+
+  /// Neighbours of each point, itself not counted. Default 20.
+  void setKSearch(int k) { options_.k = k; }
+  int getKSearch() const { return options_.k; }
+
+  /// \param angle see RecomputationOptions::edge_angle, radians
+  void setEdgeAngle(float angle) { options_.edge_angle = angle; }
+  float getEdgeAngle() const { return options_.edge_angle; }
+
+  /// \param delta see RecomputationOptions::delta, radians
+  void setDelta(float delta) { options_.delta = delta; }
+  float getDelta() const { return options_.delta; }
+
+  /// \param between see RecomputationOptions::delta_between_references
+  void setDeltaBetweenReferences(bool between) { options_.delta_between_references = between; }
+  bool getDeltaBetweenReferences() const { return options_.delta_between_references; }
+
+  /// \param estimator for modified neighbourhoods
+  void setEstimator(NormalEstimator estimator) { options_.estimator = estimator; }
+  NormalEstimator getEstimator() const { return options_.estimator; }
+
+  /// \param threads 0 (default) = all cores. The result does not depend on it
+  void setNumberOfThreads(unsigned int threads = 0) {
+    options_.threads = static_cast<int>(threads);
+  }
+  unsigned int getNumberOfThreads() const { return static_cast<unsigned int>(options_.threads); }
+
+  /// \param output the input normals, one an index, those near edges replaced
+  void compute(Normals& output);
+
+  /// What the last compute() did, in all rounds together.
+  const RecomputationReport& getReport() const { return report_; }
+
+ private:
+  bool checkInput() const;
+
+  using pcl::PCLBase<PointT>::indices_;
+  using pcl::PCLBase<PointT>::input_;
+
+  NormalsConstPtr normals_;
+  std::vector<std::int32_t> labels_;
+  std::vector<std::uint8_t> regular_;
+  NeighborhoodsConstPtr neighborhoods_;
+  RecomputationOptions options_;
+  int rounds_ = 2;
+  RecomputationReport report_;
+};
+
+}  // namespace segorient
+
+#ifdef PCL_NO_PRECOMPILE
+#include <segorient/features/impl/normal_recomputation.hpp>
+#endif

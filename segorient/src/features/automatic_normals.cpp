@@ -1,0 +1,162 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the segorient authors
+#include <segorient/features/automatic_normals.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <iomanip>
+#include <limits>
+#include <sstream>
+
+#include "local_fit_job.h"
+
+namespace segorient {
+namespace {
+
+// Neighbourhoods of the quadratic surfaces that are tried.
+constexpr std::array<int, 6> kSizes{10, 16, 24, 32, 48, kMostAutomaticNeighbors};
+// A residual is taken for noise up to this many of its own standard deviations.
+constexpr double kTolerance = 2.0;
+// Least noise, in spacings: less cannot be told from what a quadratic leaves of a smooth surface.
+constexpr double kLeastNoise = 0.01;
+// Up to this noise the smallest neighbourhood is the best one wherever it fits.
+constexpr double kCleanNoise = 0.03;
+// Up to this noise local triangulations beat small surfaces at edges.
+constexpr double kTriangulationNoise = 0.1;
+// Smallest neighbourhood beyond that.
+constexpr int kSmallestNoisy = 16;
+constexpr int kTriangulationNeighbors = 12;
+// Neighbourhoods that are worth trying, per unit of noise over spacing. Noise turns the normals of
+// k neighbours by about noise / (spacing k): with 400 it has sunk to a fraction of a degree, below
+// 72 it is several degrees, more than what the larger neighbourhood costs at an edge.
+constexpr double kLargestPerNoise = 400.0;
+constexpr double kSmallestPerNoise = 72.0;
+// Points that the noise is estimated from.
+constexpr std::size_t kSamples = 4000;
+
+double spacingAt(const PointView& points, const Neighborhoods& table, std::size_t row) {
+  const int count = std::min(table.count(row), 7);
+  double sum = 0;
+  for (int j = 1; j < count; ++j) {
+    const float* p = points[row];
+    const float* q = points[static_cast<std::size_t>(table.indices(row)[j])];
+    double squares = 0;
+    for (int a = 0; a < 3; ++a) {
+      const double d = static_cast<double>(p[a]) - static_cast<double>(q[a]);
+      squares += d * d;
+    }
+    sum += std::sqrt(squares);
+  }
+  return count > 1 ? sum / (count - 1) : 0.0;
+}
+
+/// Quadratic surfaces of one size.
+struct Surfaces {
+  std::vector<float> normals;
+  std::vector<float> residuals;
+
+  void fit(const PointView& points, const Neighborhoods& table, int k, int threads,
+           const std::vector<pcl::index_t>& rows) {
+    LocalNormalOptions options;
+    options.estimator = NormalEstimator::AwASQuadratic;
+    options.k = k;
+    options.threads = threads;
+    normals.resize(4 * points.size);
+    residuals.resize(points.size);
+    detail::estimateNormals(points, points, table, options, normals.data(), nullptr,
+                            residuals.data(), &rows);
+  }
+};
+
+/// The sizes to try, largest first.
+std::vector<int> sizesFor(double noise, int available) {
+  std::vector<int> sizes;
+  const bool clean = noise < kCleanNoise;
+  const double largest = clean ? kSizes.front() : kLargestPerNoise * noise;
+  const double least = noise < kTriangulationNoise ? kSizes.front() : kSmallestNoisy;
+  const double smallest = std::max(least, kSmallestPerNoise * noise);
+  for (std::size_t s = kSizes.size(); s-- > 0;) {
+    const bool enough = s > 0 && !sizes.empty() && kSizes[s] < smallest;
+    if (enough) break;
+    if (s == 0 || (kSizes[s] <= largest && kSizes[s] <= available)) sizes.push_back(kSizes[s]);
+  }
+  if (sizes.size() > 1 && sizes.back() < smallest) sizes.pop_back();
+  return sizes;
+}
+
+}  // namespace
+
+float estimateNoise(const PointView& points, const Neighborhoods& neighborhoods, int threads) {
+  if (points.size < kSmallestNoisy || neighborhoods.size() != points.size) return 0.0F;
+  std::vector<pcl::index_t> rows;
+  const std::size_t step = std::max<std::size_t>(1, points.size / kSamples);
+  for (std::size_t i = 0; i < points.size; i += step) rows.push_back(static_cast<pcl::index_t>(i));
+  Surfaces surfaces;
+  surfaces.fit(points, neighborhoods, kTriangulationNeighbors, threads, rows);
+  // The median: edges and creases, where surfaces do not fit, are the minority.
+  std::vector<double> ratios;
+  for (const pcl::index_t r : rows) {
+    const auto row = static_cast<std::size_t>(r);
+    const double ratio =
+        static_cast<double>(surfaces.residuals[row]) / spacingAt(points, neighborhoods, row);
+    if (std::isfinite(ratio)) ratios.push_back(ratio);
+  }
+  if (ratios.empty()) return 0.0F;
+  const auto middle = ratios.begin() + static_cast<std::ptrdiff_t>(ratios.size() / 2);
+  std::nth_element(ratios.begin(), middle, ratios.end());
+  return static_cast<float>(*middle);
+}
+
+AutomaticNormalReport estimateNormalsAutomatically(const PointView& points,
+                                                   const Neighborhoods& neighborhoods, int threads,
+                                                   float* normals) {
+  AutomaticNormalReport report;
+  report.noise = estimateNoise(points, neighborhoods, threads);
+  const double noise = std::max(kLeastNoise, static_cast<double>(report.noise));
+  std::vector<pcl::index_t> open(neighborhoods.size());
+  for (std::size_t i = 0; i < open.size(); ++i) open[i] = static_cast<pcl::index_t>(i);
+  Surfaces surfaces;
+  for (const int k : sizesFor(noise, neighborhoods.k() - 1)) {
+    surfaces.fit(points, neighborhoods, k, threads, open);
+    // What noise explains: its standard deviation, and the scatter of such estimates from k points.
+    const double limit = noise * (1.0 + kTolerance / std::sqrt(2.0 * (k - 5)));
+    std::vector<pcl::index_t> left;
+    for (const pcl::index_t o : open) {
+      const auto i = static_cast<std::size_t>(o);
+      std::copy_n(&surfaces.normals[4 * i], 4, normals + 4 * i);
+      const double residual = static_cast<double>(surfaces.residuals[i]);
+      if (!(residual <= limit * spacingAt(points, neighborhoods, i))) left.push_back(o);
+    }
+    report.surfaces.emplace_back(k, open.size() - left.size());
+    open.swap(left);
+    report.edge_k = k;
+  }
+  report.at_edges = open.size();
+  report.triangulated = noise < kTriangulationNoise;
+  if (report.triangulated) {
+    LocalNormalOptions options;
+    options.estimator = NormalEstimator::LDT;
+    options.k = report.edge_k = kTriangulationNeighbors;
+    options.threads = threads;
+    estimateNormals(points, points, neighborhoods, options, normals, nullptr, &open);
+  }
+  for (std::size_t i = 0; i < neighborhoods.size(); ++i) {
+    report.undefined += isFinite(normals + 4 * i) ? 0 : 1;
+  }
+  return report;
+}
+
+std::string AutomaticNormalReport::text() const {
+  std::ostringstream out;
+  out << "noise " << std::setprecision(2) << noise << " of the spacing";
+  for (const auto& [k, count] : surfaces) {
+    out << ", " << count << " points by quadratic surfaces of " << k << " neighbours";
+  }
+  out << ", " << at_edges << " near edges by "
+      << (triangulated ? "local Delaunay triangulation" : "quadratic surfaces") << " of " << edge_k;
+  if (undefined > 0) out << ", " << undefined << " without a normal";
+  return out.str();
+}
+
+}  // namespace segorient
