@@ -133,9 +133,7 @@ int runCompare(const std::vector<std::string>& words) {
   std::string poisson_prefix;
   int depth = 0;
   line.arguments({"IN"});
-  stages.addOrientation(line);
-  stages.addNormals(line);
-  stages.addSegmentation(line);
+  stages.add(line);
   line.options()("picture", po::value(&picture_path), "PNG: PCL left, ours right")(
       "poisson", po::value(&poisson_prefix),
       "surfaces of pcl::Poisson from both: writes NAME_pcl.ply, NAME_ours.ply, NAME.png")(

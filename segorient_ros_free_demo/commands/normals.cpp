@@ -22,11 +22,17 @@ int runNormals(const std::vector<std::string>& words) {
                    "segorient normals scan.ply normals.pcd --normals ldt");
   CommonOptions common;
   StageOptions stage_options;
+  int rounds = 0;
   line.arguments({"IN", "OUT"});
-  stage_options.addNormals(line);
+  stage_options.add(line);
+  line.options()(
+      "recompute", boost::program_options::value(&rounds)->default_value(0),
+      "rounds of recomputation at sharp edges: from one side's surface, or by the paper's "
+      "rule where --delta is given");
   common.add(line);
   if (!line.parse(words)) return 0;
   common.check();
+  require(rounds >= 0 && rounds <= 100, "--recompute must be 0 to 100");
   PipelineOptions options;
   stage_options.apply(line, common, options);
   requireEnding(line.argument("OUT"), {".pcd", ".ply"});
@@ -36,6 +42,10 @@ int runNormals(const std::vector<std::string>& words) {
   const LocalPoints points(table);
   Stages stages(points.view(), options, !common.quiet);
   stages.findNormals();
+  if (rounds > 0) {
+    stages.findSegments();
+    stages.recomputeNormals(rounds, stage_options.delta());
+  }
   const std::vector<float> normals = stages.normals();
   OutputCloud out(table);
   addNormalColumns(normals, out);

@@ -40,6 +40,12 @@ void printSummary(const PipelineReport& report, const std::string& out, bool ver
     std::printf("  %9zu points, outside by %s, confidence %.2f\n", c.points, toString(c.by),
                 static_cast<double>(c.confidence));
   }
+  if (!report.contradictions.empty()) {
+    std::printf(
+        "contradictions  %zu borders where sure evidence was overruled: the surface may have "
+        "one side only\n",
+        report.contradictions.size());
+  }
   std::printf("seconds         %.2f:", report.seconds);
   for (const StageTime& s : report.stages) std::printf("  %s %.2f", s.stage.c_str(), s.seconds);
   std::printf("\npeak memory     %.0f MB\n", static_cast<double>(report.peak_memory) / 1048576.0);
@@ -75,6 +81,7 @@ std::string reportText(const OrientedCloud& cloud) {
   json.field("method", toString(report.method));
   json.field("spacing", report.spacing);
   json.field("noise_in_spacings", report.noise);
+  json.field("denoised", report.denoised);
   json.beginObject("segments_by_kind");
   json.field("regular", report.regular_segments);
   json.field("connected", report.connected_segments);
@@ -94,6 +101,15 @@ std::string reportText(const OrientedCloud& cloud) {
     json.field("sign", static_cast<int>(c.sign));
     json.field("evidence", c.evidence);
     json.field("confidence", c.confidence);
+    json.endObject();
+  }
+  json.endArray();
+  json.beginArray("contradictions");
+  for (const Contradiction& c : report.contradictions) {
+    json.beginItem();
+    json.field("segment_a", c.a);
+    json.field("segment_b", c.b);
+    json.field("weight", c.weight);
     json.endObject();
   }
   json.endArray();
@@ -125,14 +141,9 @@ int runOrient(const std::vector<std::string>& words) {
   CommonOptions common;
   StageOptions stages;
   std::string report_path;
-  unsigned seed = 0;
   line.arguments({"IN", "OUT"});
-  stages.addOrientation(line);
-  stages.addNormals(line);
-  stages.addSegmentation(line);
-  line.options()("seed", po::value(&seed)->default_value(0),
-                 "of random choices; no method makes any, so results do not depend on it")(
-      "report", po::value(&report_path), "what was done, as JSON");
+  stages.add(line);
+  line.options()("report", po::value(&report_path), "what was done, as JSON");
   common.add(line);
   if (!line.parse(words)) return 0;
   common.check();

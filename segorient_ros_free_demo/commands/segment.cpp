@@ -44,8 +44,7 @@ int runSegment(const std::vector<std::string>& words) {
   CommonOptions common;
   StageOptions stage_options;
   line.arguments({"IN", "OUT"});
-  stage_options.addNormals(line);
-  stage_options.addSegmentation(line);
+  stage_options.add(line);
   common.add(line);
   if (!line.parse(words)) return 0;
   common.check();

@@ -54,9 +54,7 @@ int runTriangulate(const std::vector<std::string>& words) {
   TriangulationOptions triangulation;
   bool all = false;
   line.arguments({"IN", "OUT"});
-  stages.addOrientation(line);
-  stages.addNormals(line);
-  stages.addSegmentation(line);
+  stages.add(line);
   line.options()("kappa1", po::value(&triangulation.kappa1)->default_value(triangulation.kappa1),
                  "share of the fullest bin of edge lengths that counts as a maximum")(
       "kappa2", po::value(&triangulation.kappa2)->default_value(triangulation.kappa2),

@@ -3,7 +3,6 @@
 #include "support/stage_options.h"
 
 #include <array>
-#include <cmath>
 
 namespace segorient::program {
 namespace po = boost::program_options;
@@ -20,11 +19,6 @@ constexpr std::array kEstimators{EstimatorName{"plane", NormalEstimator::Plane},
                                  EstimatorName{"ldt", NormalEstimator::LDT},
                                  EstimatorName{"awas", NormalEstimator::AwASQuadratic},
                                  EstimatorName{"awas3", NormalEstimator::AwASCubic}};
-
-// Default values to show are the library's own, in degrees.
-double degrees(float radians) {
-  return std::round(1e3 * static_cast<double>(radians) / kDegree) / 1e3;
-}
 
 void setAngle(const CommandLine& line, const std::string& name, double value, float& out) {
   if (!line.given(name)) return;
@@ -53,38 +47,33 @@ const char* kindName(SegmentKind kind) {
   return "regular";
 }
 
-void StageOptions::addNormals(CommandLine& line) {
+void StageOptions::add(CommandLine& line) {
   line.options()("neighbors,k", po::value(&k_),
                  "neighbours of a point; left out: from the cloud's noise")(
-      "normals", po::value(&normals_)->default_value("plane"), "plane, lct, ldt, awas or awas3");
-}
-
-void StageOptions::addSegmentation(CommandLine& line) {
-  const SegmentationOptions defaults;
-  line.options()("alpha", po::value(&alpha_)->default_value(degrees(defaults.alpha)),
-                 "degrees: largest angle between the normals of neighbours in a segment")(
-      "beta", po::value(&beta_)->default_value(degrees(defaults.beta)),
-      "degrees: largest angle between a normal and its segment's")(
-      "epsilon", po::value(&epsilon_)->default_value(degrees(defaults.epsilon)),
-      "degrees: by how much the clean-up may exceed beta");
-}
-
-void StageOptions::addOrientation(CommandLine& line) {
-  const OrientationOptions defaults;
-  line.options()("method", po::value(&method_)->default_value("auto"),
-                 "auto (the best known), propagation, boundary, combined or extremal")(
-      "gamma", po::value(&gamma_)->default_value(degrees(defaults.gamma)),
-      "degrees: angles between segments up to this decide");
+      "method", po::value(&method_)->default_value("auto"),
+      "of orientation: auto (the best known), propagation, boundary, combined or extremal")(
+      "normals", po::value(&normals_)->default_value("plane"),
+      "plane, lct, ldt, awas or awas3; orientation by auto has its own")(
+      "alpha", po::value(&alpha_),
+      "degrees: largest angle between normals of neighbours in a segment; about 20")(
+      "beta", po::value(&beta_), "degrees: largest angle between a normal and its segment's; 30")(
+      "gamma", po::value(&gamma_),
+      "degrees: angles between segments up to this decide (propagation, combined, extremal); 35")(
+      "delta", po::value(&delta_),
+      "degrees: normals that differ so much across a border make it a sharp one (recomputation)")(
+      "epsilon", po::value(&epsilon_), "degrees: by how much the clean-up may exceed beta; 10")(
+      "seed", po::value(&seed_)->default_value(0),
+      "of random choices; no stage makes any, so results do not depend on it");
 }
 
 void StageOptions::apply(const CommandLine& line, const CommonOptions& common,
-                         PipelineOptions& options) const {
+                         PipelineOptions& options) {
   options.threads = common.threads;
   if (line.given("neighbors")) {
     require(k_ > 0 && k_ <= 1000, "-k must be 1 to 1000");
     options.k = k_;
   }
-  bool known = normals_.empty();
+  bool known = false;
   for (const EstimatorName& e : kEstimators) {
     if (normals_ != e.name) continue;
     options.normals.estimator = e.estimator;
@@ -92,10 +81,14 @@ void StageOptions::apply(const CommandLine& line, const CommonOptions& common,
   }
   require(known, "--normals is one of plane lct ldt awas awas3");
   setAngle(line, "alpha", alpha_, options.segmentation.alpha);
+  setAngle(line, "alpha", alpha_, options.sheets.alpha);
   setAngle(line, "beta", beta_, options.segmentation.beta);
+  setAngle(line, "beta", beta_, options.sheets.beta);
   setAngle(line, "epsilon", epsilon_, options.segmentation.epsilon);
+  setAngle(line, "epsilon", epsilon_, options.sheets.epsilon);
   setAngle(line, "gamma", gamma_, options.orientation.gamma);
-  require(method_.empty() || fromString(method_, options.orientation.method),
+  setAngle(line, "delta", delta_, delta_given_);
+  require(fromString(method_, options.orientation.method),
           "--method is one of auto propagation boundary combined extremal");
 }
 

@@ -3,6 +3,7 @@
 #include "support/stages.h"
 
 #include <segorient/features/local_normals.h>
+#include <segorient/features/recompute_normals.h>
 #include <segorient/search/median_hash_index.h>
 #include <segorient/segmentation/region_growing.h>
 
@@ -64,6 +65,25 @@ void Stages::findSegments() {
   SegmentationOptions options = options_.segmentation;
   options.threads = options_.threads;
   segmentation_ = segmentByNormals(cloud_.view(), compactNormals(), neighborhoods_, options);
+}
+
+void Stages::recomputeNormals(int rounds, float delta) {
+  const Timer timer(*this, "recomputation", 0.8);
+  RecomputationOptions options;
+  options.threads = options_.threads;
+  options.estimator = options_.normals.estimator;
+  if (delta > 0.F) {
+    options.rule = RecomputationRule::ModifiedNeighborhoods;
+    options.delta = delta;
+  }
+  std::vector<std::uint8_t> regular;
+  for (const Segment& s : segmentation_.segments) {
+    regular.push_back(s.kind == SegmentKind::Regular ? 1 : 0);
+  }
+  std::vector<std::int32_t> labels = segmentation_.labels;
+  for (int i = 0; i < rounds; ++i) {
+    segorient::recomputeNormals(cloud_.view(), neighborhoods_, regular, options, labels, normals_);
+  }
 }
 
 std::vector<float> Stages::normals() const {

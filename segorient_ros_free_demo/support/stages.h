@@ -22,6 +22,9 @@ class Stages {
 
   void findNormals();   ///< searches neighbours, estimates a normal a point
   void findSegments();  ///< after findNormals()
+  /// After findSegments(): normals near sharp edges, from one side only. Labels stay as they are.
+  /// \param delta radians; 0 = one-sided surfaces, else the paper's rule with this angle
+  void recomputeNormals(int rounds, float delta);
 
   std::vector<float> normals() const;  ///< 4 floats an input row, NaN where there is none
   Segmentation segmentation() const;   ///< labels and signs by input row; members are not set

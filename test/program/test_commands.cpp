@@ -93,6 +93,28 @@ TEST(Compare, ShowsWhatTheViewpointGetsWrong) {
   EXPECT_GT(program::readCloud(directory.file("poisson_pcl.ply")).size, 1000U);
 }
 
+double rms(const std::string& normals) {
+  double value = 0.0;
+  const Outcome run = runProgram({"evaluate", fandisk(), normals});
+  const std::size_t at = run.out.find("rms ");
+  if (at != std::string::npos) std::sscanf(run.out.c_str() + at, "rms %lf", &value);
+  return value;
+}
+
+TEST(Normals, RecomputationSharpensEdges) {
+  const ScratchDirectory directory;
+  const std::string plain = directory.file("plain.pcd");
+  const std::string once = directory.file("once.pcd");
+  const std::string paper = directory.file("paper.pcd");
+  ASSERT_EQ(runProgram({"normals", fandisk(), plain}).status, 0);
+  ASSERT_EQ(runProgram({"normals", fandisk(), once, "--recompute", "1"}).status, 0);
+  ASSERT_EQ(runProgram({"normals", fandisk(), paper, "--recompute", "1", "--delta", "40"}).status,
+            0);
+  EXPECT_GT(rms(plain), 10.0);
+  EXPECT_LT(rms(once), 0.6 * rms(plain));
+  EXPECT_LT(rms(paper), 0.8 * rms(plain));
+}
+
 TEST(View, SaysThatThereIsNoScreen) {
   unsetenv("DISPLAY");
   const Outcome run = runProgram({"view", fandisk()});
