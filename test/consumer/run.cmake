@@ -24,6 +24,20 @@ endforeach()
 run(${CMAKE_COMMAND} -S ${CMAKE_CURRENT_LIST_DIR} -B ${WORK}/build -G ${GENERATOR}
   -DCMAKE_BUILD_TYPE=Release -DCMAKE_CXX_COMPILER=${COMPILER} -DCMAKE_PREFIX_PATH=${prefix})
 run(${CMAKE_COMMAND} --build ${WORK}/build)
+# The same without CMake.
+find_program(pkg_config pkg-config)
+if(pkg_config)
+  file(GLOB_RECURSE description ${prefix}/*/segorient.pc)
+  get_filename_component(directory ${description} DIRECTORY)
+  set(ENV{PKG_CONFIG_PATH} ${directory})
+  execute_process(COMMAND ${pkg_config} --cflags --libs segorient
+    OUTPUT_VARIABLE flags OUTPUT_STRIP_TRAILING_WHITESPACE COMMAND_ERROR_IS_FATAL ANY)
+  separate_arguments(flags UNIX_COMMAND "${flags}")
+  get_filename_component(library_directory ${directory} DIRECTORY)
+  run(${COMPILER} -std=c++17 ${CMAKE_CURRENT_LIST_DIR}/consumer.cpp -o ${WORK}/by_pkg_config ${flags}
+    -Wl,-rpath,${library_directory})
+  run(${WORK}/by_pkg_config)
+endif()
 run(${WORK}/build/consumer)
 run(${WORK}/build/consumer_of_all)
 run(${prefix}/bin/segorient orient ${DATA} ${WORK}/oriented.ply)

@@ -1,0 +1,43 @@
+# SPDX-License-Identifier: BSD-3-Clause
+# What is installed beside the targets, and the .deb: pkg-config file, `uninstall`, CPack.
+
+# Debian names PCL's pkg-config files without a version, PCL itself with one.
+find_package(PkgConfig QUIET)
+if(PkgConfig_FOUND)
+  pkg_check_modules(SEGORIENT_PCL_PLAIN QUIET pcl_search)
+endif()
+set(suffix "")
+if(NOT SEGORIENT_PCL_PLAIN_FOUND)
+  set(suffix "-${PCL_VERSION_MAJOR}.${PCL_VERSION_MINOR}")
+endif()
+set(SEGORIENT_PC_REQUIRES
+  "pcl_common${suffix} pcl_search${suffix} pcl_features${suffix} pcl_surface${suffix} eigen3")
+# From the file's place to the prefix, so that the installed tree can be moved.
+file(RELATIVE_PATH SEGORIENT_PC_UP /prefix/${CMAKE_INSTALL_LIBDIR}/pkgconfig /prefix)
+configure_file(${PROJECT_SOURCE_DIR}/segorient/cmake/segorient.pc.in
+  ${PROJECT_BINARY_DIR}/segorient.pc @ONLY)
+install(FILES ${PROJECT_BINARY_DIR}/segorient.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig)
+install(FILES ${PROJECT_SOURCE_DIR}/LICENSE ${PROJECT_SOURCE_DIR}/package.xml
+  DESTINATION ${CMAKE_INSTALL_DATADIR}/segorient)
+
+if(NOT TARGET uninstall)
+  add_custom_target(uninstall
+    COMMAND ${CMAKE_COMMAND} -DMANIFEST=${PROJECT_BINARY_DIR}/install_manifest.txt
+      -P ${PROJECT_SOURCE_DIR}/segorient/cmake/uninstall.cmake
+    COMMENT "Removing what the last install put in place")
+endif()
+
+set(CPACK_GENERATOR DEB)
+set(CPACK_PACKAGE_NAME segorient)
+set(CPACK_PACKAGE_VENDOR "segorient authors")
+set(CPACK_PACKAGE_CONTACT "segorient maintainers <maintainers@segorient.invalid>")
+set(CPACK_RESOURCE_FILE_LICENSE ${PROJECT_SOURCE_DIR}/LICENSE)
+set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
+set(CPACK_STRIP_FILES ON)
+set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
+set(CPACK_DEBIAN_PACKAGE_SECTION science)
+set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
+# Our own libraries are where the build put them.
+set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS_PRIVATE_DIRS ${CMAKE_LIBRARY_OUTPUT_DIRECTORY})
+set(CPACK_DEBIAN_PACKAGE_RECOMMENDS libpcl-dev)
+include(CPack)
