@@ -22,7 +22,8 @@ cd "$(dirname "$(realpath "$0")")/.."
 
 install_packages "${BUILD_PACKAGES[@]}"
 say "building (the first time takes some minutes)"
-if [ -f build/CMakeCache.txt ]; then configure; else configure -DSEGORIENT_BUILD_TESTS=OFF; fi
+# A build directory that is there already, with or without tests, looks after itself.
+if [ ! -f build/build.ninja ] && [ ! -f build/Makefile ]; then configure -DSEGORIENT_BUILD_TESTS=OFF; fi
 build segorient_program
 
 # orient FILE NAME
