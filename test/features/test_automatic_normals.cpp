@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the segorient authors
+#include <gtest/gtest.h>
+#include <segorient/features/automatic_normals.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "feature_clouds.h"
+
+namespace segorient::test {
+namespace {
+
+struct Automatic {
+  std::vector<float> normals;
+  AutomaticNormalReport report;
+};
+
+Automatic automatic(const Sample& sample) {
+  Automatic result;
+  result.normals.resize(4 * sample.normals.size());
+  const Neighborhoods table = neighborsOf(sample.view(), kMostAutomaticNeighbors);
+  result.report = estimateNormalsAutomatically(sample.view(), table, 0, result.normals.data());
+  return result;
+}
+
+double rmsOf(const Sample& sample, NormalEstimator estimator, int k) {
+  LocalNormalOptions options;
+  options.estimator = estimator;
+  options.k = k;
+  std::vector<float> normals(4 * sample.normals.size());
+  estimateNormals(sample.view(), neighborsOf(sample.view(), k), options, normals.data());
+  return rmsDegrees(sample, normals);
+}
+
+double bestSingle(const Sample& sample) {
+  double best = std::numeric_limits<double>::infinity();
+  for (const int k : {8, 12, 20, 32, 64}) {
+    for (const auto estimator : {NormalEstimator::Plane, NormalEstimator::LCT, NormalEstimator::LDT,
+                                 NormalEstimator::AwASQuadratic}) {
+      best = std::min(best, rmsOf(sample, estimator, k));
+    }
+  }
+  return best;
+}
+
+// Offsets of a point from a fitted surface are noise across it only: the estimate is that of the
+// normal component, over the distance to the nearest points.
+TEST(NoiseEstimate, GrowsWithTheNoise) {
+  for (const float noise : {0.05F, 0.1F, 0.2F}) {
+    const Sample sample = torus(20000, 1, noise * torusSpacing(20000));
+    const float estimate = estimateNoise(sample.view(), neighborsOf(sample.view(), 16)) / noise;
+    EXPECT_GT(estimate, 0.8F) << noise;
+    EXPECT_LT(estimate, 1.6F) << noise;
+  }
+  const Sample clean = torus(20000, 1);
+  EXPECT_LT(estimateNoise(clean.view(), neighborsOf(clean.view(), 16)), 0.01F);
+  const Sample few = torus(10, 1);
+  EXPECT_EQ(estimateNoise(few.view(), neighborsOf(few.view(), 9)), 0.F);
+}
+
+TEST(AutomaticNormals, AsGoodAsTheBestSingleEstimator) {
+  const float h = torusSpacing(8000);
+  for (const float noise : {0.F, 0.25F, 0.5F}) {
+    const Sample smooth = torus(8000, 2, noise * h);
+    EXPECT_LT(rmsDegrees(smooth, automatic(smooth).normals), 1.25 * bestSingle(smooth) + 0.02)
+        << noise;
+  }
+  const Sample edges = cube(10000, 2);
+  EXPECT_LT(rmsDegrees(edges, automatic(edges).normals), 1.05 * bestSingle(edges));
+}
+
+TEST(AutomaticNormals, ReportsWhatWasChosen) {
+  const Automatic clean = automatic(cube(10000, 3));
+  EXPECT_TRUE(clean.report.triangulated);
+  EXPECT_GT(clean.report.at_edges, 500U);
+  ASSERT_EQ(clean.report.surfaces.size(), 1U);
+  EXPECT_EQ(clean.report.surfaces[0].first, 10);
+  EXPECT_EQ(clean.report.surfaces[0].second + clean.report.at_edges, 10000U);
+  const Automatic noisy = automatic(torus(10000, 3, 0.4F * torusSpacing(10000)));
+  EXPECT_FALSE(noisy.report.triangulated);
+  EXPECT_EQ(noisy.report.surfaces[0].first, kMostAutomaticNeighbors);
+  EXPECT_GT(noisy.report.surfaces[0].second, 5000U);
+  EXPECT_NE(noisy.report.text().find("64 neighbours"), std::string::npos);
+}
+
+TEST(AutomaticNormals, SameForAnyThreads) {
+  const Sample sample = torus(5000, 4, 0.2F * torusSpacing(5000));
+  const Neighborhoods table = neighborsOf(sample.view(), 40);
+  std::vector<float> one(4 * 5000);
+  std::vector<float> four(4 * 5000);
+  estimateNormalsAutomatically(sample.view(), table, 1, one.data());
+  estimateNormalsAutomatically(sample.view(), table, 4, four.data());
+  EXPECT_EQ(one, four);
+}
+
+TEST(AutomaticNormals, SmallAndDegenerateClouds) {
+  for (const std::size_t count : {0U, 1U, 2U, 3U, 7U, 20U}) {
+    Sample sample = torus(count, 5);
+    std::vector<float> normals(4 * count);
+    const Neighborhoods table =
+        neighborsOf({count > 0 ? &sample.points[0].x : nullptr, 4, count}, kMostAutomaticNeighbors);
+    const AutomaticNormalReport report = estimateNormalsAutomatically(
+        {count > 0 ? &sample.points[0].x : nullptr, 4, count}, table, 0, normals.data());
+    EXPECT_EQ(report.undefined, count < 3 ? count : 0U) << count;
+  }
+  Sample line;
+  for (int i = 0; i < 50; ++i) {
+    line.add({static_cast<float>(i), 0.F, 0.F}, Eigen::Vector3f::UnitZ());
+  }
+  EXPECT_EQ(automatic(line).report.undefined, 50U);
+}
+
+}  // namespace
+}  // namespace segorient::test
