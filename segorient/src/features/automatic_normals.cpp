@@ -16,8 +16,10 @@ namespace {
 
 // Neighbourhoods of the quadratic surfaces that are tried.
 constexpr std::array<int, 6> kSizes{10, 16, 24, 32, 48, kMostAutomaticNeighbors};
+// Median of a standard deviation estimated with as much freedom as the sample's surfaces have (7).
+constexpr double kMedianShare = 0.952;
 // A residual is taken for noise up to this many of its own standard deviations.
-constexpr double kTolerance = 2.0;
+constexpr double kTolerance = 2.5;
 // Least noise, in spacings: less cannot be told from what a quadratic leaves of a smooth surface.
 constexpr double kLeastNoise = 0.01;
 // Up to this noise the smallest neighbourhood is the best one wherever it fits.
@@ -85,48 +87,66 @@ std::vector<int> sizesFor(double noise, int available) {
   return sizes;
 }
 
-}  // namespace
+double median(std::vector<double>& values) {
+  if (values.empty()) return 0.0;
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
 
-float estimateNoise(const PointView& points, const Neighborhoods& neighborhoods, int threads) {
-  if (points.size < kSmallestNoisy || neighborhoods.size() != points.size) return 0.0F;
+struct Noise {
+  double length = 0.0;  ///< standard deviation
+  double in_spacings = 0.0;
+};
+
+/// Medians over a sample: edges and creases, where surfaces do not fit, are the minority.
+Noise sampleNoise(const PointView& points, const Neighborhoods& neighborhoods, int threads) {
+  if (points.size < kSmallestNoisy || neighborhoods.size() != points.size) return {};
   std::vector<pcl::index_t> rows;
   const std::size_t step = std::max<std::size_t>(1, points.size / kSamples);
   for (std::size_t i = 0; i < points.size; i += step) rows.push_back(static_cast<pcl::index_t>(i));
   Surfaces surfaces;
   surfaces.fit(points, neighborhoods, kTriangulationNeighbors, threads, rows);
-  // The median: edges and creases, where surfaces do not fit, are the minority.
+  std::vector<double> lengths;
   std::vector<double> ratios;
   for (const pcl::index_t r : rows) {
     const auto row = static_cast<std::size_t>(r);
-    const double ratio =
-        static_cast<double>(surfaces.residuals[row]) / spacingAt(points, neighborhoods, row);
-    if (std::isfinite(ratio)) ratios.push_back(ratio);
+    const double length = static_cast<double>(surfaces.residuals[row]);
+    const double ratio = length / spacingAt(points, neighborhoods, row);
+    if (!std::isfinite(ratio)) continue;
+    lengths.push_back(length);
+    ratios.push_back(ratio);
   }
-  if (ratios.empty()) return 0.0F;
-  const auto middle = ratios.begin() + static_cast<std::ptrdiff_t>(ratios.size() / 2);
-  std::nth_element(ratios.begin(), middle, ratios.end());
-  return static_cast<float>(*middle);
+  return {median(lengths) / kMedianShare, median(ratios) / kMedianShare};
+}
+
+}  // namespace
+
+float estimateNoise(const PointView& points, const Neighborhoods& neighborhoods, int threads) {
+  return static_cast<float>(sampleNoise(points, neighborhoods, threads).in_spacings);
 }
 
 AutomaticNormalReport estimateNormalsAutomatically(const PointView& points,
                                                    const Neighborhoods& neighborhoods, int threads,
                                                    float* normals) {
   AutomaticNormalReport report;
-  report.noise = estimateNoise(points, neighborhoods, threads);
-  const double noise = std::max(kLeastNoise, static_cast<double>(report.noise));
+  const Noise estimate = sampleNoise(points, neighborhoods, threads);
+  report.noise = static_cast<float>(estimate.in_spacings);
+  const double noise = std::max(kLeastNoise, estimate.in_spacings);
   std::vector<pcl::index_t> open(neighborhoods.size());
   for (std::size_t i = 0; i < open.size(); ++i) open[i] = static_cast<pcl::index_t>(i);
   Surfaces surfaces;
   for (const int k : sizesFor(noise, neighborhoods.k() - 1)) {
     surfaces.fit(points, neighborhoods, k, threads, open);
     // What noise explains: its standard deviation, and the scatter of such estimates from k points.
-    const double limit = noise * (1.0 + kTolerance / std::sqrt(2.0 * (k - 5)));
+    const double scatter = 1.0 + kTolerance / std::sqrt(2.0 * (k - 5));
     std::vector<pcl::index_t> left;
     for (const pcl::index_t o : open) {
       const auto i = static_cast<std::size_t>(o);
       std::copy_n(&surfaces.normals[4 * i], 4, normals + 4 * i);
       const double residual = static_cast<double>(surfaces.residuals[i]);
-      if (!(residual <= limit * spacingAt(points, neighborhoods, i))) left.push_back(o);
+      const double least = kLeastNoise * spacingAt(points, neighborhoods, i);
+      if (!(residual <= scatter * std::max(estimate.length, least))) left.push_back(o);
     }
     report.surfaces.emplace_back(k, open.size() - left.size());
     open.swap(left);
