@@ -98,6 +98,24 @@ void findSegments(const PipelineOptions& options, Working& work) {
                                        segmentation_options);
 }
 
+// Normals near sharp edges anew from one side only, and the segments that follow from them.
+void recompute(const PipelineOptions& options, Working& work) {
+  RecomputationOptions recomputation = options.recomputation;
+  recomputation.estimator = options.normals.estimator;
+  recomputation.k = 0;
+  recomputation.threads = options.threads;
+  for (int round = 0; round < options.recomputations; ++round) {
+    std::vector<std::uint8_t> regular;
+    for (const Segment& segment : work.segmentation.segments) {
+      regular.push_back(segment.kind == SegmentKind::Regular ? 1 : 0);
+    }
+    std::vector<std::int32_t> labels = work.segmentation.labels;
+    recomputeNormals(work.cloud.view(), work.neighborhoods, regular, recomputation, labels,
+                     work.normals);
+    findSegments(options, work);
+  }
+}
+
 void findOrientation(const PipelineOptions& options, Working& work) {
   OrientationOptions orientation_options = options.orientation;
   orientation_options.threads = options.threads;
@@ -214,7 +232,9 @@ OrientedCloud orientCloud(const PointView& points, const std::vector<pcl::index_
     findNormals(options, work);
     stages.begin("segmentation", 0.5);
     findSegments(options, work);
-    stages.begin("orientation", 0.75);
+    if (options.recomputations > 0) stages.begin("recomputation", 0.65);
+    recompute(options, work);
+    stages.begin("orientation", 0.8);
     findOrientation(options, work);
   }
   stages.begin("output", 0.95);

@@ -5,6 +5,7 @@
 #include <pcl/types.h>
 #include <segorient/common/point_view.h>
 #include <segorient/features/local_normals.h>
+#include <segorient/features/recompute_normals.h>
 #include <segorient/features/sheet_normals.h>
 #include <segorient/orientation/auto_orientation.h>
 #include <segorient/orientation/orient_segments.h>
@@ -25,8 +26,12 @@ struct PipelineOptions {
   int k = 0;  ///< neighbours of a point, itself not counted; <= 0 = from the cloud's noise
   LocalNormalOptions normals;        ///< its k and threads are not used
   SegmentationOptions segmentation;  ///< its threads and neighbors are not used
-  OrientationOptions orientation;    ///< its threads are not used
-  int threads = 0;                   ///< see resolveThreads()
+  /// How often normals near sharp edges are found anew and the cloud segmented again
+  /// (paper, 2.3.1). Not for OrientationMethod::AUTO.
+  int recomputations = 0;
+  RecomputationOptions recomputation;  ///< its estimator, k and threads are not used
+  OrientationOptions orientation;      ///< its threads are not used
+  int threads = 0;                     ///< see resolveThreads()
 
   // The steps of OrientationMethod::AUTO; the other methods use none of these.
   SheetNormalOptions sheet_normals;  ///< its threads is not used
@@ -37,7 +42,7 @@ struct PipelineOptions {
 };
 
 /// Called when a stage begins and as it goes on, from the calling thread.
-/// \param stage search, normals, segmentation, orientation or output
+/// \param stage search, normals, segmentation, recomputation, orientation or output
 /// \param fraction of the whole work that is done, 0 to 1
 using PipelineProgress = std::function<void(const char* stage, double fraction)>;
 
