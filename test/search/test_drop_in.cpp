@@ -9,6 +9,7 @@
 #include <pcl/segmentation/region_growing.h>
 #include <segorient/search/median_hash.h>
 
+#include <cmath>
 #include <random>
 
 namespace segorient::test {
@@ -64,12 +65,20 @@ Normals::Ptr normals(const Cloud::Ptr& cloud, int k, double radius) {
   return result;
 }
 
+// Equal, or both not a number, which is what a point with too few neighbours gets.
+bool same(float a, float b) {
+  return a == b || (std::isnan(a) && std::isnan(b));
+}
+
 void expectEqual(const Normals& a, const Normals& b) {
   ASSERT_EQ(a.size(), b.size());
+  std::size_t valid = 0;
   for (std::size_t i = 0; i < a.size(); ++i) {
-    for (int j = 0; j < 3; ++j) ASSERT_EQ(a[i].normal[j], b[i].normal[j]) << "point " << i;
-    ASSERT_EQ(a[i].curvature, b[i].curvature);
+    for (int j = 0; j < 3; ++j) ASSERT_PRED2(same, a[i].normal[j], b[i].normal[j]) << "point " << i;
+    ASSERT_PRED2(same, a[i].curvature, b[i].curvature);
+    if (!std::isnan(a[i].curvature)) ++valid;
   }
+  EXPECT_GT(valid, a.size() * 9 / 10);
 }
 
 TEST(DropIn, NormalEstimationOMP) {
