@@ -128,19 +128,21 @@ class OneSidedRule {
         near_.push_back({point, scene_.labels[r], r});
       }
     }
-    std::sort(near_.begin(), near_.end(), [](const Candidate& a, const Candidate& b) {
-      return a.point.sqr_distance != b.point.sqr_distance
-                 ? a.point.sqr_distance < b.point.sqr_distance
-                 : a.index < b.index;
+    order_.clear();
+    for (std::size_t c = 0; c < near_.size(); ++c) {
+      order_.emplace_back(near_[c].point.sqr_distance, c);
+    }
+    std::sort(order_.begin(), order_.end(), [&](const auto& a, const auto& b) {
+      return a.first != b.first ? a.first < b.first : near_[a.second].index < near_[b.second].index;
     });
   }
 
   template <typename Accept>
   OneSidedFit fitNearest(const Accept& accept) {
     chosen_.clear();
-    for (const Candidate& c : near_) {
+    for (const auto& [distance, at] : order_) {
       if (chosen_.size() == kMostPoints) break;
-      if (accept(c.label)) chosen_.push_back(c.point);
+      if (accept(near_[at].label)) chosen_.push_back(near_[at].point);
     }
     return fitOneSided(chosen_.data(), chosen_.size());
   }
@@ -207,6 +209,7 @@ class OneSidedRule {
   std::vector<Side> sides_;
   PointSet seen_;
   std::vector<Candidate> near_;
+  std::vector<std::pair<double, std::size_t>> order_;  ///< into near_, by distance
   std::vector<NearPoint> chosen_;
 };
 

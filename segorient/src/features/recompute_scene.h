@@ -46,13 +46,11 @@ struct RecomputationScene {
   /// \param flat normals with a larger cosine do not
   bool meetsBorder(std::size_t i, double flat) const {
     bool other = !isRegular(labels[i]);
+    for (int j = 1; j < count(i) && !other; ++j) other = labels[neighbor(i, j)] != labels[i];
+    if (!other) return false;
     bool bent = false;
-    for (int j = 1; j < count(i); ++j) {
-      const std::size_t q = neighbor(i, j);
-      other = other || labels[q] != labels[i];
-      bent = bent || !(cosine(i, q) > flat);
-    }
-    return other && bent;
+    for (int j = 1; j < count(i) && !bent; ++j) bent = !(cosine(i, neighbor(i, j)) > flat);
+    return bent;
   }
 };
 
