@@ -131,7 +131,9 @@ TEST(NormalSegmentation, AllWaysToNeighborsGiveTheSame) {
   ready.setInputNormals(in.normals);
   ready.setNeighborhoods(std::make_shared<const Neighborhoods>(prepared.table));
   ready.extract(clusters);
-  EXPECT_EQ(ready.getLabels(), prepared.segment().labels);
+  SegmentationOptions options;
+  options.neighbors = static_cast<int>(ready.getNumberOfNeighbours());
+  EXPECT_EQ(ready.getLabels(), prepared.segment(options).labels);
 }
 
 TEST(NormalSegmentation, IndicesAndBadPoints) {

@@ -21,26 +21,37 @@ struct Scaling {
   float scale = 1.F;
 };
 
-// To the unit cube: squares of coordinates then neither overflow nor vanish.
-Scaling scalingOf(const PointView& points) {
+struct Bounds {
   std::array<float, 3> low;
   std::array<float, 3> high;
-  low.fill(std::numeric_limits<float>::max());
-  high.fill(std::numeric_limits<float>::lowest());
+};
+
+// NaN compares false and is left out; infinite values only where asked for.
+Bounds boundsOf(const PointView& points, bool finite_only) {
+  Bounds b;
+  b.low.fill(std::numeric_limits<float>::max());
+  b.high.fill(std::numeric_limits<float>::lowest());
   for (std::size_t i = 0; i < points.size; ++i) {
     const float* p = points[i];
-    if (!isFinite(p)) continue;
+    if (finite_only && !isFinite(p)) continue;
     for (std::size_t c = 0; c < 3; ++c) {
-      low[c] = std::min(low[c], p[c]);
-      high[c] = std::max(high[c], p[c]);
+      b.low[c] = p[c] < b.low[c] ? p[c] : b.low[c];
+      b.high[c] = p[c] > b.high[c] ? p[c] : b.high[c];
     }
   }
+  return b;
+}
+
+// To the unit cube: squares of coordinates then neither overflow nor vanish.
+Scaling scalingOf(const PointView& points) {
+  Bounds b = boundsOf(points, false);
+  if (!isFinite(b.low.data()) || !isFinite(b.high.data())) b = boundsOf(points, true);
   Scaling scaling;
   float extent = 0.F;
   for (std::size_t c = 0; c < 3; ++c) {
-    if (high[c] < low[c]) return scaling;
-    scaling.center[c] = 0.5F * low[c] + 0.5F * high[c];
-    extent = std::max(extent, 0.5F * high[c] - 0.5F * low[c]);
+    if (b.high[c] < b.low[c]) return scaling;
+    scaling.center[c] = 0.5F * b.low[c] + 0.5F * b.high[c];
+    extent = std::max(extent, 0.5F * b.high[c] - 0.5F * b.low[c]);
   }
   int exponent = 0;
   std::frexp(extent, &exponent);
@@ -81,9 +92,14 @@ float sqrSpacing(const float* sqr_distances, int count) {
 
 void packNodes(const PointView& points, const PointView& normals, const Scaling& scaling,
                int threads, GrowthState& state) {
+  const Neighborhoods& hood = *state.neighborhoods;
   const auto n = static_cast<std::ptrdiff_t>(points.size);
   state.nodes.resize(points.size);
   Node* nodes = state.nodes.data();
+  const float square = scaling.scale * scaling.scale;
+  // The table's own distances save the look-up of the neighbours, but may have over- or
+  // underflowed.
+  const bool use_table = hood.hasDistances() && square > 1e-24F && square < 1e24F;
 #pragma omp parallel for num_threads(threads) schedule(static)
   for (std::ptrdiff_t i = 0; i < n; ++i) {
     const auto row = static_cast<std::size_t>(i);
@@ -99,23 +115,15 @@ void packNodes(const PointView& points, const PointView& normals, const Scaling&
     node.ny = m[1] * factor;
     node.nz = m[2] * factor;
     node.curvature = m[3];
+    if (!use_table) continue;
+    const float mean = sqrSpacing(hood.sqrDistances(row), hood.count(row)) * square;
+    node.spacing = std::sqrt(mean * kSqrSpacingPerMean);
   }
-}
-
-void measureSpacing(const Scaling& scaling, int threads, GrowthState& state) {
-  const Neighborhoods& hood = *state.neighborhoods;
-  const auto n = static_cast<std::ptrdiff_t>(state.nodes.size());
-  Node* nodes = state.nodes.data();
-  const float square = scaling.scale * scaling.scale;
-  // The table's own distances save the look-up of the neighbours, but may have over- or
-  // underflowed.
-  const bool use_table = hood.hasDistances() && square > 1e-24F && square < 1e24F;
+  if (use_table) return;
 #pragma omp parallel for num_threads(threads) schedule(static)
   for (std::ptrdiff_t i = 0; i < n; ++i) {
     const auto row = static_cast<std::size_t>(i);
-    const int count = hood.count(row);
-    const float mean = use_table ? sqrSpacing(hood.sqrDistances(row), count) * square
-                                 : sqrSpacing(nodes, hood.indices(row), row, count);
+    const float mean = sqrSpacing(nodes, hood.indices(row), row, hood.count(row));
     nodes[row].spacing = std::sqrt(mean * kSqrSpacingPerMean);
   }
 }
@@ -156,7 +164,6 @@ void prepare(const PointView& points, const PointView& normals, const Segmentati
   const Scaling scaling = scalingOf(points);
   state.scale = scaling.scale;
   packNodes(points, normals, scaling, threads, state);
-  measureSpacing(scaling, threads, state);
 
   constexpr float kNoLimit = std::numeric_limits<float>::max();
   state.limits.gap_sqr = options.max_gap > 0.F ? options.max_gap * options.max_gap : kNoLimit;

@@ -13,7 +13,8 @@ namespace {
 constexpr std::size_t kWitnesses = 5;
 /// Segments that are compared at one point; three meet at a corner.
 constexpr std::size_t kCandidates = 6;
-/// Neighbours of each row that are looked at, at most: the witnesses are to be near.
+/// Neighbours of each row that are looked at: near, but beyond the reach of the edge. Not fewer
+/// where growing uses fewer.
 constexpr int kReach = 12;
 /// 80 degrees. The normal of a point right at an edge may lean far over; near a right angle to the
 /// reference normal its sign would be arbitrary.
@@ -80,10 +81,14 @@ class Settler {
     return label >= 0 && state_.clusters[static_cast<std::size_t>(label)].size >= small_size_;
   }
 
+  int reach(std::size_t row) const {
+    return std::min(state_.neighborhoods->count(row), kReach + 1);
+  }
+
   std::size_t listCandidates(std::size_t p, std::array<Candidate, kCandidates>& candidates) const {
     std::size_t count = 0;
     const pcl::index_t* row = state_.neighborhoods->indices(p);
-    const int size = state_.rowSize(p);
+    const int size = reach(p);
     for (int j = 0; j < size && count < kCandidates; ++j) {
       const auto q = static_cast<std::size_t>(row[j]);
       const std::int32_t label = state_.labels[q];
@@ -112,12 +117,12 @@ class Settler {
   void gatherWitnesses(std::size_t p, std::array<Candidate, kCandidates>& candidates,
                        std::size_t count) const {
     const pcl::index_t* row = state_.neighborhoods->indices(p);
-    const int size = std::min(state_.rowSize(p), kReach + 1);
+    const int size = reach(p);
     for (int j = 1; j < size; ++j) {
       const auto middle = static_cast<std::size_t>(row[j]);
       if (!state_.limits.near(state_.nodes[p], state_.nodes[middle])) continue;
       const pcl::index_t* next = state_.neighborhoods->indices(middle);
-      const int next_size = std::min(state_.rowSize(middle), kReach + 1);
+      const int next_size = reach(middle);
       for (int i = 0; i < next_size; ++i) {
         const auto q = static_cast<std::size_t>(next[i]);
         if (q == p) continue;

@@ -9,7 +9,7 @@ SmallAdjacency::SmallAdjacency(const GrowthState& state, std::uint32_t small_siz
       slots_(state.nodes.size(), kNone),
       heads_(state.clusters.size(), kNone),
       tails_(state.clusters.size(), kNone),
-      stamps_(state.nodes.size()) {
+      stamps_(state.nodes.size(), 0) {
   for (std::size_t p = 0; p < state.nodes.size(); ++p) {
     const std::int32_t label = state.labels[p];
     if (label < 0 || state.clusters[static_cast<std::size_t>(label)].size >= small_size) continue;

@@ -51,19 +51,23 @@ class SmallAdjacency {
   template <typename Visit>
   void forEachAround(std::int32_t label, Visit&& visit) {
     around_.clear();
-    ++stamp_;
+    if (first_stamp_ > kMostStamps) {
+      std::fill(stamps_.begin(), stamps_.end(), 0U);
+      first_stamp_ = 1;
+    }
     for (std::uint32_t s = heads_[static_cast<std::size_t>(label)]; s != kNone; s = next_[s]) {
       const Node& node = state_.nodes[point(s)];
       forEachNeighbor(s, [&](std::size_t q) {
         if (state_.labels[q] == label) return;
-        if (stamps_[q].id != stamp_) {
-          stamps_[q] = {stamp_, static_cast<std::uint32_t>(around_.size())};
+        if (stamps_[q] < first_stamp_) {
+          stamps_[q] = first_stamp_ + static_cast<std::uint32_t>(around_.size());
           around_.push_back({q, false});
         }
-        Around& entry = around_[stamps_[q].position];
+        Around& entry = around_[stamps_[q] - first_stamp_];
         entry.admissible = entry.admissible || state_.limits.admissible(state_.nodes[q], node);
       });
     }
+    first_stamp_ += static_cast<std::uint32_t>(around_.size());
     for (const Around& a : around_) visit(a.point, a.admissible);
   }
 
@@ -71,15 +75,13 @@ class SmallAdjacency {
   void append(std::int32_t from, std::int32_t into);
 
  private:
+  /// Room above for the points around one segment.
+  static constexpr std::uint32_t kMostStamps = 1U << 31U;
+
   struct Around {
     std::size_t point;
     bool admissible;
   };
-  struct Stamp {
-    std::uint32_t id = 0;
-    std::uint32_t position = 0;
-  };
-
   void listReverse();
 
   const GrowthState& state_;
@@ -88,8 +90,9 @@ class SmallAdjacency {
   std::vector<std::uint32_t> heads_, tails_, next_;
   std::vector<std::size_t> reverse_starts_;
   std::vector<pcl::index_t> reverse_;
-  std::vector<Stamp> stamps_;
-  std::uint32_t stamp_ = 0;
+  /// By point: where it is in around_, plus first_stamp_; less = not in it.
+  std::vector<std::uint32_t> stamps_;
+  std::uint32_t first_stamp_ = 1;
   std::vector<Around> around_;
 };
 

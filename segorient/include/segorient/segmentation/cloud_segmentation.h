@@ -27,7 +27,7 @@ class CloudSegmentation {
         nullptr;                           ///< points to segment, null = all; bad ones are left out
     const Neighborhoods* table = nullptr;  ///< of the whole cloud, or null to search; outlives this
     Search search;                         ///< empty = search::MedianHashIndex
-    int neighbors = 12;                    ///< neighbours of each point, itself not counted
+    int neighbors = 10;                    ///< neighbours of each point, itself not counted
   };
 
   /// \return false if sizes do not agree or the table is not of this cloud; the result is empty

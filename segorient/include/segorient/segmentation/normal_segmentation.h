@@ -70,7 +70,7 @@ class NormalSegmentation : public pcl::PCLBase<PointT> {
   void setNeighborhoods(const std::shared_ptr<const Neighborhoods>& neighborhoods);
   std::shared_ptr<const Neighborhoods> getNeighborhoods() const { return neighborhoods_; }
 
-  /// Neighbours of a point, itself not counted; default 12, less than 1 means 1.
+  /// Neighbours of a point, itself not counted; default 10, less than 1 means 1.
   void setNumberOfNeighbours(unsigned int neighbors);
   unsigned int getNumberOfNeighbours() const { return neighbors_; }
 
@@ -178,7 +178,7 @@ class NormalSegmentation : public pcl::PCLBase<PointT> {
   KdTreePtr search_;
   std::shared_ptr<const Neighborhoods> neighborhoods_;
   SegmentationOptions options_;
-  unsigned int neighbors_ = 12;
+  unsigned int neighbors_ = 10;
   bool curvature_test_ = true;
   pcl::uindex_t min_size_ = 1;
   pcl::uindex_t max_size_ = std::numeric_limits<pcl::uindex_t>::max();

@@ -19,7 +19,9 @@ struct SegmentationOptions {
       0.5235988F;  ///< largest angle between a normal and the reference normal (30 degrees)
   float epsilon = 0.1745329F;   ///< by how much the clean-up may exceed beta (10 degrees)
   std::size_t small_size = 20;  ///< segments with fewer points are small
-  int neighbors = 0;  ///< neighbours of each row to use, the point itself not counted; 0 = all
+  /// Neighbours of each row to use, the point itself not counted; 0 = all. More cost time and do
+  /// not make segments better: the normals have seen them already.
+  int neighbors = 10;
   /// Pass 1: share of the points around a small segment that another one must hold to take it in.
   float neighbor_share = 0.4F;
   /// Two points farther apart than this are no neighbours: growing does not jump gaps. 0 = no
@@ -31,9 +33,8 @@ struct SegmentationOptions {
   float max_offset = 0.5F;
   /// Points of higher curvature join a segment but do not pass it on. Default: no limit.
   float max_curvature = std::numeric_limits<float>::max();
-  bool absorb_small = true;  ///< clean-up pass 1: small segments join a neighbouring segment
-  bool extract_edges =
-      true;  ///< clean-up pass 2: points of small segments join regular ones singly
+  bool absorb_small = true;   ///< clean-up pass 1: small segments join a neighbouring segment
+  bool extract_edges = true;  ///< clean-up pass 2: their points join regular ones one by one
   /// Beyond the paper, after pass 2: normals along a sharp edge are means over both faces, so a
   /// point there goes to the segment whose flat part, continued, passes nearest to it.
   bool settle_edges = true;

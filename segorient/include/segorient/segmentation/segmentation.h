@@ -22,18 +22,19 @@ enum class SegmentKind : std::uint8_t {
 /// One segment. Its points are Segmentation::members[first, first + size).
 struct Segment {
   SegmentKind kind = SegmentKind::Regular;
-  std::uint32_t first = 0;                              ///< into Segmentation::members
-  std::uint32_t size = 0;                               ///< number of points
-  std::array<float, 3> reference_normal{0.F, 0.F, 0.F}; ///< unit sum of its points' signed normals
-  std::array<float, 3> centroid{0.F, 0.F, 0.F};         ///< mean of its points
-  float area = 0.F;                                     ///< estimate from the local spacing
-  float rms = 0.F;                                      ///< distance to its own best-fit plane
+  std::uint32_t first = 0;                               ///< into Segmentation::members
+  std::uint32_t size = 0;                                ///< number of points
+  std::array<float, 3> reference_normal{0.F, 0.F, 0.F};  ///< unit sum of its points' signed normals
+  std::array<float, 3> centroid{0.F, 0.F, 0.F};          ///< mean of its points
+  float area = 0.F;                                      ///< estimate from the local spacing
+  float rms = 0.F;                                       ///< distance to its own best-fit plane
 };
 
 /// A cloud cut into segments that are each oriented in themselves: what segmentation hands on to
-/// triangulation and orientation. Labels are ordered by descending size, equal sizes by smallest member.
+/// triangulation and orientation. Labels are ordered by descending size, equal sizes by smallest
+/// member.
 struct Segmentation {
-  std::vector<std::int32_t> labels;   ///< per point its segment, -1 where there is no usable normal
+  std::vector<std::int32_t> labels;  ///< per point its segment, -1 where there is no usable normal
   /// Per point +1 or -1: with this sign its normal agrees with its segment's reference normal.
   std::vector<std::int8_t> signs;
   std::vector<Segment> segments;      ///< by label
@@ -67,8 +68,9 @@ struct BorderPair {
 struct SegmentGraph {
   std::vector<SegmentBorder> borders;  ///< ascending by (a, b)
   std::vector<BorderPair> pairs;       ///< by border, ascending
-  std::vector<std::uint32_t> offsets;  ///< borders of segment s: incident[offsets[s], offsets[s + 1])
-  std::vector<std::uint32_t> incident; ///< indices into borders
+  /// Borders of segment s: incident[offsets[s], offsets[s + 1]).
+  std::vector<std::uint32_t> offsets;
+  std::vector<std::uint32_t> incident;  ///< indices into borders
 };
 
 /// \param k neighbours of each row to use, the point itself not counted; 0 = all
