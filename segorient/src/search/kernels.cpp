@@ -100,6 +100,7 @@ inline void prefetchForWrite(const void* p) {
 }
 
 #include "kernels.inl"
+#include "kernels_all_points.inl"
 
 constexpr Kernels kKernels{"scalar", collect, collectRegion, sortNearest, allInRegion};
 
@@ -194,6 +195,7 @@ inline void prefetchForWrite(const void* p) {
 }
 
 #include "kernels.inl"
+#include "kernels_all_points.inl"
 
 constexpr Kernels kKernels{"sse2", collect, collectRegion, sortNearest, allInRegion};
 
@@ -308,6 +310,7 @@ inline void prefetchForWrite(const void* p) {
 }
 
 #include "kernels.inl"
+#include "kernels_all_points.inl"
 
 constexpr Kernels kKernels{"avx2", collect, collectRegion, sortNearest, allInRegion};
 
