@@ -174,13 +174,19 @@ TEST(Auto, HugeAndTinyCoordinatesGiveTheSame) {
   }
 }
 
-TEST(Auto, StepsCanBeSwitchedOff) {
-  const LabelledCloud cloud = sample("plate", plate(2, 8000), 8000, 50);
-  PipelineOptions bare;
-  bare.sheet_normals.split_walls = false;
-  bare.sheet_normals.dominant_plane = false;
-  bare.filter_rounds = 0;
-  EXPECT_LT(shareOutward(orient(cloud.xyz, bare).normals, cloud.normals), 0.99);
+TEST(Auto, FilterAndDenoisingAreWorthTheirTime) {
+  const LabelledCloud some = sample("cube", cube(), 6000, 50, 0.7);
+  PipelineOptions unfiltered;
+  unfiltered.filter_rounds = 0;
+  EXPECT_GT(shareOutward(orient(some.xyz).normals, some.normals),
+            shareOutward(orient(some.xyz, unfiltered).normals, some.normals) + 0.005);
+  const LabelledCloud much = sample("steps", steppedSolid(), 6000, 51, 1.5);
+  PipelineOptions rough;
+  rough.denoise = false;
+  const OrientedCloud smooth = orient(much.xyz);
+  EXPECT_TRUE(smooth.report.denoised);
+  EXPECT_GT(shareOutward(smooth.normals, much.normals),
+            shareOutward(orient(much.xyz, rough).normals, much.normals));
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <limits>
 #include <numeric>
@@ -161,6 +162,25 @@ CompactCloud compactCloud(const PointView& points, const std::vector<pcl::index_
         static_cast<pcl::index_t>(out.source.size() - 1);
   }
   return out;
+}
+
+void normalizeUnit(CompactCloud& cloud) {
+  double extent = 0.0;
+  for (std::size_t a = 0; a < 3 && cloud.size() > 0; ++a) {
+    float low = cloud.xyz[a];
+    float high = cloud.xyz[a];
+    for (std::size_t i = 0; i < cloud.size(); ++i) {
+      low = std::min(low, cloud.xyz[4 * i + a]);
+      high = std::max(high, cloud.xyz[4 * i + a]);
+    }
+    extent = std::max(extent, static_cast<double>(high) - static_cast<double>(low));
+  }
+  if (!(extent > 0.0)) return;
+  constexpr int kMost = 125;  // its inverse has to be a float as well
+  const int exponent = std::clamp(std::ilogb(extent), -kMost, kMost);
+  const float inverse = std::ldexp(1.F, -exponent);
+  for (float& v : cloud.xyz) v *= inverse;
+  cloud.unit *= std::ldexp(1.F, exponent);
 }
 
 }  // namespace segorient

@@ -71,7 +71,8 @@ Plane fitPlane(const Moments& m) {
   solver.computeDirect(c);
   plane.lambda = solver.eigenvalues().cwiseMax(0.F);
   plane.normal = solver.eigenvectors().col(0);
-  plane.valid = plane.lambda[1] > 1e-6F * plane.lambda[2] && plane.normal.allFinite();
+  // The closed form is good to about a millionth of the largest.
+  plane.valid = plane.lambda[1] > 1e-5F * plane.lambda[2] && plane.normal.allFinite();
   return plane;
 }
 

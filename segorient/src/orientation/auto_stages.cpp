@@ -65,12 +65,13 @@ float median(std::vector<float> values) {
   return *middle;
 }
 
-void orient(const PointView& points, const Neighborhoods& table, const PipelineOptions& options,
-            SheetNormals& sheets, AutoStages& out) {
+void orient(const CompactCloud& cloud, const PointView& points, const Neighborhoods& table,
+            const PipelineOptions& options, SheetNormals& sheets, AutoStages& out) {
   {
     const SheetField field = fieldOf(sheets);
     AutoOrientationOptions settings = options.automatic;
     settings.threads = options.threads;
+    for (float& c : settings.viewpoint) c /= cloud.unit;
     const Segmentation segments =
         segmentSheets(points, table, field, admissibleEdges(points, table, field, options.threads),
                       options.sheets);
@@ -160,7 +161,7 @@ AutoStages runAutoStages(const CompactCloud& cloud, const PipelineOptions& optio
   SheetNormals sheets = estimateSheetNormals(points, neighbors.table, normal_options);
   out.spacing = median(sheets.spacing);
   begin("orientation", 0.6);
-  orient(points, neighbors.table, options, sheets, out);
+  orient(cloud, points, neighbors.table, options, sheets, out);
   begin("segmentation", 0.85);
   fillCurvature(points, neighbors.table, options, out);
   segmentFinal(points, neighbors.table, options, out);

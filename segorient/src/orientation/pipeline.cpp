@@ -164,6 +164,20 @@ void runAutomatic(const PipelineOptions& options, Stages& stages, Working& work,
   work.orientation.point_components = std::move(result.components);
 }
 
+// Lengths back to the input's units.
+void restoreUnit(Working& work, PipelineReport& report) {
+  const float unit = work.cloud.unit;
+  report.spacing *= unit;
+  for (Contradiction& c : report.contradictions) {
+    for (float& v : c.where) v *= unit;
+  }
+  for (Segment& s : work.segmentation.segments) {
+    for (float& v : s.centroid) v *= unit;
+    s.area *= unit * unit;
+    s.rms *= unit;
+  }
+}
+
 // From distinct points to input rows.
 void scatter(const Working& work, OrientedCloud& out) {
   const std::size_t rows = work.cloud.row_of.size();
@@ -224,6 +238,7 @@ OrientedCloud orientCloud(const PointView& points, const std::vector<pcl::index_
   // Fractions: shares of the time on clouds of a million points.
   stages.begin("search", 0.0);
   work.cloud = compactCloud(points, indices, options.threads);
+  normalizeUnit(work.cloud);
   if (options.orientation.method == OrientationMethod::AUTO) {
     runAutomatic(options, stages, work, out.report);
   } else {
@@ -239,6 +254,7 @@ OrientedCloud orientCloud(const PointView& points, const std::vector<pcl::index_
   }
   stages.begin("output", 0.95);
   if (options.orientation.method != OrientationMethod::AUTO) applyOrientation(work);
+  restoreUnit(work, out.report);
   scatter(work, out);
   fillReport(work, out, out.report);
   stages.end();

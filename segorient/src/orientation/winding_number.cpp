@@ -10,7 +10,7 @@ namespace {
 
 constexpr std::uint32_t kLeaf = 16;
 // A node counts as one dipole beyond this many of its radii: errors of about a hundredth.
-constexpr float kFar = 2.F;
+constexpr float kFar = 4.F;
 constexpr float kOneOver4Pi = 0.07957747F;
 
 }  // namespace

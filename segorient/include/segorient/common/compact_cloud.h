@@ -21,6 +21,9 @@ struct CompactCloud {
   std::vector<pcl::index_t> row_of;  ///< for each input row its compact row, -1 where not finite
   std::vector<pcl::index_t> source;  ///< for each compact row the first input row that holds it
 
+  /// Input coordinates are `unit` times those of `xyz`; see normalizeUnit().
+  float unit = 1.F;
+
   std::size_t size() const { return source.size(); }
   PointView view() const { return {xyz.data(), 4, source.size()}; }
 };
@@ -31,5 +34,10 @@ struct CompactCloud {
 /// \param threads see resolveThreads()
 CompactCloud compactCloud(const PointView& points,
                           const std::vector<pcl::index_t>* indices = nullptr, int threads = 0);
+
+/// Divides the coordinates by the power of two that brings the cloud's extent between 1 and 2:
+/// squares and cubes of them are then ordinary numbers whatever the input's units, and nothing is
+/// rounded.
+void normalizeUnit(CompactCloud& cloud);
 
 }  // namespace segorient

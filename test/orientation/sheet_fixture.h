@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the segorient authors
+#pragma once
+
+#include <segorient/features/sheet_normals.h>
+#include <segorient/search/median_hash_index.h>
+#include <segorient/segmentation/sheet_segmentation.h>
+
+#include <cmath>
+#include <vector>
+
+#include "labelled_solids.h"
+
+namespace segorient::test {
+
+inline PointView viewOf(const std::vector<float>& packed) {
+  return {packed.data(), 4, packed.size() / 4};
+}
+
+inline Neighborhoods neighborsOf(const std::vector<float>& xyz, int k = kSheetNeighbors) {
+  search::MedianHashIndex index;
+  index.build(viewOf(xyz), nullptr, {});
+  Neighborhoods table;
+  index.nearestKAll(k + 1, table, false);
+  return table;
+}
+
+inline SheetField fieldOf(const SheetNormals& sheets) {
+  SheetField field;
+  field.normals = sheets.normals.data();
+  field.spacing = sheets.spacing.data();
+  field.below = sheets.below.data();
+  field.above = sheets.above.data();
+  field.reliable = sheets.reliable.data();
+  field.residual = sheets.residual;
+  return field;
+}
+
+inline float dot3(const float* a, const float* b) {
+  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+/// Share of the points whose normal is within `degrees` of the true one, whatever its sign.
+inline double shareWithin(const std::vector<float>& normals, const std::vector<float>& truth,
+                          double degrees) {
+  std::size_t good = 0;
+  const std::size_t n = truth.size() / 4;
+  for (std::size_t i = 0; i < n; ++i) {
+    good +=
+        std::fabs(dot3(&normals[4 * i], &truth[4 * i])) > std::cos(degrees * M_PI / 180) ? 1U : 0U;
+  }
+  return static_cast<double>(good) / static_cast<double>(n);
+}
+
+/// Share of the points whose normal points the true way; a NaN normal does not.
+inline double shareOutward(const std::vector<float>& normals, const std::vector<float>& truth) {
+  std::size_t good = 0;
+  const std::size_t n = truth.size() / 4;
+  for (std::size_t i = 0; i < n; ++i) good += dot3(&normals[4 * i], &truth[4 * i]) > 0.F ? 1U : 0U;
+  return static_cast<double>(good) / static_cast<double>(n);
+}
+
+}  // namespace segorient::test
