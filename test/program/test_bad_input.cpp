@@ -99,7 +99,8 @@ TEST(BadInput, PointsWithoutCoordinatesAndRepeatedOnesKeepTheirPlace) {
   for (std::size_t i = 0; i < table.size; ++i) {
     const bool finite = std::isfinite(table.position(i)[0]);
     EXPECT_EQ(std::isfinite(table.triple(table.normals(), i)[2]), finite) << i;
-    if (finite) EXPECT_NEAR(std::abs(table.triple(table.normals(), i)[2]), 1.0, 1e-5);
+    if (!finite) continue;
+    EXPECT_NEAR(std::abs(table.triple(table.normals(), i)[2]), 1.0, 1e-5);
   }
 }
 
