@@ -69,10 +69,13 @@ Plane fitPlane(const Moments& m) {
   c(1, 2) = c(2, 1) = m.yz * w - plane.mean.y() * plane.mean.z();
   Eigen::SelfAdjointEigenSolver<Eigen::Matrix3f> solver;
   solver.computeDirect(c);
+  // The closed form is poor where two eigenvalues meet, as on a line.
+  constexpr float kSlim = 0.01F;
+  if (!(solver.eigenvalues()[1] > kSlim * solver.eigenvalues()[2])) solver.compute(c);
   plane.lambda = solver.eigenvalues().cwiseMax(0.F);
   plane.normal = solver.eigenvectors().col(0);
-  // The closed form is good to about a millionth of the largest.
-  plane.valid = plane.lambda[1] > 1e-5F * plane.lambda[2] && plane.normal.allFinite();
+  // Below that, the width is rounding.
+  plane.valid = plane.lambda[1] > 1e-6F * plane.lambda[2] && plane.normal.allFinite();
   return plane;
 }
 

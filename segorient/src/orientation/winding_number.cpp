@@ -9,7 +9,8 @@ namespace segorient {
 namespace {
 
 constexpr std::uint32_t kLeaf = 16;
-// A node counts as one dipole beyond this many of its radii: errors of about a hundredth.
+// A node counts as one dipole beyond this many of its radii: errors of some hundredths of the sum
+// of absolute terms.
 constexpr float kFar = 4.F;
 constexpr float kOneOver4Pi = 0.07957747F;
 

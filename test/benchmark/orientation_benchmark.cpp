@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026, the segorient authors
 //
-// The paper's methods of orientation side by side, as a Markdown table, worst cloud first.
-//   orientation_paper DIRECTORY [CLOUD.ply ...]
+// All methods of orientation side by side, as a Markdown table, worst cloud of the default method
+// first.
+//   orientation_benchmark DIRECTORY [CLOUD.ply ...]
 // DIRECTORY has manifest.tsv (name, points, closed or open, ...) and clouds with true normals:
 // binary little-endian PLY of float x y z nx ny nz. Closed clouds: share of points that agree with
 // the true normal, without any flip; open ones: the better sign of each connected part.
@@ -123,6 +124,7 @@ std::vector<Column> columns() {
   add("combined (triangulated)", OrientationMethod::COMBINED).boundary =
       segorient::BoundaryTest::TRIANGULATED;
   add("combined", OrientationMethod::COMBINED);
+  add("auto", OrientationMethod::AUTO);
   return out;
 }
 
@@ -152,14 +154,13 @@ void print(std::vector<Row> rows, const std::vector<Column>& methods) {
                    [](const Row& l, const Row& r) { return l.scores.back() < r.scores.back(); });
   std::printf("| cloud | |");
   for (const Column& column : methods) std::printf(" %s |", column.title);
-  std::printf(" hard segments | k |\n|---|---|");
-  for (std::size_t i = 0; i < methods.size() + 2; ++i) std::printf("---|");
+  std::printf(" seconds of the last |\n|---|---|");
+  for (std::size_t i = 0; i < methods.size() + 1; ++i) std::printf("---|");
   std::printf("\n");
   for (const Row& row : rows) {
     std::printf("| %s | %s |", row.name.c_str(), row.closed ? "closed" : "open");
     for (const double share : row.scores) std::printf(" %.2f |", share);
-    std::printf(" %zu of %zu | %d |\n", row.report.hard_segments, row.report.regular_segments,
-                row.report.k);
+    std::printf(" %.2f |\n", row.report.seconds);
   }
 }
 
@@ -167,7 +168,7 @@ void print(std::vector<Row> rows, const std::vector<Column>& methods) {
 
 int main(int argc, char** argv) {
   if (argc < 2) {
-    std::fprintf(stderr, "usage: orientation_paper DIRECTORY [CLOUD.ply ...]\n");
+    std::fprintf(stderr, "usage: orientation_benchmark DIRECTORY [CLOUD.ply ...]\n");
     return 2;
   }
   const std::string directory = argv[1];
