@@ -13,17 +13,19 @@
 
 #include <algorithm>
 #include <array>
+#include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <fstream>
-#include <iostream>
-#include <iterator>
+#include <functional>
 #include <numeric>
 #include <set>
 #include <sstream>
 #include <string>
 #include <utility>
 #include <vector>
+
+#include "orientation_peers.h"
 
 namespace {
 
@@ -102,29 +104,43 @@ double score(const TrueCloud& cloud, const std::vector<float>& normals) {
 
 struct Column {
   const char* title;
-  segorient::OrientationOptions options;
+  std::function<std::vector<float>(const segorient::PointView&)> orient;  // 4 floats a point
 };
+
+Column own(const char* title, const segorient::OrientationOptions& orientation) {
+  return {title, [orientation](const segorient::PointView& points) {
+            segorient::PipelineOptions options;
+            options.orientation = orientation;
+            return orientCloud(points, nullptr, options).normals;
+          }};
+}
 
 std::vector<Column> columns() {
   std::vector<Column> out;
-  const auto add = [&](const char* title,
-                       OrientationMethod method) -> segorient::OrientationOptions& {
-    out.push_back({title, {}});
-    out.back().options.method = method;
-    return out.back().options;
-  };
-  add("point tree", OrientationMethod::PROPAGATION).point_tree = true;
-  add("propagation (reference)", OrientationMethod::PROPAGATION).angle =
-      segorient::SegmentAngle::REFERENCE_NORMALS;
-  add("propagation (border)", OrientationMethod::PROPAGATION);
-  add("boundary", OrientationMethod::BOUNDARY);
-  add("boundary (triangulated)", OrientationMethod::BOUNDARY).boundary =
-      segorient::BoundaryTest::TRIANGULATED;
-  add("extremal", OrientationMethod::EXTREMAL);
-  add("combined (triangulated)", OrientationMethod::COMBINED).boundary =
-      segorient::BoundaryTest::TRIANGULATED;
-  add("combined", OrientationMethod::COMBINED);
-  add("auto", OrientationMethod::AUTO);
+  out.push_back({"PCL, viewpoint", segorient::benchmark::orientWithPcl});
+#ifdef SEGORIENT_HAVE_CGAL
+  out.push_back({"CGAL, spanning tree", segorient::benchmark::orientWithCgal});
+#endif
+  segorient::OrientationOptions o;
+  o.method = OrientationMethod::PROPAGATION;
+  o.point_tree = true;
+  out.push_back(own("point tree", o));
+  o.point_tree = false;
+  out.push_back(own("propagation", o));
+  o.angle = segorient::SegmentAngle::REFERENCE_NORMALS;
+  out.push_back(own("propagation (reference)", o));
+  o = {};
+  o.method = OrientationMethod::BOUNDARY;
+  out.push_back(own("boundary", o));
+  o.boundary = segorient::BoundaryTest::TRIANGULATED;
+  out.push_back(own("boundary (triangulated)", o));
+  o = {};
+  o.method = OrientationMethod::EXTREMAL;
+  out.push_back(own("extremal", o));
+  o.method = OrientationMethod::COMBINED;
+  out.push_back(own("combined", o));
+  o.method = OrientationMethod::AUTO;
+  out.push_back(own("auto", o));
   return out;
 }
 
@@ -132,7 +148,7 @@ struct Row {
   std::string name;
   bool closed = false;
   std::vector<double> scores;
-  segorient::PipelineReport report;  // of the last column
+  std::vector<double> seconds;
 };
 
 Row measure(const TrueCloud& cloud, const std::vector<Column>& methods) {
@@ -140,27 +156,30 @@ Row measure(const TrueCloud& cloud, const std::vector<Column>& methods) {
   row.name = cloud.name;
   row.closed = cloud.closed;
   for (const Column& column : methods) {
-    segorient::PipelineOptions options;
-    options.orientation = column.options;
-    const segorient::OrientedCloud result = orientCloud(cloud.points(), nullptr, options);
-    row.scores.push_back(score(cloud, result.normals));
-    row.report = result.report;
+    const auto start = std::chrono::steady_clock::now();
+    const std::vector<float> normals = column.orient(cloud.points());
+    row.seconds.push_back(
+        std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
+    row.scores.push_back(score(cloud, normals));
   }
   return row;
 }
 
+// Each cell: share right in percent, seconds.
 void print(std::vector<Row> rows, const std::vector<Column>& methods) {
   std::stable_sort(rows.begin(), rows.end(),
                    [](const Row& l, const Row& r) { return l.scores.back() < r.scores.back(); });
   std::printf("| cloud | |");
   for (const Column& column : methods) std::printf(" %s |", column.title);
-  std::printf(" seconds of the last |\n|---|---|");
-  for (std::size_t i = 0; i < methods.size() + 1; ++i) std::printf("---|");
+  std::printf("\n|---|---|");
+  for (std::size_t i = 0; i < methods.size(); ++i) std::printf("---|");
   std::printf("\n");
   for (const Row& row : rows) {
     std::printf("| %s | %s |", row.name.c_str(), row.closed ? "closed" : "open");
-    for (const double share : row.scores) std::printf(" %.2f |", share);
-    std::printf(" %.2f |\n", row.report.seconds);
+    for (std::size_t m = 0; m < methods.size(); ++m) {
+      std::printf(" %.2f (%.2f) |", row.scores[m], row.seconds[m]);
+    }
+    std::printf("\n");
   }
 }
 
