@@ -2,6 +2,7 @@
 // Copyright (c) 2026, the segorient authors
 #include <segorient/orientation/pipeline.h>
 
+#include <array>
 #include <cstdio>
 #include <optional>
 
@@ -20,7 +21,8 @@ namespace {
 
 constexpr std::size_t kComponentsShown = 5;
 
-void printSummary(const PipelineReport& report, const std::string& out, bool verbose) {
+void printSummary(const PipelineReport& report, const std::array<double, 3>& origin,
+                  const std::string& out, bool verbose) {
   std::printf("points          %zu", report.points);
   if (report.non_finite > 0) std::printf(", %zu not finite", report.non_finite);
   if (report.duplicates > 0) std::printf(", %zu duplicates", report.duplicates);
@@ -41,10 +43,11 @@ void printSummary(const PipelineReport& report, const std::string& out, bool ver
                 static_cast<double>(c.confidence));
   }
   if (!report.contradictions.empty()) {
+    const auto& where = report.contradictions[0].where;
     std::printf(
-        "contradictions  %zu borders where sure evidence was overruled: the surface may have "
-        "one side only\n",
-        report.contradictions.size());
+        "contradictions  %zu, near (%g, %g, %g) first: the surface has one side only, or folds\n",
+        report.contradictions.size(), origin[0] + static_cast<double>(where[0]),
+        origin[1] + static_cast<double>(where[1]), origin[2] + static_cast<double>(where[2]));
   }
   std::printf("seconds         %.2f:", report.seconds);
   for (const StageTime& s : report.stages) std::printf("  %s %.2f", s.stage.c_str(), s.seconds);
@@ -69,7 +72,7 @@ void addSegments(const OrientedCloud& cloud, JsonWriter& json) {
   json.endArray();
 }
 
-std::string reportText(const OrientedCloud& cloud) {
+std::string reportText(const OrientedCloud& cloud, const std::array<double, 3>& origin) {
   const PipelineReport& report = cloud.report;
   JsonWriter json;
   json.field("points", report.points);
@@ -107,8 +110,9 @@ std::string reportText(const OrientedCloud& cloud) {
   json.beginArray("contradictions");
   for (const Contradiction& c : report.contradictions) {
     json.beginItem();
-    json.field("segment_a", c.a);
-    json.field("segment_b", c.b);
+    json.field("x", origin[0] + static_cast<double>(c.where[0]));
+    json.field("y", origin[1] + static_cast<double>(c.where[1]));
+    json.field("z", origin[2] + static_cast<double>(c.where[2]));
     json.field("weight", c.weight);
     json.endObject();
   }
@@ -128,6 +132,17 @@ void write(const CloudTable& table, const OrientedCloud& cloud, OutputFile& file
   writeCloud(out, file);
 }
 
+// Three numbers between commas, or none.
+std::vector<double> parseViewpoint(const std::string& text) {
+  if (text.empty()) return {};
+  std::vector<double> v(3);
+  char end = 0;
+  if (std::sscanf(text.c_str(), "%lf,%lf,%lf%c", &v[0], &v[1], &v[2], &end) != 3) {
+    throw UsageError("--viewpoint takes three numbers, as in --viewpoint=1.5,0,-2");
+  }
+  return v;
+}
+
 }  // namespace
 
 int runOrient(const std::vector<std::string>& words) {
@@ -141,12 +156,16 @@ int runOrient(const std::vector<std::string>& words) {
   CommonOptions common;
   StageOptions stages;
   std::string report_path;
+  std::string viewpoint_text;
   line.arguments({"IN", "OUT"});
   stages.add(line);
-  line.options()("report", po::value(&report_path), "what was done, as JSON");
+  line.options()("report", po::value(&report_path), "what was done, as JSON")(
+      "viewpoint", po::value(&viewpoint_text),
+      "=X,Y,Z: where an open surface was seen from; closed ones know their outside (method auto)");
   common.add(line);
   if (!line.parse(words)) return 0;
   common.check();
+  const std::vector<double> viewpoint = parseViewpoint(viewpoint_text);
   PipelineOptions options;
   stages.apply(line, common, options);
   requireEnding(line.argument("OUT"), {".pcd", ".ply"});
@@ -156,17 +175,25 @@ int runOrient(const std::vector<std::string>& words) {
   if (!report_path.empty()) report.emplace(report_path);
   const CloudTable table = readUsableCloud(line.argument("IN"));
   OrientedCloud cloud;
+  std::array<double, 3> origin{0, 0, 0};
   {
     const LocalPoints points(table);
+    origin = points.origin();
+    if (!viewpoint.empty()) {
+      options.automatic.has_viewpoint = true;
+      for (std::size_t a = 0; a < 3; ++a) {
+        options.automatic.viewpoint[a] = static_cast<float>(viewpoint[a] - origin[a]);
+      }
+    }
     ProgressBar bar(!common.quiet, table.size);
     cloud = orientCloud(points.view(), nullptr, options,
                         [&](const char* stage, double fraction) { bar.update(stage, fraction); });
   }
   write(table, cloud, out);
-  if (report) report->write(reportText(cloud));
+  if (report) report->write(reportText(cloud, origin));
   out.commit();
   if (report) report->commit();
-  if (!common.quiet) printSummary(cloud.report, out.path(), common.verbose);
+  if (!common.quiet) printSummary(cloud.report, origin, out.path(), common.verbose);
   return 0;
 }
 

@@ -320,10 +320,11 @@ void Orienter::followViewpoint() {
 }
 
 void Orienter::findContradictions() {
-  // Long unanimous borders: chance does not produce those.
-  constexpr std::uint32_t kLong = 20;
+  // Unanimous borders about as long as the object is wide: noise does not produce those.
+  const auto long_enough = static_cast<std::uint32_t>(
+      std::max(20.0, 0.5 * std::sqrt(static_cast<double>(points_.size))));
   for (const BorderVote& v : votes_) {
-    if (v.unanimity() < 0.9F || v.count < kLong || v.reliable < 0.8F * v.absolute) continue;
+    if (v.unanimity() < 0.9F || v.count < long_enough || v.reliable < 0.8F * v.absolute) continue;
     const float agreed = v.weight * static_cast<float>(signs_[at(v.a)] * signs_[at(v.b)]);
     if (agreed >= 0.F) continue;
     const float* p = points_[static_cast<std::size_t>(v.where)];
