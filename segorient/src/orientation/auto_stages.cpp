@@ -65,37 +65,6 @@ float median(std::vector<float> values) {
   return *middle;
 }
 
-void orient(const CompactCloud& cloud, const PointView& points, const Neighborhoods& table,
-            const PipelineOptions& options, SheetNormals& sheets, AutoStages& out) {
-  {
-    const SheetField field = fieldOf(sheets);
-    AutoOrientationOptions settings = options.automatic;
-    settings.threads = options.threads;
-    for (float& c : settings.viewpoint) c /= cloud.unit;
-    const Segmentation segments =
-        segmentSheets(points, table, field, admissibleEdges(points, table, field, options.threads),
-                      options.sheets);
-    out.orientation = orientSheets(points, table, field, segments, settings);
-  }
-  const OrientationResult& result = out.orientation.result;
-  for (std::size_t i = 0; i < points.size; ++i) {
-    const auto sign = static_cast<float>(result.point_signs[i]);
-    for (std::size_t a = 0; a < 3; ++a) sheets.normals[4 * i + a] *= sign;
-  }
-  FilteredNormals filtered =
-      filterOrientedNormals(points, table, sheets.normals, sheets.spacing, sheets.residual,
-                            options.filter_rounds, options.threads);
-  out.normals = std::move(filtered.normals);
-  out.confidences = std::move(filtered.confidences);
-  out.components = result.point_components;
-  for (std::size_t i = 0; i < points.size; ++i) {
-    // The less of both: do the normals around agree, and is their segment sure?
-    if (result.point_components[i] >= 0) {
-      out.confidences[i] = std::min(out.confidences[i], result.point_confidences[i]);
-    }
-  }
-}
-
 void fillCurvature(const PointView& points, const Neighborhoods& table,
                    const PipelineOptions& options, AutoStages& out) {
   std::vector<float> planes(4 * points.size);
@@ -149,19 +118,58 @@ void segmentFinal(const PointView& points, const Neighborhoods& table,
 
 }  // namespace
 
+AutoNormals orientPoints(const PointView& points, const Neighborhoods& neighborhoods, float unit,
+                         const PipelineOptions& options,
+                         const std::function<void(const char*, double)>& begin) {
+  AutoNormals out;
+  if (begin) begin("normals", 0.3);
+  SheetNormalOptions normal_options = options.sheet_normals;
+  normal_options.threads = options.threads;
+  SheetNormals sheets = estimateSheetNormals(points, neighborhoods, normal_options);
+  out.spacing = median(sheets.spacing);
+  if (begin) begin("orientation", 0.6);
+  {
+    const SheetField field = fieldOf(sheets);
+    AutoOrientationOptions settings = options.automatic;
+    settings.threads = options.threads;
+    for (float& c : settings.viewpoint) c /= unit;
+    const Segmentation segments = segmentSheets(
+        points, neighborhoods, field,
+        admissibleEdges(points, neighborhoods, field, options.threads), options.sheets);
+    out.orientation = orientSheets(points, neighborhoods, field, segments, settings);
+  }
+  const OrientationResult& result = out.orientation.result;
+  for (std::size_t i = 0; i < points.size; ++i) {
+    const auto sign = static_cast<float>(result.point_signs[i]);
+    for (std::size_t a = 0; a < 3; ++a) sheets.normals[4 * i + a] *= sign;
+  }
+  FilteredNormals filtered =
+      filterOrientedNormals(points, neighborhoods, sheets.normals, sheets.spacing, sheets.residual,
+                            options.filter_rounds, options.threads);
+  out.normals = std::move(filtered.normals);
+  out.confidences = std::move(filtered.confidences);
+  out.components = result.point_components;
+  for (std::size_t i = 0; i < points.size; ++i) {
+    // The less of both: do the normals around agree, and is their segment sure?
+    if (result.point_components[i] >= 0) {
+      out.confidences[i] = std::min(out.confidences[i], result.point_confidences[i]);
+    }
+  }
+  return out;
+}
+
 AutoStages runAutoStages(const CompactCloud& cloud, const PipelineOptions& options,
                          const std::function<void(const char*, double)>& begin) {
   AutoStages out;
   begin("search", 0.0);
   const Neighbors neighbors = findNeighbors(cloud, options, out);
   const PointView points = positions(cloud, neighbors);
-  begin("normals", 0.3);
-  SheetNormalOptions normal_options = options.sheet_normals;
-  normal_options.threads = options.threads;
-  SheetNormals sheets = estimateSheetNormals(points, neighbors.table, normal_options);
-  out.spacing = median(sheets.spacing);
-  begin("orientation", 0.6);
-  orient(cloud, points, neighbors.table, options, sheets, out);
+  AutoNormals oriented = orientPoints(points, neighbors.table, cloud.unit, options, begin);
+  out.normals = std::move(oriented.normals);
+  out.confidences = std::move(oriented.confidences);
+  out.components = std::move(oriented.components);
+  out.orientation = std::move(oriented.orientation);
+  out.spacing = oriented.spacing;
   begin("segmentation", 0.85);
   fillCurvature(points, neighbors.table, options, out);
   segmentFinal(points, neighbors.table, options, out);

@@ -25,6 +25,22 @@ struct AutoStages {
   bool denoised = false;  ///< whether positions were smoothed first
 };
 
+/// Oriented normals of points whose neighbours are known.
+struct AutoNormals {
+  std::vector<float> normals;            ///< 4 floats a point: oriented normal, residual
+  std::vector<float> confidences;        ///< of the orientation, 0 to 1
+  std::vector<std::int32_t> components;  ///< -1 where there is no normal
+  AutoOrientation orientation;           ///< of the sheets' segments
+  float spacing = 0.F;                   ///< median
+};
+
+/// Sheet normals, sheet segments, their orientation, and the filter that makes the final normals.
+/// \param unit see CompactCloud: only options' viewpoint is in input coordinates
+/// \param begin may be empty, see runAutoStages()
+AutoNormals orientPoints(const PointView& points, const Neighborhoods& neighborhoods, float unit,
+                         const PipelineOptions& options,
+                         const std::function<void(const char*, double)>& begin = {});
+
 /// The default method, from distinct points to oriented normals and segments: neighbours, sheet
 /// normals, sheet segments, their orientation, the filter that makes the final normals, and the
 /// paper's segmentation of those. \param begin called with a stage's name and the fraction of the

@@ -16,6 +16,8 @@
 #include <utility>
 #include <vector>
 
+#include "auto_stages.h"
+
 namespace segorient {
 namespace {
 
@@ -39,7 +41,7 @@ std::vector<SegmentOrientationResult> runMethod(const SegmentEvidence& evidence,
       return orientByBoundaries(evidence, method_options);
     case OrientationMethod::EXTREMAL:
       return orientByExtremalPoints(evidence, method_options);
-    case OrientationMethod::AUTO:
+    case OrientationMethod::AUTO:  // has its own way, see orientAutomatically()
     case OrientationMethod::COMBINED:
       break;
   }
@@ -150,6 +152,53 @@ OrientedSegments orientRegularSegments(const PointView& points, const PointView&
   return out;
 }
 
+// The default method brings its own segments: each given point takes the sign that turns its normal
+// to the oriented one there, and each given segment that of most of its points.
+OrientationResult orientAutomatically(const PointView& points, const PointView& normals,
+                                      const Neighborhoods& neighborhoods,
+                                      const Segmentation& segmentation,
+                                      const OrientationOptions& options) {
+  PipelineOptions settings;
+  settings.threads = options.threads;
+  detail::AutoNormals found = detail::orientPoints(points, neighborhoods, 1.F, settings);
+  OrientationResult result;
+  result.components = std::move(found.orientation.result.components);
+  result.point_signs.assign(points.size, 0);
+  result.point_confidences.assign(points.size, 0.F);
+  result.point_components.assign(points.size, -1);
+  for (std::size_t i = 0; i < points.size; ++i) {
+    const float* m = &found.normals[4 * i];
+    const float* n = normals[i];
+    if (!isFinite(n) || !isFinite(m) || found.components[i] < 0) continue;
+    const float agree = n[0] * m[0] + n[1] * m[1] + n[2] * m[2];
+    result.point_signs[i] = agree < 0.F ? std::int8_t{-1} : std::int8_t{1};
+    result.point_confidences[i] = found.confidences[i];
+    result.point_components[i] = found.components[i];
+  }
+  completeOrientation(points, normals, neighborhoods, result);
+  summarizeSegments(segmentation, DecidedBy::GLOBAL, result);
+  return result;
+}
+
+// Turns each component so that its largest segment keeps its sign (labels are by descending size).
+void keepLargestSegments(const Segmentation& segmentation, OrientationResult& result) {
+  std::vector<std::int8_t> turn(result.components.size(), 0);
+  for (const SegmentOrientationResult& s : result.segments) {
+    if (s.component < 0) continue;
+    std::int8_t& t = turn[static_cast<std::size_t>(s.component)];
+    if (t == 0) t = s.sign;
+  }
+  for (SegmentOrientationResult& s : result.segments) {
+    if (s.component < 0 || turn[static_cast<std::size_t>(s.component)] >= 0) continue;
+    s.sign = static_cast<std::int8_t>(-s.sign);
+  }
+  for (std::size_t i = 0; i < segmentation.labels.size(); ++i) {
+    const std::int32_t c = result.point_components[i];
+    if (c < 0 || turn[static_cast<std::size_t>(c)] >= 0) continue;
+    result.point_signs[i] = static_cast<std::int8_t>(-result.point_signs[i]);
+  }
+}
+
 }  // namespace
 
 OrientationResult orientSegments(const PointView& points, const PointView& normals,
@@ -167,6 +216,12 @@ OrientationResult orientSegments(const PointView& points, const PointView& norma
   if (options.method == OrientationMethod::PROPAGATION && options.point_tree) {
     result = orientByPointTree(points, normals, neighborhoods);
     summarizeSegments(segmentation, DecidedBy::PROPAGATION, result);
+    return result;
+  }
+
+  if (options.method == OrientationMethod::AUTO) {
+    result = orientAutomatically(points, normals, neighborhoods, segmentation, options);
+    if (!options.turn_outward) keepLargestSegments(segmentation, result);
     return result;
   }
 
