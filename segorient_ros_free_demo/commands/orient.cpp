@@ -170,6 +170,8 @@ int runOrient(const std::vector<std::string>& words) {
   stages.apply(line, common, options);
   requireEnding(line.argument("OUT"), {".pcd", ".ply"});
 
+  if (report_path == line.argument("OUT")) throw UsageError("--report and OUT are the same file");
+
   OutputFile out(line.argument("OUT"));
   std::optional<OutputFile> report;
   if (!report_path.empty()) report.emplace(report_path);

@@ -162,8 +162,8 @@ TEST_F(OrientedNormalEstimationTest, BadInputIsAnEmptyOutput) {
   radius.setRadiusSearch(0.1);
   normals.resize(3);
   radius.compute(normals);
-  EXPECT_TRUE(normals.empty());
-  EXPECT_TRUE(radius.getLabels().empty());
+  EXPECT_EQ(normals.size(), cloud->size()) << "a radius is not used";
+  EXPECT_EQ(radius.getLabels().size(), cloud->size());
 
   Estimation no_indices;
   no_indices.setInputCloud(cloud);

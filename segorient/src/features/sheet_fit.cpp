@@ -197,6 +197,10 @@ WallSplit splitWalls(const Offsets& o, const Eigen::Vector3f& normal) {
   }
   const float low = t[at];
   const float high = t[at + 1];
+  // Walls farther apart than that are told apart by their offset alone, and what else looks like
+  // two classes at such a distance (clutter, a narrow bore) need not be walls.
+  constexpr float kNear = 1.25F;
+  if (apart > kNear) return split;
   // Two classes, each thin, well apart, with nothing in between: two walls.
   if (total - between >= 0.2F * total || apart <= 0.35F || high - low <= 0.15F * apart)
     return split;

@@ -2,6 +2,7 @@
 // Copyright (c) 2026, the segorient authors
 #include <segorient/common/compact_cloud.h>
 #include <segorient/common/neighborhoods.h>
+#include <segorient/features/sheet_normals.h>
 #include <segorient/orientation/oriented_segmentation.h>
 #include <segorient/search/median_hash_index.h>
 
@@ -15,7 +16,9 @@
 namespace segorient {
 namespace {
 
-constexpr int kDefaultNeighbors = 12;
+int defaultNeighbors(const OrientationOptions& options) {
+  return options.method == OrientationMethod::AUTO ? kSheetNeighbors : 12;
+}
 
 bool labelsInRange(const Segmentation& segmentation, std::size_t rows) {
   if (segmentation.labels.size() != rows || segmentation.signs.size() != rows) return false;
@@ -114,7 +117,10 @@ OrientedSegmentation orientSegmentation(const PointView& points, const PointView
   search_options.threads = options.threads;
   index.build(cloud.view(), nullptr, search_options);
   const std::size_t most = std::max<std::size_t>(1, cloud.size()) - 1;
-  const auto neighbors = static_cast<std::size_t>(k > 0 ? k : kDefaultNeighbors);
+  // More neighbours cost time and memory and say nothing more about who borders whom.
+  constexpr std::size_t kMostNeighbors = 128;
+  const auto neighbors =
+      std::min(kMostNeighbors, static_cast<std::size_t>(k > 0 ? k : defaultNeighbors(options)));
   Neighborhoods neighborhoods;
   index.nearestKAll(static_cast<int>(std::min(neighbors, most)) + 1, neighborhoods);
 
@@ -122,7 +128,8 @@ OrientedSegmentation orientSegmentation(const PointView& points, const PointView
       segmentation != nullptr
           ? compactSegmentation(cloud, distinct_normals, *segmentation)
           : segmentByNormals(cloud.view(), normal_view, neighborhoods, segmentation_options);
-  const SegmentGraph graph = buildSegmentGraph(distinct, neighborhoods);
+  SegmentGraph graph;  // the default method does without
+  if (options.method != OrientationMethod::AUTO) graph = buildSegmentGraph(distinct, neighborhoods);
   out.orientation =
       scatter(cloud, normals,
               orientSegments(cloud.view(), normal_view, neighborhoods, distinct, graph, options));

@@ -57,7 +57,8 @@ class SegmentOrientation : public pcl::PCLBase<PointT> {
   }
   const SegmentationOptions& getSegmentationOptions() const { return segmentation_options_; }
 
-  /// Neighbours of a point and the point itself, as in PCL; 0 (default) = 13.
+  /// Neighbours of a point and the point itself, as in PCL; 0 (default) = 33 for AUTO and 13 for
+  /// the others. More than 129 are not used.
   void setKSearch(int k) { k_ = k; }
   int getKSearch() const { return k_; }
 

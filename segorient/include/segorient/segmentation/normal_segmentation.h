@@ -20,8 +20,9 @@ namespace segorient {
 /// same meaning have the same names.
 ///
 /// @code
-/// segorient::NormalSegmentation<pcl::PointXYZ, pcl::Normal> segmentation;  // was
-/// pcl::RegionGrowing segmentation.setInputCloud(cloud); segmentation.setInputNormals(normals);
+/// segorient::NormalSegmentation<pcl::PointXYZ, pcl::Normal> segmentation;
+/// segmentation.setInputCloud(cloud);
+/// segmentation.setInputNormals(normals);
 /// std::vector<pcl::PointIndices> faces;
 /// segmentation.extract(faces);            // by descending size
 /// auto colored = segmentation.getColoredCloud();

@@ -19,8 +19,9 @@ namespace segorient {
 /// @code
 /// segorient::SegmentTriangulation<pcl::PointNormal> triangulation;
 /// triangulation.setInputCloud(cloud_with_normals);
-/// triangulation.setSegmentation(segmentation.getSegmentation());  // else it segments the cloud
-/// itself pcl::PolygonMesh mesh; triangulation.reconstruct(mesh);
+/// triangulation.setSegmentation(segmentation.getSegmentation());  // else its own
+/// pcl::PolygonMesh mesh;
+/// triangulation.reconstruct(mesh);
 /// @endcode
 ///
 /// Faces are counter-clockwise as seen from where their segment's reference normal points to.

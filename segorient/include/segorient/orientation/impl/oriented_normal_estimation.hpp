@@ -30,11 +30,17 @@ bool OrientedNormalEstimation<PointInT, PointOutT>::initCompute() {
               getClassName().c_str());
     return false;
   }
-  if (k_ < 0 || search_radius_ != 0.0) {
-    PCL_ERROR(
-        "[segorient::%s::compute] k (%d) must not be negative, and a radius (%g) is not used.\n",
-        getClassName().c_str(), k_, search_radius_);
+  if (k_ < 0) {
+    PCL_ERROR("[segorient::%s::compute] k (%d) must not be negative.\n", getClassName().c_str(),
+              k_);
     return false;
+  }
+  if (search_radius_ != 0.0) {
+    PCL_WARN(
+        "[segorient::%s::compute] The radius (%g) is not used: neighbourhoods follow the cloud's "
+        "own "
+        "spacing.\n",
+        getClassName().c_str(), search_radius_);
   }
   if (!pcl::PCLBase<PointInT>::initCompute()) return false;
   if (!surface_) {
