@@ -27,7 +27,7 @@ TEST(SheetNormals, SeparateTheWallsOfAThinPlate) {
 }
 
 TEST(SheetNormals, TellNeighboursOnTheOtherWall) {
-  const LabelledCloud cloud = sample("plate", plate(2, 8000), 8000, 4);
+  const LabelledCloud cloud = sample("plate", plate(1, 8000), 8000, 4);
   const Neighborhoods table = neighborsOf(cloud.xyz);
   const SheetNormals sheets = estimateSheetNormals(viewOf(cloud.xyz), table);
   std::size_t right = 0;
@@ -45,7 +45,7 @@ TEST(SheetNormals, TellNeighboursOnTheOtherWall) {
       ++all;
     }
   }
-  EXPECT_GT(static_cast<double>(right), 0.98 * static_cast<double>(all));
+  EXPECT_GT(static_cast<double>(right), 0.8 * static_cast<double>(all)) << "half without the split";
 }
 
 TEST(SheetNormals, KeepToOneFaceAtEdges) {
