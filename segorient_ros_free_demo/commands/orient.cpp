@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstdio>
+#include <memory>
 #include <optional>
 
 #include "commands/commands.h"
@@ -182,10 +183,12 @@ int runOrient(const std::vector<std::string>& words) {
     const LocalPoints points(table);
     origin = points.origin();
     if (!viewpoint.empty()) {
-      options.automatic.has_viewpoint = true;
+      auto hints = std::make_shared<OrientationHints>();
+      hints->has_viewpoint = true;
       for (std::size_t a = 0; a < 3; ++a) {
-        options.automatic.viewpoint[a] = static_cast<float>(viewpoint[a] - origin[a]);
+        hints->viewpoint[a] = static_cast<float>(viewpoint[a] - origin[a]);
       }
+      options.orientation.hints = hints;
     }
     ProgressBar bar(!common.quiet, table.size);
     cloud = orientCloud(points.view(), nullptr, options,

@@ -86,8 +86,10 @@ TEST(Auto, PlaneIsTurnedUpOrToTheViewpoint) {
   EXPECT_EQ(up.report.components[0].by, DecidedBy::NOTHING);
   EXPECT_EQ(up.report.components[0].confidence, 0.F);
   PipelineOptions options;
-  options.automatic.has_viewpoint = true;
-  options.automatic.viewpoint = {0.5F, 0.5F, -3.F};
+  OrientationHints hints;
+  hints.has_viewpoint = true;
+  hints.viewpoint = {0.5F, 0.5F, -3.F};
+  options.orientation.hints = std::make_shared<OrientationHints>(hints);
   const OrientedCloud down = orient(xyz, options);
   for (std::size_t i = 0; i < 2000; ++i) ASSERT_LT(down.normals[4 * i + 2], -0.99F);
 }

@@ -11,8 +11,13 @@
 #include <cstddef>
 #include <numeric>
 
+#include "hint_votes.h"
+
 namespace segorient {
 namespace {
+
+using detail::Ballot;
+using detail::HintVotes;
 
 // Residuals of the winding number: clean closed clouds have .00 to .03, with noise of half a
 // spacing up to .08.
@@ -23,14 +28,25 @@ std::size_t at(std::int32_t i) {
   return static_cast<std::size_t>(i);
 }
 
+// The hint that decides a component, if any: three votes of four at least.
+const Ballot* decisive(const HintVotes& hints, bool open) {
+  constexpr float kClearly = 0.5F;
+  for (const Ballot* ballot : {&hints.seeds, &hints.directions}) {
+    if (ballot->total > 0.F && std::fabs(ballot->share()) >= kClearly) return ballot;
+  }
+  return open && hints.view.balance != 0.F ? &hints.view : nullptr;
+}
+
 class Orienter {
  public:
   Orienter(const PointView& points, const Neighborhoods& nb, const SheetField& field,
-           const Segmentation& segmentation, const AutoOrientationOptions& options)
+           const Segmentation& segmentation, const AutoOrientationOptions& options,
+           const PointHints& hints)
       : points_(points),
         field_(field),
         segmentation_(segmentation),
         options_(options),
+        hints_(hints),
         votes_(borderVotes(points, nb, field, segmentation, options.threads)) {}
 
   AutoOrientation run() {
@@ -38,6 +54,7 @@ class Orienter {
     if (options_.flip_clusters) flipClusters();
     numberComponents();
     turnComponentsOut();
+    followHints();
     if (options_.infer_viewpoint) followViewpoint();
     judge();
     return std::move(out_);
@@ -48,12 +65,11 @@ class Orienter {
   void flipClusters();
   void numberComponents();
   void turnComponentsOut();
-  struct Lean {
-    std::vector<std::int8_t> by_convention;
-    std::vector<float> share;  // how one-sided the component is seen from the viewpoint
-  };
-  Lean leanOfComponents() const;
+  std::vector<std::int8_t> conventionalSigns() const;
+  bool isClosed(std::size_t component, float residual) const;
   std::vector<float> clusterAgreement() const;
+  void turnClusters(const std::vector<Ballot>& ballots, float sure_borders);
+  void followHints();
   void followViewpoint();
   void judge();
   void findContradictions();
@@ -68,6 +84,7 @@ class Orienter {
   const SheetField& field_;
   const Segmentation& segmentation_;
   const AutoOrientationOptions& options_;
+  const PointHints& hints_;
   std::vector<BorderVote> votes_;
   std::vector<ClusterGraph::Edge> edges_;  // between clusters, signs relative to the clusters
   std::vector<std::int32_t> cluster_;      // of each segment
@@ -77,6 +94,7 @@ class Orienter {
   std::vector<std::int8_t> signs_;         // of each segment
   std::vector<std::int32_t> component_;    // of each segment, 0.. by descending size
   std::vector<ComponentWinding> winding_;  // of each component
+  std::vector<bool> hinted_;               // clusters with points that hints say something about
   AutoOrientation out_;
 };
 
@@ -199,7 +217,12 @@ void Orienter::turnComponentsOut() {
     winding_ = solveComponents(points_, orientedNormals(true), spacing, component, count,
                                options_.threads);
   }
-  const Lean lean = leanOfComponents();
+  const std::vector<std::int8_t> conventional = conventionalSigns();
+  std::vector<HintVotes> hinted(count);
+  const std::vector<HintVotes> votes = detail::hintVotes(points_, field_, segmentation_, hints_);
+  for (std::size_t s = 0; s < signs_.size(); ++s) {
+    hinted[at(component_[s])].add(votes[s], signs_[s]);
+  }
   std::vector<std::int8_t> turn(count, 1);
   for (std::size_t c = 0; c < count; ++c) {
     ComponentOrientationResult& result = out_.result.components[c];
@@ -209,11 +232,16 @@ void Orienter::turnComponentsOut() {
     turn[c] = winding_[c].sign;
     // Nothing to tell in from out: a plane, or an isolated point.
     constexpr float kNoEvidence = 0.01F;
-    const bool open = winding_[c].residual > kOpenResidual;
-    if (winding_[c].evidence < kNoEvidence || (open && options_.has_viewpoint)) {
-      turn[c] = lean.by_convention[c];
-      result.by = options_.has_viewpoint ? DecidedBy::SURROUNDINGS : DecidedBy::NOTHING;
-      result.confidence = options_.has_viewpoint ? lean.share[c] : 0.F;
+    const bool unknown = winding_[c].evidence < kNoEvidence;
+    if (unknown) {
+      turn[c] = conventional[c];
+      result.by = DecidedBy::NOTHING;
+      result.confidence = 0.F;
+    }
+    if (const Ballot* hint = decisive(hinted[c], unknown || !isClosed(c, kOpenResidual))) {
+      turn[c] = hint->balance < 0.F ? std::int8_t{-1} : std::int8_t{1};
+      result.by = DecidedBy::HINTS;
+      result.confidence = std::fabs(hint->share());
     }
     result.sign = turn[c];
   }
@@ -222,40 +250,35 @@ void Orienter::turnComponentsOut() {
   }
 }
 
-// The sign of each component by convention: towards the viewpoint where there is one, otherwise +z
-// (then +y, then +x).
-Orienter::Lean Orienter::leanOfComponents() const {
+// By convention +z, then +y, then +x.
+std::vector<std::int8_t> Orienter::conventionalSigns() const {
   const std::size_t count = winding_.size();
   std::vector<std::array<double, 3>> sum(count, {0.0, 0.0, 0.0});
-  std::vector<double> seen(count, 0.0);
-  std::vector<double> all(count, 0.0);
+  std::vector<double> points(count, 0.0);
   for (std::size_t i = 0; i < points_.size; ++i) {
     const std::int32_t s = segmentation_.labels[i];
     if (s < 0) continue;
     const std::size_t c = at(component_[at(s)]);
     const auto sign = static_cast<double>(pointSign(i));
-    double d = 0.0;
     for (std::size_t a = 0; a < 3; ++a) {
-      const double n = sign * static_cast<double>(field_.normals[4 * i + a]);
-      sum[c][a] += n;
-      d += n * (static_cast<double>(options_.viewpoint[a]) - static_cast<double>(points_[i][a]));
+      sum[c][a] += sign * static_cast<double>(field_.normals[4 * i + a]);
     }
-    seen[c] += d > 0.0 ? 1.0 : -1.0;
-    all[c] += 1.0;
+    points[c] += 1.0;
   }
-  Lean lean;
+  std::vector<std::int8_t> signs;
   for (std::size_t c = 0; c < count; ++c) {
-    const double least = 1e-6 * all[c];
-    double direction = seen[c];
-    if (!options_.has_viewpoint) {
-      direction = sum[c][2];
-      if (std::fabs(direction) <= least) direction = sum[c][1];
-      if (std::fabs(direction) <= least) direction = sum[c][0];
-    }
-    lean.by_convention.push_back(direction < 0.0 ? -1 : 1);
-    lean.share.push_back(all[c] > 0.0 ? static_cast<float>(std::fabs(seen[c]) / all[c]) : 0.F);
+    const double least = 1e-6 * points[c];
+    double direction = sum[c][2];
+    if (std::fabs(direction) <= least) direction = sum[c][1];
+    if (std::fabs(direction) <= least) direction = sum[c][0];
+    signs.push_back(direction < 0.0 ? -1 : 1);
   }
-  return lean;
+  return signs;
+}
+
+bool Orienter::isClosed(std::size_t component, float residual) const {
+  if (hints_.surface != SurfaceKind::UNKNOWN) return hints_.surface == SurfaceKind::CLOSED;
+  return winding_[component].residual <= residual;
 }
 
 // How far each cluster's borders agree with the signs found, -1 to 1.
@@ -275,14 +298,51 @@ std::vector<float> Orienter::clusterAgreement() const {
   return agreed;
 }
 
+// Turns over clusters that nearly all of the ballot is against, unless their borders know better.
+void Orienter::turnClusters(const std::vector<Ballot>& ballots, float sure_borders) {
+  constexpr float kClearly = 0.6F;  // four of five votes
+  const std::vector<float> agreement = clusterAgreement();
+  for (std::size_t s = 0; s < signs_.size(); ++s) {
+    const std::size_t c = at(cluster_[s]);
+    if (agreement[c] > sure_borders || ballots[c].share() >= -kClearly) continue;
+    signs_[s] = static_cast<std::int8_t>(-signs_[s]);
+  }
+}
+
+void Orienter::followHints() {
+  constexpr float kFirmBorders = 0.9F;  // what is known of single points
+  constexpr float kSureBorders = 0.5F;  // what could have been seen
+  const std::vector<HintVotes> votes = detail::hintVotes(points_, field_, segmentation_, hints_);
+  std::vector<HintVotes> by_cluster(cluster_.size());
+  std::vector<std::int32_t> component_of(cluster_.size(), -1);
+  for (std::size_t s = 0; s < cluster_.size(); ++s) {
+    by_cluster[at(cluster_[s])].add(votes[s], signs_[s]);
+    component_of[at(cluster_[s])] = component_[s];
+  }
+  hinted_.assign(cluster_.size(), false);
+  std::vector<Ballot> seen(cluster_.size());
+  std::vector<Ballot> known(cluster_.size());
+  for (std::size_t c = 0; c < cluster_.size(); ++c) {
+    if (component_of[c] < 0) continue;
+    const HintVotes& v = by_cluster[c];
+    if (v.seeds.total > 0.F || v.directions.total > 0.F) {
+      known[c] = v.seeds.total > 0.F ? v.seeds : v.directions;
+      hinted_[c] = true;
+    } else if (!isClosed(at(component_of[c]), kClosedResidual)) {
+      seen[c] = v.view;
+    }
+  }
+  turnClusters(known, kFirmBorders);
+  turnClusters(seen, kSureBorders);
+}
+
 // If all that the largest cluster knows was seen from one place, so was the rest: other clusters
 // that turn their backs to it are turned over. Closed surfaces are never seen from one place, and
 // have the winding number.
 void Orienter::followViewpoint() {
   constexpr float kOnePlace = 0.97F;
-  constexpr float kClearly = 0.8F;
   constexpr float kSureBorders = 0.5F;  // then the borders know better
-  if (winding_.empty() || winding_[0].residual <= kClosedResidual) return;
+  if (winding_.empty() || hints_.has_viewpoint || isClosed(0, kClosedResidual)) return;
   std::vector<std::uint32_t> size(cluster_.size(), 0);
   for (std::size_t s = 0; s < cluster_.size(); ++s) {
     size[at(cluster_[s])] += segmentation_.segments[s].size;
@@ -298,25 +358,19 @@ void Orienter::followViewpoint() {
       rows.push_back(static_cast<std::uint32_t>(i));
     }
   }
-  const std::vector<float> normals = orientedNormals(false);
-  const ViewpointFit fit = fitViewpoint(points_, normals, rows, options_.threads);
+  const ViewpointFit fit = fitViewpoint(points_, orientedNormals(false), rows, options_.threads);
   out_.viewpoint_agreement = fit.agreement;
   if (fit.agreement < kOnePlace) return;
-  std::vector<float> facing(cluster_.size(), 0.F);
-  for (std::size_t i = 0; i < points_.size; ++i) {
-    const std::int32_t s = segmentation_.labels[i];
-    if (s < 0) continue;
-    float d = 0.F;
-    for (std::size_t a = 0; a < 3; ++a) d += normals[4 * i + a] * (fit.position[a] - points_[i][a]);
-    facing[at(cluster_[at(s)])] += d * static_cast<float>(fit.facing) > 0.F ? 1.F : -1.F;
-  }
-  const std::vector<float> agreement = clusterAgreement();
-  for (std::size_t s = 0; s < signs_.size(); ++s) {
+  PointHints inferred;
+  inferred.has_viewpoint = true;
+  inferred.viewpoint = fit.position;
+  const std::vector<HintVotes> votes = detail::hintVotes(points_, field_, segmentation_, inferred);
+  std::vector<Ballot> facing(cluster_.size());
+  for (std::size_t s = 0; s < cluster_.size(); ++s) {
     const std::size_t c = at(cluster_[s]);
-    if (agreement[c] > kSureBorders) continue;
-    const float share = 0.5F + 0.5F * facing[c] / static_cast<float>(size[c]);
-    if (share < 1.F - kClearly) signs_[s] = static_cast<std::int8_t>(-signs_[s]);
+    if (!hinted_[c]) facing[c].add(votes[s].view, signs_[s] * fit.facing);
   }
+  turnClusters(facing, kSureBorders);
 }
 
 void Orienter::findContradictions() {
@@ -376,8 +430,8 @@ void Orienter::judge() {
 
 AutoOrientation orientSheets(const PointView& points, const Neighborhoods& neighborhoods,
                              const SheetField& field, const Segmentation& segmentation,
-                             const AutoOrientationOptions& options) {
-  return Orienter(points, neighborhoods, field, segmentation, options).run();
+                             const AutoOrientationOptions& options, const PointHints& hints) {
+  return Orienter(points, neighborhoods, field, segmentation, options, hints).run();
 }
 
 }  // namespace segorient

@@ -118,8 +118,8 @@ void segmentFinal(const PointView& points, const Neighborhoods& table,
 
 }  // namespace
 
-AutoNormals orientPoints(const PointView& points, const Neighborhoods& neighborhoods, float unit,
-                         const PipelineOptions& options,
+AutoNormals orientPoints(const PointView& points, const Neighborhoods& neighborhoods,
+                         const PipelineOptions& options, const PointHints& hints,
                          const std::function<void(const char*, double)>& begin) {
   AutoNormals out;
   if (begin) begin("normals", 0.3);
@@ -132,11 +132,10 @@ AutoNormals orientPoints(const PointView& points, const Neighborhoods& neighborh
     const SheetField field = fieldOf(sheets);
     AutoOrientationOptions settings = options.automatic;
     settings.threads = options.threads;
-    for (float& c : settings.viewpoint) c /= unit;
     const Segmentation segments = segmentSheets(
         points, neighborhoods, field,
         admissibleEdges(points, neighborhoods, field, options.threads), options.sheets);
-    out.orientation = orientSheets(points, neighborhoods, field, segments, settings);
+    out.orientation = orientSheets(points, neighborhoods, field, segments, settings, hints);
   }
   const OrientationResult& result = out.orientation.result;
   for (std::size_t i = 0; i < points.size; ++i) {
@@ -159,12 +158,13 @@ AutoNormals orientPoints(const PointView& points, const Neighborhoods& neighborh
 }
 
 AutoStages runAutoStages(const CompactCloud& cloud, const PipelineOptions& options,
+                         const PointHints& hints,
                          const std::function<void(const char*, double)>& begin) {
   AutoStages out;
   begin("search", 0.0);
   const Neighbors neighbors = findNeighbors(cloud, options, out);
   const PointView points = positions(cloud, neighbors);
-  AutoNormals oriented = orientPoints(points, neighbors.table, cloud.unit, options, begin);
+  AutoNormals oriented = orientPoints(points, neighbors.table, options, hints, begin);
   out.normals = std::move(oriented.normals);
   out.confidences = std::move(oriented.confidences);
   out.components = std::move(oriented.components);

@@ -35,10 +35,9 @@ struct AutoNormals {
 };
 
 /// Sheet normals, sheet segments, their orientation, and the filter that makes the final normals.
-/// \param unit see CompactCloud: only options' viewpoint is in input coordinates
 /// \param begin may be empty, see runAutoStages()
-AutoNormals orientPoints(const PointView& points, const Neighborhoods& neighborhoods, float unit,
-                         const PipelineOptions& options,
+AutoNormals orientPoints(const PointView& points, const Neighborhoods& neighborhoods,
+                         const PipelineOptions& options, const PointHints& hints,
                          const std::function<void(const char*, double)>& begin = {});
 
 /// The default method, from distinct points to oriented normals and segments: neighbours, sheet
@@ -46,6 +45,7 @@ AutoNormals orientPoints(const PointView& points, const Neighborhoods& neighborh
 /// paper's segmentation of those. \param begin called with a stage's name and the fraction of the
 /// work done before it
 AutoStages runAutoStages(const CompactCloud& cloud, const PipelineOptions& options,
+                         const PointHints& hints,
                          const std::function<void(const char*, double)>& begin);
 
 }  // namespace segorient::detail

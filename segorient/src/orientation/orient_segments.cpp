@@ -157,10 +157,10 @@ OrientedSegments orientRegularSegments(const PointView& points, const PointView&
 OrientationResult orientAutomatically(const PointView& points, const PointView& normals,
                                       const Neighborhoods& neighborhoods,
                                       const Segmentation& segmentation,
-                                      const OrientationOptions& options) {
+                                      const OrientationOptions& options, const PointHints& hints) {
   PipelineOptions settings;
   settings.threads = options.threads;
-  detail::AutoNormals found = detail::orientPoints(points, neighborhoods, 1.F, settings);
+  detail::AutoNormals found = detail::orientPoints(points, neighborhoods, settings, hints);
   OrientationResult result;
   result.components = std::move(found.orientation.result.components);
   result.point_signs.assign(points.size, 0);
@@ -204,7 +204,7 @@ void keepLargestSegments(const Segmentation& segmentation, OrientationResult& re
 OrientationResult orientSegments(const PointView& points, const PointView& normals,
                                  const Neighborhoods& neighborhoods,
                                  const Segmentation& segmentation, const SegmentGraph& graph,
-                                 const OrientationOptions& options) {
+                                 const OrientationOptions& options, const PointHints& hints) {
   OrientationResult result;
   if (normals.size != points.size || neighborhoods.size() != points.size ||
       segmentation.labels.size() != points.size) {
@@ -220,7 +220,7 @@ OrientationResult orientSegments(const PointView& points, const PointView& norma
   }
 
   if (options.method == OrientationMethod::AUTO) {
-    result = orientAutomatically(points, normals, neighborhoods, segmentation, options);
+    result = orientAutomatically(points, normals, neighborhoods, segmentation, options, hints);
     if (!options.turn_outward) keepLargestSegments(segmentation, result);
     return result;
   }

@@ -22,6 +22,8 @@ const char* toString(DecidedBy by) {
       return "surroundings";
     case DecidedBy::GLOBAL:
       return "global";
+    case DecidedBy::HINTS:
+      return "hints";
   }
   return "nothing";
 }

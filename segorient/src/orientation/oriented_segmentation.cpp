@@ -130,9 +130,11 @@ OrientedSegmentation orientSegmentation(const PointView& points, const PointView
           : segmentByNormals(cloud.view(), normal_view, neighborhoods, segmentation_options);
   SegmentGraph graph;  // the default method does without
   if (options.method != OrientationMethod::AUTO) graph = buildSegmentGraph(distinct, neighborhoods);
-  out.orientation =
-      scatter(cloud, normals,
-              orientSegments(cloud.view(), normal_view, neighborhoods, distinct, graph, options));
+  PointHints hints;
+  if (options.hints) hints = resolveHints(*options.hints, cloud, nullptr, options.threads);
+  out.orientation = scatter(
+      cloud, normals,
+      orientSegments(cloud.view(), normal_view, neighborhoods, distinct, graph, options, hints));
   out.segmentation = segmentation != nullptr ? *segmentation : scatter(cloud, normals, distinct);
   return out;
 }

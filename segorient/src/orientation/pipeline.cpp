@@ -146,10 +146,10 @@ void applyOrientation(Working& work) {
 }
 
 // The default method brings its own stages; its normals come out oriented.
-void runAutomatic(const PipelineOptions& options, Stages& stages, Working& work,
-                  PipelineReport& report) {
+void runAutomatic(const PipelineOptions& options, const PointHints& hints, Stages& stages,
+                  Working& work, PipelineReport& report) {
   detail::AutoStages result = detail::runAutoStages(
-      work.cloud, options,
+      work.cloud, options, hints,
       [&stages](const char* stage, double fraction) { stages.begin(stage, fraction); });
   report.k = result.k;
   report.spacing = result.spacing;
@@ -240,7 +240,11 @@ OrientedCloud orientCloud(const PointView& points, const std::vector<pcl::index_
   work.cloud = compactCloud(points, indices, options.threads);
   normalizeUnit(work.cloud);
   if (options.orientation.method == OrientationMethod::AUTO) {
-    runAutomatic(options, stages, work, out.report);
+    PointHints hints;
+    if (options.orientation.hints) {
+      hints = resolveHints(*options.orientation.hints, work.cloud, indices, options.threads);
+    }
+    runAutomatic(options, hints, stages, work, out.report);
   } else {
     findNeighbors(options, work, out.report);
     stages.begin("normals", 0.4);

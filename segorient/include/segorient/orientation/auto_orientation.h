@@ -4,6 +4,7 @@
 
 #include <segorient/common/neighborhoods.h>
 #include <segorient/common/point_view.h>
+#include <segorient/orientation/orientation_hints.h>
 #include <segorient/orientation/orientation_result.h>
 #include <segorient/segmentation/segmentation.h>
 #include <segorient/segmentation/sheet_segmentation.h>
@@ -20,9 +21,7 @@ struct AutoOrientationOptions {
   bool flip_clusters = true;     ///< single clusters are turned over while that agrees better
   bool wind_components = true;   ///< in and out by the winding number; otherwise by convention
   bool infer_viewpoint = true;   ///< a scan from one place: what disagrees with it is turned over
-  bool has_viewpoint = false;    ///< whether `viewpoint` is given
-  std::array<float, 3> viewpoint{0.F, 0.F, 0.F};  ///< evidence for open components
-  int threads = 0;                                ///< see resolveThreads()
+  int threads = 0;               ///< see resolveThreads()
 };
 
 /// A border where sure evidence was overruled: the surface cannot be oriented there.
@@ -44,10 +43,11 @@ struct AutoOrientation {
 /// Orients segments that do not mix sides, whatever they are part of: closed or open, nested,
 /// linked, many parts. Borders vote; certain borders are contracted, the surest first; what is left
 /// between some tens of clusters is decided by all their borders together; connected components are
-/// turned outward by the winding number, and where that says nothing (open surfaces), towards the
-/// viewpoint, or +z.
+/// turned outward by the winding number, and where that says nothing (a plane), to +z; hints go
+/// before both as OrientationHints says.
 AutoOrientation orientSheets(const PointView& points, const Neighborhoods& neighborhoods,
                              const SheetField& field, const Segmentation& segmentation,
-                             const AutoOrientationOptions& options = {});
+                             const AutoOrientationOptions& options = {},
+                             const PointHints& hints = {});
 
 }  // namespace segorient

@@ -5,12 +5,14 @@
 #include <segorient/common/neighborhoods.h>
 #include <segorient/common/point_view.h>
 #include <segorient/orientation/method.h>
+#include <segorient/orientation/orientation_hints.h>
 #include <segorient/orientation/orientation_result.h>
 #include <segorient/orientation/segment_relations.h>
 #include <segorient/segmentation/segmentation.h>
 #include <segorient/surface/segment_mesh.h>
 
 #include <cstddef>
+#include <memory>
 
 namespace segorient {
 
@@ -34,6 +36,9 @@ struct OrientationOptions {
   /// Whether each connected component is turned outward; otherwise its largest segment keeps its
   /// sign.
   bool turn_outward = true;
+  /// What is known beforehand, by input row; null = nothing. Only AUTO uses it; a function that is
+  /// given PointHints uses those instead.
+  std::shared_ptr<const OrientationHints> hints;
   int threads = 0;  ///< see resolveThreads()
 };
 
@@ -47,6 +52,6 @@ struct OrientationOptions {
 OrientationResult orientSegments(const PointView& points, const PointView& normals,
                                  const Neighborhoods& neighborhoods,
                                  const Segmentation& segmentation, const SegmentGraph& graph,
-                                 const OrientationOptions& options);
+                                 const OrientationOptions& options, const PointHints& hints = {});
 
 }  // namespace segorient

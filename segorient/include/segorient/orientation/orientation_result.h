@@ -17,10 +17,11 @@ enum class DecidedBy : std::uint8_t {
   EXTREMAL,      ///< extremal points of the object
   ENCLOSURE,     ///< extremal points, and lying inside other components
   SURROUNDINGS,  ///< votes of the oriented points around
-  GLOBAL         ///< an energy over the whole component or cloud
+  GLOBAL,        ///< an energy over the whole component or cloud
+  HINTS          ///< what was known beforehand, see OrientationHints
 };
 
-/// nothing, seed, propagation, boundary, extremal, enclosure, surroundings or global.
+/// nothing, seed, propagation, boundary, extremal, enclosure, surroundings, global or hints.
 const char* toString(DecidedBy by);
 
 /// The orientation of one segment.

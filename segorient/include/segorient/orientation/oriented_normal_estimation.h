@@ -21,7 +21,11 @@ namespace segorient {
 ///
 /// Neighbours come from an all-points search of its own; a search method is not used. The whole
 /// cloud is oriented even where indices are set: they choose what is returned. With a search
-/// surface, the input points are oriented as points of that surface. The viewpoint is not used.
+/// surface, the input points are oriented as points of that surface.
+///
+/// The viewpoint (setViewPoint(), or the cloud's sensor origin where that is not 0) is evidence for
+/// AUTO, and only where the surface is open; see OrientationHints. Points that have fields vp_x,
+/// vp_y and vp_z say themselves where they were seen from.
 ///
 /// A point without a normal (NaN coordinates, or fewer than three distinct points around) gets NaN,
 /// and is_dense is cleared. No cloud, an empty one, or a negative k: PCL_ERROR and an empty output.
@@ -67,7 +71,20 @@ class OrientedNormalEstimation : public pcl::NormalEstimation<PointInT, PointOut
   void setEpsilon(float epsilon) { options_.segmentation.epsilon = epsilon; }
   float getEpsilon() const { return options_.segmentation.epsilon; }
 
-  /// All settings of all stages; k and threads of this class take precedence.
+  /// Whether the surface is closed or open; default UNKNOWN: told from the cloud.
+  void setSurfaceKind(SurfaceKind kind) { surface_kind_ = kind; }
+  SurfaceKind getSurfaceKind() const { return surface_kind_; }
+
+  /// Whether the signs of normals that the input points have say something; default false.
+  void setKeepOrientation(bool value) { keep_orientation_ = value; }
+  bool getKeepOrientation() const { return keep_orientation_; }
+
+  /// Points whose normals are known; null (default) = none.
+  void setSeeds(const pcl::PointCloud<pcl::PointNormal>::ConstPtr& seeds) { seeds_ = seeds; }
+  pcl::PointCloud<pcl::PointNormal>::ConstPtr getSeeds() const { return seeds_; }
+
+  /// All settings of all stages; k and threads of this class take precedence, and hints of the
+  /// settings over those of this class.
   void setOptions(const PipelineOptions& options) { options_ = options; }
   const PipelineOptions& getOptions() const { return options_; }
 
@@ -105,15 +122,23 @@ class OrientedNormalEstimation : public pcl::NormalEstimation<PointInT, PointOut
   using Base::k_;
   using Base::search_radius_;
   using Base::surface_;
+  using Base::use_sensor_origin_;
+  using Base::vpx_;
+  using Base::vpy_;
+  using Base::vpz_;
 
   bool initCompute() override;
   void computeFeature(PointCloudOut& output) override;
 
  private:
   void write(PointCloudOut& output) const;
+  OrientationHints gatherHints(const pcl::PointCloud<PointInT>& cloud) const;
 
   PipelineOptions options_;
   PipelineProgress progress_;
+  SurfaceKind surface_kind_ = SurfaceKind::UNKNOWN;
+  bool keep_orientation_ = false;
+  pcl::PointCloud<pcl::PointNormal>::ConstPtr seeds_;
   OrientedCloud result_;
 
  public:

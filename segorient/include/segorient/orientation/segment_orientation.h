@@ -4,8 +4,10 @@
 
 #include <pcl/pcl_base.h>
 #include <pcl/point_cloud.h>
+#include <pcl/point_types.h>
 #include <segorient/orientation/oriented_segmentation.h>
 
+#include <limits>
 #include <memory>
 #include <vector>
 
@@ -96,6 +98,34 @@ class SegmentOrientation : public pcl::PCLBase<PointT> {
   void setTurnOutward(bool value) { options_.turn_outward = value; }
   bool getTurnOutward() const { return options_.turn_outward; }
 
+  // What is known beforehand: evidence for AUTO, not truth; see OrientationHints. Points that have
+  // fields vp_x, vp_y and vp_z say themselves where they were seen from.
+
+  /// Where the cloud was seen from; it matters to open surfaces only.
+  void setViewPoint(float x, float y, float z) {
+    hints_.has_viewpoint = true;
+    hints_.viewpoint = {x, y, z};
+  }
+  /// NaN if none was set.
+  void getViewPoint(float& x, float& y, float& z) const {
+    constexpr float kNone = std::numeric_limits<float>::quiet_NaN();
+    x = hints_.has_viewpoint ? hints_.viewpoint[0] : kNone;
+    y = hints_.has_viewpoint ? hints_.viewpoint[1] : kNone;
+    z = hints_.has_viewpoint ? hints_.viewpoint[2] : kNone;
+  }
+
+  /// Whether the surface is closed or open; default UNKNOWN: told from the cloud.
+  void setSurfaceKind(SurfaceKind kind) { hints_.surface = kind; }
+  SurfaceKind getSurfaceKind() const { return hints_.surface; }
+
+  /// Whether the signs of the input normals say something; default false.
+  void setKeepOrientation(bool value) { keep_orientation_ = value; }
+  bool getKeepOrientation() const { return keep_orientation_; }
+
+  /// Points whose normals are known; null (default) = none.
+  void setSeeds(const pcl::PointCloud<pcl::PointNormal>::ConstPtr& seeds) { seeds_ = seeds; }
+  pcl::PointCloud<pcl::PointNormal>::ConstPtr getSeeds() const { return seeds_; }
+
   /// 0 (default) = all cores. The result does not depend on it.
   void setNumberOfThreads(unsigned int threads = 0) {
     options_.threads = static_cast<int>(threads);
@@ -127,6 +157,9 @@ class SegmentOrientation : public pcl::PCLBase<PointT> {
   SegmentationConstPtr segmentation_;
   SegmentationOptions segmentation_options_;
   OrientationOptions options_;
+  OrientationHints hints_;  // without what the clouds say
+  pcl::PointCloud<pcl::PointNormal>::ConstPtr seeds_;
+  bool keep_orientation_ = false;
   int k_ = 0;
   OrientedSegmentation result_;
 

@@ -5,10 +5,12 @@
 #include <pcl/console/print.h>
 #include <segorient/common/cloud_access.h>
 #include <segorient/orientation/oriented_normal_estimation.h>
+#include <segorient/orientation/impl/cloud_hints.hpp>
 
 #include <cmath>
 #include <cstddef>
 #include <limits>
+#include <memory>
 
 namespace segorient {
 
@@ -51,6 +53,20 @@ bool OrientedNormalEstimation<PointInT, PointOutT>::initCompute() {
 }
 
 template <typename PointInT, typename PointOutT>
+OrientationHints OrientedNormalEstimation<PointInT, PointOutT>::gatherHints(
+    const pcl::PointCloud<PointInT>& cloud) const {
+  OrientationHints hints;
+  hints.surface = surface_kind_;
+  // The base class takes the sensor origin, 0 where it is not known, until it is told otherwise.
+  hints.has_viewpoint = !use_sensor_origin_ || vpx_ != 0.F || vpy_ != 0.F || vpz_ != 0.F;
+  hints.viewpoint = {vpx_, vpy_, vpz_};
+  detail::addViewpoints(cloud, hints);
+  if (keep_orientation_) detail::addNormals(cloud, hints);
+  if (seeds_) detail::addSeeds(*seeds_, hints);
+  return hints;
+}
+
+template <typename PointInT, typename PointOutT>
 void OrientedNormalEstimation<PointInT, PointOutT>::computeFeature(PointCloudOut& output) {
   PipelineOptions options = options_;
   if (k_ > 0) options.k = k_ > 1 ? k_ - 1 : 1;
@@ -65,7 +81,11 @@ void OrientedNormalEstimation<PointInT, PointOutT>::computeFeature(PointCloudOut
       row = valid ? static_cast<pcl::index_t>(joined.size() - 1) : -1;
     }
   }
-  const CloudPoints<PointInT> points(own_surface ? *input_ : joined);
+  const pcl::PointCloud<PointInT>& cloud = own_surface ? *input_ : joined;
+  if (!options.orientation.hints) {
+    options.orientation.hints = std::make_shared<OrientationHints>(gatherHints(cloud));
+  }
+  const CloudPoints<PointInT> points(cloud);
   result_ = orientCloud(points.view(), nullptr, options, progress_);
   const bool whole = own_surface && this->fake_indices_;
   if (!whole) result_ = selectRows(result_, rows);

@@ -5,10 +5,12 @@
 #include <pcl/console/print.h>
 #include <segorient/common/cloud_access.h>
 #include <segorient/orientation/segment_orientation.h>
+#include <segorient/orientation/impl/cloud_hints.hpp>
 
 #include <algorithm>
 #include <cstddef>
 #include <limits>
+#include <memory>
 
 namespace segorient {
 
@@ -28,8 +30,14 @@ bool SegmentOrientation<PointT, NormalT>::orient() {
     return false;
   }
   const CloudPoints<PointT> points(*input_);
+  auto hints = std::make_shared<OrientationHints>(hints_);
+  detail::addViewpoints(*input_, *hints);
+  if (keep_orientation_) detail::addNormals(*normals_, *hints);
+  if (seeds_) detail::addSeeds(*seeds_, *hints);
+  OrientationOptions options = options_;
+  options.hints = hints;
   result_ = orientSegmentation(points.view(), normalView(*normals_), segmentation_.get(),
-                               k_ > 0 ? std::max(1, k_ - 1) : 0, segmentation_options_, options_);
+                               k_ > 0 ? std::max(1, k_ - 1) : 0, segmentation_options_, options);
   if (result_.orientation.point_signs.empty()) {
     PCL_ERROR(
         "[segorient::SegmentOrientation::compute] The segments are not those of this cloud.\n");
