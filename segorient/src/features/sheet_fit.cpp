@@ -53,27 +53,86 @@ Eigen::Vector3f bestSupported(const Offsets& o, const Eigen::Vector3f& start, fl
   return best;
 }
 
+// Upper triangle of a covariance matrix.
+struct Covariance {
+  double xx, xy, xz, yy, yz, zz;
+  double trace() const { return xx + yy + zz; }
+};
+
+Covariance covarianceOf(const Moments& m, double mx, double my, double mz) {
+  const double w = 1.0 / static_cast<double>(m.n);
+  return {static_cast<double>(m.xx) * w - mx * mx, static_cast<double>(m.xy) * w - mx * my,
+          static_cast<double>(m.xz) * w - mx * mz, static_cast<double>(m.yy) * w - my * my,
+          static_cast<double>(m.yz) * w - my * mz, static_cast<double>(m.zz) * w - mz * mz};
+}
+
+// The smallest root of the characteristic polynomial: from 0, Newton's method climbs to it without
+// passing it, in few steps where it is well below the others, as it is for a plane.
+double smallestEigenvalue(double trace, double minors, double determinant) {
+  constexpr int kSteps = 12;
+  double x = 0.0;
+  for (int i = 0; i < kSteps; ++i) {
+    const double value = ((x - trace) * x + minors) * x - determinant;
+    const double slope = (3.0 * x - 2.0 * trace) * x + minors;
+    if (!(slope > 0.0)) break;
+    const double step = value / slope;
+    x -= step;
+    if (!(std::fabs(step) > 1e-9 * trace)) break;
+  }
+  return std::max(x, 0.0);
+}
+
+// The longest row of the adjugate of c - x: all of them are multiples of the eigenvector.
+Eigen::Vector3d eigenvector(const Covariance& c, double x) {
+  const Eigen::Vector3d r0(c.xx - x, c.xy, c.xz);
+  const Eigen::Vector3d r1(c.xy, c.yy - x, c.yz);
+  const Eigen::Vector3d r2(c.xz, c.yz, c.zz - x);
+  Eigen::Vector3d best = r0.cross(r1);
+  for (const Eigen::Vector3d& v : {Eigen::Vector3d(r0.cross(r2)), Eigen::Vector3d(r1.cross(r2))}) {
+    if (v.squaredNorm() > best.squaredNorm()) best = v;
+  }
+  return best;
+}
+
+// Slower, and good for eigenvalues that meet.
+void decompose(const Covariance& c, Plane& plane) {
+  Eigen::Matrix3d m;
+  m << c.xx, c.xy, c.xz, c.xy, c.yy, c.yz, c.xz, c.yz, c.zz;
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(m);
+  plane.lambda = solver.eigenvalues().cwiseMax(0.0).cast<float>();
+  plane.normal = solver.eigenvectors().col(0).cast<float>();
+}
+
 }  // namespace
 
 Plane fitPlane(const Moments& m) {
   Plane plane;
   if (m.n < 3.F) return plane;
-  const float w = 1.F / m.n;
-  plane.mean = Eigen::Vector3f(m.x, m.y, m.z) * w;
-  Eigen::Matrix3f c;
-  c(0, 0) = m.xx * w - plane.mean.x() * plane.mean.x();
-  c(1, 1) = m.yy * w - plane.mean.y() * plane.mean.y();
-  c(2, 2) = m.zz * w - plane.mean.z() * plane.mean.z();
-  c(0, 1) = c(1, 0) = m.xy * w - plane.mean.x() * plane.mean.y();
-  c(0, 2) = c(2, 0) = m.xz * w - plane.mean.x() * plane.mean.z();
-  c(1, 2) = c(2, 1) = m.yz * w - plane.mean.y() * plane.mean.z();
-  Eigen::SelfAdjointEigenSolver<Eigen::Matrix3f> solver;
-  solver.computeDirect(c);
-  // The closed form is poor where two eigenvalues meet, as on a line.
-  constexpr float kSlim = 0.01F;
-  if (!(solver.eigenvalues()[1] > kSlim * solver.eigenvalues()[2])) solver.compute(c);
-  plane.lambda = solver.eigenvalues().cwiseMax(0.F);
-  plane.normal = solver.eigenvectors().col(0);
+  const double w = 1.0 / static_cast<double>(m.n);
+  const double mx = static_cast<double>(m.x) * w;
+  const double my = static_cast<double>(m.y) * w;
+  const double mz = static_cast<double>(m.z) * w;
+  plane.mean =
+      Eigen::Vector3f(static_cast<float>(mx), static_cast<float>(my), static_cast<float>(mz));
+  const Covariance c = covarianceOf(m, mx, my, mz);
+  const double trace = c.trace();
+  if (!(trace > 0.0) || !std::isfinite(trace)) return plane;
+  const double yz = c.yy * c.zz - c.yz * c.yz;
+  const double minors = c.xx * (c.yy + c.zz) - c.xy * c.xy - c.xz * c.xz + yz;
+  const double determinant =
+      c.xx * yz + c.xy * (c.yz * c.xz - c.xy * c.zz) + c.xz * (c.xy * c.yz - c.yy * c.xz);
+  const double smallest = smallestEigenvalue(trace, minors, determinant);
+  const Eigen::Vector3d normal = eigenvector(c, smallest);
+  const double length = normal.norm();
+  if (length > 1e-4 * trace * trace) {
+    const double rest = trace - smallest;
+    const double root = std::sqrt(std::max(0.0, rest * rest - 4.0 * (minors - smallest * rest)));
+    plane.lambda =
+        Eigen::Vector3d(smallest, 0.5 * (rest - root), 0.5 * (rest + root)).cast<float>();
+    plane.normal = (normal / length).cast<float>();
+  } else {
+    decompose(c, plane);
+  }
   // Below that, the width is rounding.
   plane.valid = plane.lambda[1] > 1e-6F * plane.lambda[2] && plane.normal.allFinite();
   return plane;
@@ -118,27 +177,35 @@ Offsets gatherOffsets(const PointView& points, const Neighborhoods& nb, std::siz
   return o;
 }
 
-Plane fitAdaptive(const Offsets& o, int smallest) {
+AdaptivePlane fitAdaptive(const Offsets& o, int smallest) {
   constexpr float kClearlyFlatter = 0.6F;
-  std::array<Plane, kScales.size()> planes;
+  constexpr float kFlat = 1e-4F;  // a hundredth of a spacing, squared: nothing is left to gain
+  constexpr int kLargest = static_cast<int>(kScales.size()) - 1;
+  constexpr int kCurvature = 2;
+  std::array<Moments, kScales.size()> moments;
   Moments m;
   m.addOrigin();
   std::size_t j = 0;
   for (std::size_t s = 0; s < kScales.size(); ++s) {
     for (; j < static_cast<std::size_t>(std::min(kScales[s], o.n)); ++j)
       m.add(o.x[j], o.y[j], o.z[j]);
-    if (static_cast<int>(s) >= smallest) planes[s] = fitPlane(m);
+    moments[s] = m;
   }
-  Plane best = planes.back();
-  for (int s = static_cast<int>(kScales.size()) - 2; s >= smallest; --s) {
-    const Plane& p = planes[static_cast<std::size_t>(s)];
+  AdaptivePlane out;
+  out.plane = fitPlane(moments[kLargest]);
+  out.curvature = out.plane.variation();
+  if (out.plane.valid && out.plane.lambda[0] < kFlat) return out;
+  for (int s = kLargest - 1; s >= smallest; --s) {
+    const Plane p = fitPlane(moments[static_cast<std::size_t>(s)]);
     if (!p.valid) continue;
+    if (s == kCurvature) out.curvature = p.variation();
+    const Plane& best = out.plane;
     if (!best.valid ||
         p.lambda[0] * best.lambda[1] < kClearlyFlatter * best.lambda[0] * p.lambda[1]) {
-      best = p;
+      out.plane = p;
     }
   }
-  return best;
+  return out;
 }
 
 Plane fitDominant(const Offsets& o, const Plane& start, float tolerance) {
@@ -164,9 +231,17 @@ WallSplit splitWalls(const Offsets& o, const Eigen::Vector3f& normal) {
   std::array<float, kSheetNeighbors + 1> t;
   const auto n = static_cast<std::size_t>(o.n) + 1;
   WallSplit split;
+  constexpr float kLeastApart = 0.35F;
   if (n < 2 * kLeast) return split;
   t[0] = 0.F;
-  for (std::size_t j = 1; j < n; ++j) t[j] = o.along(j - 1, normal);
+  float lowest = 0.F;
+  float highest = 0.F;
+  for (std::size_t j = 1; j < n; ++j) {
+    t[j] = o.along(j - 1, normal);
+    lowest = std::min(lowest, t[j]);
+    highest = std::max(highest, t[j]);
+  }
+  if (highest - lowest <= kLeastApart) return split;
   std::sort(t.begin(), t.begin() + static_cast<std::ptrdiff_t>(n));
   float sum = 0.F;
   float squares = 0.F;
@@ -202,7 +277,7 @@ WallSplit splitWalls(const Offsets& o, const Eigen::Vector3f& normal) {
   constexpr float kNear = 1.25F;
   if (apart > kNear) return split;
   // Two classes, each thin, well apart, with nothing in between: two walls.
-  if (total - between >= 0.2F * total || apart <= 0.35F || high - low <= 0.15F * apart)
+  if (total - between >= 0.2F * total || apart <= kLeastApart || high - low <= 0.15F * apart)
     return split;
   split.found = true;
   const float middle = 0.5F * (low + high);

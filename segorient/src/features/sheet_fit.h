@@ -40,6 +40,12 @@ struct Plane {
   Eigen::Vector3f lambda = Eigen::Vector3f::Zero();  ///< variances, ascending
   Eigen::Vector3f mean = Eigen::Vector3f::Zero();    ///< of the offsets
   bool valid = false;                                ///< false for fewer than 3 points or a line
+
+  /// Smallest variance in the sum of all three, as PCL's curvature.
+  float variation() const {
+    const float sum = lambda.sum();
+    return sum > 0.F ? lambda[0] / sum : 0.F;
+  }
 };
 Plane fitPlane(const Moments& moments);
 
@@ -64,8 +70,14 @@ Offsets gatherOffsets(const PointView& points, const Neighborhoods& neighborhood
 float meanDistance(const PointView& points, const Neighborhoods& neighborhoods, std::size_t i,
                    int k);
 
-/// Over neighbourhood sizes from number `smallest` of {8, 12, 18, 32} on.
-Plane fitAdaptive(const Offsets& offsets, int smallest);
+struct AdaptivePlane {
+  Plane plane;
+  float curvature = 0.F;  ///< variation over 18 neighbours, or 32 where noise hides smaller ones
+};
+
+/// Over neighbourhood sizes from number `smallest` of {8, 12, 18, 32} on: from the largest down,
+/// a smaller one where it is clearly flatter.
+AdaptivePlane fitAdaptive(const Offsets& offsets, int smallest);
 
 /// The plane through the point that most of its neighbours lie on, within `tolerance` spacings;
 /// invalid where none is clearly a plane.

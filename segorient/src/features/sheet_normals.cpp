@@ -49,6 +49,7 @@ int smallestScale(float noise) {
 
 struct PointFit {
   Plane plane;
+  float curvature = 0.F;
   WallSplit split;
 };
 
@@ -57,7 +58,9 @@ PointFit fitPoint(const Offsets& o, int smallest, float noise, const SheetNormal
   // of a spacing, planes through single triples of points are no longer worth comparing.
   constexpr float kMostNoise = 0.33F;
   PointFit fit;
-  fit.plane = detail::fitAdaptive(o, smallest);
+  const detail::AdaptivePlane adaptive = detail::fitAdaptive(o, smallest);
+  fit.plane = adaptive.plane;
+  fit.curvature = adaptive.curvature;
   if (!fit.plane.valid) return fit;
   if (options.dominant_plane && noise < kMostNoise &&
       std::sqrt(fit.plane.lambda[0]) > 0.03F + 2.F * noise) {
@@ -90,10 +93,12 @@ void store(const PointFit& fit, std::size_t i, SheetNormals& out, std::vector<fl
   out.above[i] = fit.split.above * h;
   if (!fit.plane.valid || !(h > 0.F)) {
     std::fill(w, w + 4, kNaN);
+    out.curvature[i] = kNaN;
     return;
   }
   std::copy(fit.plane.normal.data(), fit.plane.normal.data() + 3, w);
   w[3] = std::sqrt(fit.plane.lambda[0]);
+  out.curvature[i] = fit.curvature;
   lopsided[i] = asymmetry(fit.plane);
 }
 
@@ -139,6 +144,7 @@ SheetNormals estimateSheetNormals(const PointView& points, const Neighborhoods& 
   const std::size_t n = points.size;
   out.normals.resize(4 * n);
   out.spacing.resize(n);
+  out.curvature.resize(n);
   out.below.resize(n);
   out.above.resize(n);
   out.reliable.resize(n);

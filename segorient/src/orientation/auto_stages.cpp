@@ -65,21 +65,6 @@ float median(std::vector<float> values) {
   return *middle;
 }
 
-void fillCurvature(const PointView& points, const Neighborhoods& table,
-                   const PipelineOptions& options, AutoStages& out) {
-  std::vector<float> planes(4 * points.size);
-  LocalNormalOptions settings;
-  settings.k = 18;
-  settings.threads = options.threads;
-  estimateNormals(points, table, settings, planes.data());
-  for (std::size_t i = 0; i < points.size; ++i) {
-    const bool has_normal = std::isfinite(out.normals[4 * i]);
-    const float curvature = planes[4 * i + 3];
-    out.normals[4 * i + 3] = has_normal && !std::isfinite(curvature) ? 0.F : curvature;
-    if (!has_normal) out.normals[4 * i + 3] = out.normals[4 * i];
-  }
-}
-
 // Segments of the final normals, turned as most of their points are.
 void segmentFinal(const PointView& points, const Neighborhoods& table,
                   const PipelineOptions& options, AutoStages& out) {
@@ -146,6 +131,12 @@ AutoNormals orientPoints(const PointView& points, const Neighborhoods& neighborh
       filterOrientedNormals(points, neighborhoods, sheets.normals, sheets.spacing, sheets.residual,
                             options.filter_rounds, options.threads);
   out.normals = std::move(filtered.normals);
+  for (std::size_t i = 0; i < points.size; ++i) {
+    const bool has_normal = std::isfinite(out.normals[4 * i]);
+    const float curvature =
+        has_normal && !std::isfinite(sheets.curvature[i]) ? 0.F : sheets.curvature[i];
+    out.normals[4 * i + 3] = has_normal ? curvature : out.normals[4 * i];
+  }
   out.confidences = std::move(filtered.confidences);
   out.components = result.point_components;
   for (std::size_t i = 0; i < points.size; ++i) {
@@ -171,7 +162,6 @@ AutoStages runAutoStages(const CompactCloud& cloud, const PipelineOptions& optio
   out.orientation = std::move(oriented.orientation);
   out.spacing = oriented.spacing;
   begin("segmentation", 0.85);
-  fillCurvature(points, neighbors.table, options, out);
   segmentFinal(points, neighbors.table, options, out);
   return out;
 }

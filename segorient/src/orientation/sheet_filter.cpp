@@ -4,14 +4,15 @@
 #include <segorient/orientation/sheet_filter.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace segorient {
 namespace {
 
 struct Kernel {
-  float tolerance;  // of the distance to a plane, in spacings
-  float residual;   // at which a plane counts half
+  float inverse_tolerance;  // of the distance to a plane, in spacings
+  float inverse_residual;   // at which a plane counts half
 };
 
 struct Mean {
@@ -20,27 +21,87 @@ struct Mean {
   float length() const { return std::sqrt(x * x + y * y + z * z); }
 };
 
+constexpr std::size_t kLanes = 8;
+constexpr std::size_t kBlock = 40;  // a default neighbourhood and the point itself, in whole lanes
+
+// Some neighbours: offsets in spacings and normals, as separate arrays; unused entries weigh 0.
+struct Block {
+  alignas(32) std::array<float, kBlock> dx;
+  alignas(32) std::array<float, kBlock> dy;
+  alignas(32) std::array<float, kBlock> dz;
+  alignas(32) std::array<float, kBlock> nx;
+  alignas(32) std::array<float, kBlock> ny;
+  alignas(32) std::array<float, kBlock> nz;
+  alignas(32) std::array<float, kBlock> fit;
+  alignas(32) std::array<float, kBlock> used;
+
+  void set(std::size_t j, const float* p, const float* q, float per_h, const float* n) {
+    dx[j] = (q[0] - p[0]) * per_h;
+    dy[j] = (q[1] - p[1]) * per_h;
+    dz[j] = (q[2] - p[2]) * per_h;
+    nx[j] = n[0];
+    ny[j] = n[1];
+    nz[j] = n[2];
+    fit[j] = n[3];
+    used[j] = 1.F;
+  }
+  void clear(std::size_t j) {
+    dx[j] = dy[j] = dz[j] = nx[j] = ny[j] = nz[j] = fit[j] = used[j] = 0.F;
+  }
+};
+
+// Sums by lane, so that compilers can use vectors without changing the order of any sum.
+struct Sums {
+  alignas(32) std::array<float, kLanes> x{};
+  alignas(32) std::array<float, kLanes> y{};
+  alignas(32) std::array<float, kLanes> z{};
+  alignas(32) std::array<float, kLanes> total{};
+
+  void add(const Block& b, std::size_t first, const Kernel& kernel) {
+    for (std::size_t l = 0; l < kLanes; ++l) {
+      const std::size_t j = first + l;
+      const float off =
+          (b.dx[j] * b.nx[j] + b.dy[j] * b.ny[j] + b.dz[j] * b.nz[j]) * kernel.inverse_tolerance;
+      const float fit = b.fit[j] * kernel.inverse_residual;
+      const float far2 = b.dx[j] * b.dx[j] + b.dy[j] * b.dy[j] + b.dz[j] * b.dz[j];
+      // A Gaussian of the offset, to a few hundredths: (1 + t / 16)^16 for exp(t).
+      const float base = 1.F + off * off * (0.5F / 16.F);
+      const float base2 = base * base;
+      const float base4 = base2 * base2;
+      const float base8 = base4 * base4;
+      // Half weight at two spacings.
+      const float w = b.used[j] / (base8 * base8 * (1.F + fit * fit) * (1.F + 0.25F * far2));
+      x[l] += w * b.nx[j];
+      y[l] += w * b.ny[j];
+      z[l] += w * b.nz[j];
+      total[l] += w;
+    }
+  }
+};
+
 Mean meanNormal(const PointView& points, const Neighborhoods& nb, const std::vector<float>& normals,
                 float h, std::size_t p, const Kernel& kernel) {
   const pcl::index_t* row = nb.indices(p);
   const float per_h = h > 0.F ? 1.F / h : 0.F;
+  const auto count = static_cast<std::size_t>(nb.count(p));
+  Block block;
+  Sums sums;
+  for (std::size_t first = 0; first < count; first += kBlock) {
+    std::size_t filled = 0;
+    for (std::size_t j = first; j < std::min(count, first + kBlock); ++j) {
+      const auto q = static_cast<std::size_t>(row[j]);
+      const float* n = normals.data() + 4 * q;
+      if (std::isfinite(n[0])) block.set(filled++, points[p], points[q], per_h, n);
+    }
+    while (filled % kLanes != 0) block.clear(filled++);
+    for (std::size_t j = 0; j < filled; j += kLanes) sums.add(block, j, kernel);
+  }
   Mean mean;
-  for (int j = 0; j < nb.count(p); ++j) {
-    const auto q = static_cast<std::size_t>(row[j]);
-    const float* n = normals.data() + 4 * q;
-    if (!std::isfinite(n[0])) continue;
-    const float dx = (points[q][0] - points[p][0]) * per_h;
-    const float dy = (points[q][1] - points[p][1]) * per_h;
-    const float dz = (points[q][2] - points[p][2]) * per_h;
-    const float off = (dx * n[0] + dy * n[1] + dz * n[2]) / kernel.tolerance;
-    const float fit = n[3] / kernel.residual;
-    const float far2 = dx * dx + dy * dy + dz * dz;
-    // Half weight at two spacings.
-    const float w = std::exp(-0.5F * off * off) / ((1.F + fit * fit) * (1.F + 0.25F * far2));
-    mean.x += w * n[0];
-    mean.y += w * n[1];
-    mean.z += w * n[2];
-    mean.total += w;
+  for (std::size_t l = 0; l < kLanes; ++l) {
+    mean.x += sums.x[l];
+    mean.y += sums.y[l];
+    mean.z += sums.z[l];
+    mean.total += sums.total[l];
   }
   return mean;
 }
@@ -52,21 +113,25 @@ FilteredNormals filterOrientedNormals(const PointView& points, const Neighborhoo
                                       const std::vector<float>& spacing, float residual, int rounds,
                                       int threads) {
   // A tenth of a spacing is what curvature explains at one spacing's distance, beside the noise.
-  const Kernel kernel{std::sqrt(0.01F + residual * residual), 0.03F + residual};
+  const float half_fit = 0.03F + residual;
+  const Kernel kernel{1.F / std::sqrt(0.01F + residual * residual), 1.F / half_fit};
   FilteredNormals out;
   out.normals = oriented;
   out.confidences.assign(points.size, 0.F);
+  // Where the normals around agree to some degrees, another round would change nothing.
+  constexpr float kSettled = 0.999F;
   std::vector<float> next;
   const int t = resolveThreads(threads);
   for (int round = 0; round < rounds; ++round) {
     next = out.normals;
 #pragma omp parallel for num_threads(t) schedule(dynamic, 2048)
     for (std::size_t p = 0; p < points.size; ++p) {
+      if (out.confidences[p] > kSettled) continue;
       const Mean mean = meanNormal(points, nb, out.normals, spacing[p], p, kernel);
       const float l = mean.length();
       if (!(mean.total > 0.F) || !(l > 1e-4F * mean.total)) continue;
       float* n = next.data() + 4 * p;
-      if (!std::isfinite(n[0])) n[3] = kernel.residual;
+      if (!std::isfinite(n[0])) n[3] = half_fit;
       n[0] = mean.x / l;
       n[1] = mean.y / l;
       n[2] = mean.z / l;

@@ -76,7 +76,7 @@ class Solver {
  private:
   // Enough of each component to see it, and of the large ones in proportion: some thousand in all.
   void takeSamples() {
-    constexpr double kAll = 4000.0;
+    constexpr double kAll = 2000.0;
     constexpr std::size_t kLeast = 24;
     for (std::size_t c = 0; c < rows_.size(); ++c) {
       const auto& rows = rows_[c];

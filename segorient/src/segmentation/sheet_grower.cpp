@@ -2,6 +2,7 @@
 // Copyright (c) 2026, the segorient authors
 #include "sheet_grower.h"
 
+#include <cstring>
 #include <numeric>
 
 namespace segorient::detail {
@@ -35,17 +36,23 @@ SheetGrower::SheetGrower(const PointView& points, const Neighborhoods& neighborh
       labels_(points.size, -1),
       signs_(points.size, 1) {}
 
+// By residual to a percent or so (the leading 16 bits of a float that is not negative order it that
+// far), then by index: near points one after the other.
 std::vector<pcl::index_t> SheetGrower::seedOrder() const {
-  std::vector<pcl::index_t> seeds;
-  seeds.reserve(points_.size);
+  const auto key = [&](std::size_t i) {
+    std::uint32_t bits = 0;
+    std::memcpy(&bits, normal(i) + 3, sizeof bits);
+    return bits >> 16;
+  };
+  std::vector<std::uint32_t> start(65537, 0);
   for (std::size_t i = 0; i < points_.size; ++i) {
-    if (std::isfinite(normal(i)[3])) seeds.push_back(static_cast<pcl::index_t>(i));
+    if (std::isfinite(normal(i)[3])) ++start[key(i) + 1];
   }
-  std::sort(seeds.begin(), seeds.end(), [&](pcl::index_t a, pcl::index_t b) {
-    const float ra = normal(at(a))[3];
-    const float rb = normal(at(b))[3];
-    return ra != rb ? ra < rb : a < b;
-  });
+  std::partial_sum(start.begin(), start.end(), start.begin());
+  std::vector<pcl::index_t> seeds(start.back());
+  for (std::size_t i = 0; i < points_.size; ++i) {
+    if (std::isfinite(normal(i)[3])) seeds[start[key(i)]++] = static_cast<pcl::index_t>(i);
+  }
   return seeds;
 }
 

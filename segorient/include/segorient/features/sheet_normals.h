@@ -28,9 +28,10 @@ struct SheetNormalOptions {
 struct SheetNormals {
   std::vector<float> normals;  ///< 4 floats: unoriented unit normal, rms residual in spacings; NaN
                                ///< where the neighbourhood has no plane
-  std::vector<float> spacing;  ///< h: mean distance to the 6 nearest
-  std::vector<float> below;    ///< lower end of the offsets of p's own sheet
-  std::vector<float> above;    ///< upper end
+  std::vector<float> curvature;  ///< smallest variance in the sum of all three, as in PCL; NaN
+  std::vector<float> spacing;    ///< h: mean distance to the 6 nearest
+  std::vector<float> below;      ///< lower end of the offsets of p's own sheet
+  std::vector<float> above;      ///< upper end
   std::vector<std::uint8_t> reliable;  ///< 1 where the fit is central and as good as most
   float noise = 0.F;     ///< median residual of the smallest neighbourhoods, in spacings
   float residual = 0.F;  ///< median residual of the final fits, in spacings

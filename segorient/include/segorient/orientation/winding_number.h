@@ -5,6 +5,7 @@
 #include <segorient/common/point_view.h>
 
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 namespace segorient {
@@ -19,16 +20,17 @@ class WindingNumber {
  public:
   /// \param points all points, near ones side by side (CompactCloud's order)
   /// \param dipoles 4 floats a point: area-weighted normal, area
-  /// \param rows points to use, ascending; empty = all
+  /// \param rows points to use, ascending; empty = all. All three must outlive this object's use
   void build(const PointView& points, const std::vector<float>& dipoles,
              const std::vector<std::uint32_t>& rows);
 
   /// \param x where \param radius below which points are smoothed, usually the spacing
   float evaluate(const float* x, float radius) const;
 
-  bool empty() const { return count_ == 0; }
+  bool empty() const { return nodes_.empty(); }
 
  private:
+  static constexpr float kHuge = std::numeric_limits<float>::max();
   struct Node {
     float center[3];
     float radius;
@@ -37,11 +39,21 @@ class WindingNumber {
     std::uint32_t first;  // leaf: first point
     std::uint32_t size;   // leaf: points, 0 for inner nodes
   };
-  std::uint32_t buildNode(std::uint32_t first, std::uint32_t last);
+  struct Extent {
+    double area = 0.0;
+    float low[3] = {kHuge, kHuge, kHuge};
+    float high[3] = {-kHuge, -kHuge, -kHuge};
+  };
+  Extent buildNode(std::uint32_t first, std::uint32_t last);
+  Extent sumLeaf(Node& node) const;
+  static Extent sumHalves(const Node& a, const Extent& in_a, const Node& b, const Extent& in_b,
+                          Node& node);
+  std::size_t row(std::uint32_t i) const { return rows_ != nullptr ? rows_[i] : i; }
 
-  std::vector<float> data_;  // 8 floats a point: x y z -, dipole, area
+  PointView points_;
+  const float* dipoles_ = nullptr;
+  const std::uint32_t* rows_ = nullptr;
   std::vector<Node> nodes_;
-  std::size_t count_ = 0;
 };
 
 }  // namespace segorient
