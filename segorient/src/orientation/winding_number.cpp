@@ -11,7 +11,7 @@ namespace {
 constexpr std::uint32_t kLeaf = 16;
 // A node counts as one dipole beyond this many of its radii (half diagonals of its box, about):
 // errors of some hundredths of the sum of absolute terms.
-constexpr float kFar = 3.5F;
+constexpr float kFar = 4.F;
 constexpr float kOneOver4Pi = 0.07957747F;
 
 }  // namespace
