@@ -2,11 +2,12 @@
 // Copyright (c) 2026, the segorient authors
 #pragma once
 
+#include <pcl/types.h>
 #include <segorient/orientation/segment_relations.h>
-#include <segorient/segmentation/segmentation.h>
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
@@ -20,30 +21,28 @@ constexpr float kUndecidedPairs = 2.F;
 class BoundaryBallot {
  public:
   /// \param vote in [-1, 1], positive where the two segments are consistent
-  void add(const BorderPair& pair, float vote) {
+  void add(float vote) {
     balance_ += vote;
     total_ += std::abs(vote);
-    in_a_.push_back(pair.in_a);
-    in_b_.push_back(pair.in_b);
   }
 
-  BoundaryVote count() {
+  /// \param points distinct border points that voted, on the side that has fewer of them
+  BoundaryVote count(std::size_t points) const {
     BoundaryVote out;
     out.margin = balance_ / (total_ + kUndecidedPairs);
-    out.points = std::min(distinct(in_a_), distinct(in_b_));
+    out.points = static_cast<std::uint32_t>(points);
     return out;
   }
 
  private:
-  static std::uint32_t distinct(std::vector<pcl::index_t>& rows) {
-    std::sort(rows.begin(), rows.end());
-    return static_cast<std::uint32_t>(std::unique(rows.begin(), rows.end()) - rows.begin());
-  }
-
   float balance_ = 0.F;
   float total_ = 0.F;
-  std::vector<pcl::index_t> in_a_;
-  std::vector<pcl::index_t> in_b_;
 };
+
+/// Sorts the rows and drops repeated ones.
+inline void keepDistinct(std::vector<pcl::index_t>& rows) {
+  std::sort(rows.begin(), rows.end());
+  rows.erase(std::unique(rows.begin(), rows.end()), rows.end());
+}
 
 }  // namespace segorient

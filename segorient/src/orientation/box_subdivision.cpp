@@ -11,46 +11,62 @@ namespace {
 constexpr std::uint32_t kCells = 1U << 20;
 // An edge is halved if it is longer than this part of the longest one: boxes keep within 1 : 1.5.
 constexpr double kLongEdge = 0.71;
+// Boxes that wait in a descent through the tree: 20 halvings an axis, so at most 60 generations,
+// and each leaves at most 7 siblings waiting.
+constexpr std::size_t kMostOpen = 60 * 7 + 1;
 
 }  // namespace
 
-BoxSubdivision::BoxSubdivision(const PointView& points, std::vector<pcl::index_t> rows,
-                               std::size_t max_points)
-    : rows_(std::move(rows)) {
-  if (rows_.empty()) return;
-  measure(points);
+BoxSubdivision::BoxSubdivision(const PointView& points, const std::vector<pcl::index_t>& rows,
+                               std::size_t max_points) {
+  if (rows.empty()) return;
+  std::vector<Placed> placed = place(points, rows);
   Box root;
   for (std::size_t a = 0; a < 3; ++a) root.high[a] = extent_[a] > 0.0 ? kCells : 1;
-  root.size = static_cast<std::uint32_t>(rows_.size());
+  root.size = static_cast<std::uint32_t>(rows.size());
   boxes_.push_back(root);
-  for (std::size_t b = 0; b < boxes_.size(); ++b)
-    split(points, b, std::max<std::size_t>(1, max_points));
+  for (std::size_t b = 0; b < boxes_.size(); ++b) {
+    split(placed, b, std::max<std::size_t>(1, max_points));
+  }
+  rows_.reserve(rows.size());
+  for (const Placed& p : placed) rows_.push_back(p.row);
   removeExterior();
 }
 
-void BoxSubdivision::measure(const PointView& points) {
+// Puts the grid over the bounding box and the rows onto the grid.
+std::vector<BoxSubdivision::Placed> BoxSubdivision::place(const PointView& points,
+                                                          const std::vector<pcl::index_t>& rows) {
+  std::array<double, 3> low{};
+  low.fill(std::numeric_limits<double>::max());
   std::array<double, 3> high{};
-  for (std::size_t a = 0; a < 3; ++a) {
-    origin_[a] = std::numeric_limits<double>::max();
-    high[a] = std::numeric_limits<double>::lowest();
-  }
-  for (const pcl::index_t row : rows_) {
+  high.fill(std::numeric_limits<double>::lowest());
+  for (const pcl::index_t row : rows) {
     const float* p = points[static_cast<std::size_t>(row)];
     for (std::size_t a = 0; a < 3; ++a) {
-      origin_[a] = std::min(origin_[a], static_cast<double>(p[a]));
+      low[a] = std::min(low[a], static_cast<double>(p[a]));
       high[a] = std::max(high[a], static_cast<double>(p[a]));
     }
   }
-  for (std::size_t a = 0; a < 3; ++a) extent_[a] = high[a] - origin_[a];
+  std::array<double, 3> cells_per_unit{};
+  for (std::size_t a = 0; a < 3; ++a) {
+    extent_[a] = high[a] - low[a];
+    if (extent_[a] > 0.0) cells_per_unit[a] = kCells / extent_[a];
+  }
+  std::vector<Placed> placed;
+  placed.reserve(rows.size());
+  for (const pcl::index_t row : rows) {
+    const float* p = points[static_cast<std::size_t>(row)];
+    Placed entry{{}, row};
+    for (std::size_t a = 0; a < 3; ++a) {
+      const double cell = (static_cast<double>(p[a]) - low[a]) * cells_per_unit[a];
+      entry.cell[a] = static_cast<std::uint32_t>(std::min(cell, kCells - 1.0));
+    }
+    placed.push_back(entry);
+  }
+  return placed;
 }
 
-std::uint32_t BoxSubdivision::cell(const float* point, std::size_t axis) const {
-  if (!(extent_[axis] > 0.0)) return 0;
-  const double t = (static_cast<double>(point[axis]) - origin_[axis]) / extent_[axis];
-  return std::min(kCells - 1, static_cast<std::uint32_t>(t * kCells));
-}
-
-void BoxSubdivision::split(const PointView& points, std::size_t box, std::size_t max_points) {
+void BoxSubdivision::split(std::vector<Placed>& placed, std::size_t box, std::size_t max_points) {
   const Box parent = boxes_[box];
   if (parent.size <= max_points) return;
   std::array<double, 3> edge{};
@@ -61,31 +77,30 @@ void BoxSubdivision::split(const PointView& points, std::size_t box, std::size_t
   const double longest = *std::max_element(edge.begin(), edge.end());
   if (!(longest > 0.0)) return;
 
-  std::vector<Box> parts{parent};
+  std::array<Box, 8> parts;
+  parts[0] = parent;
+  std::size_t count = 1;
   for (std::size_t a = 0; a < 3; ++a) {
     if (edge[a] < kLongEdge * longest) continue;
     const std::uint32_t middle = parent.low[a] + (parent.high[a] - parent.low[a]) / 2;
-    std::vector<Box> halves;
-    for (const Box& part : parts) {
-      const auto begin = rows_.begin() + part.first;
-      const auto below = std::partition(begin, begin + part.size, [&](pcl::index_t row) {
-        return cell(points[static_cast<std::size_t>(row)], a) < middle;
-      });
-      Box low = part;
-      Box high = part;
+    for (std::size_t i = 0; i < count; ++i) {
+      Box& low = parts[i];
+      Box& high = parts[count + i];
+      high = low;
+      const auto begin = placed.begin() + low.first;
+      const auto below = std::partition(begin, begin + low.size,
+                                        [&](const Placed& p) { return p.cell[a] < middle; });
       low.high[a] = middle;
       low.size = static_cast<std::uint32_t>(below - begin);
       high.low[a] = middle;
-      high.first = low.first + low.size;
-      high.size = part.size - low.size;
-      halves.push_back(low);
-      halves.push_back(high);
+      high.first += low.size;
+      high.size -= low.size;
     }
-    parts.swap(halves);
+    count *= 2;
   }
   boxes_[box].first_child = static_cast<std::uint32_t>(boxes_.size());
-  boxes_[box].children = static_cast<std::uint8_t>(parts.size());
-  boxes_.insert(boxes_.end(), parts.begin(), parts.end());
+  boxes_[box].children = static_cast<std::uint8_t>(count);
+  boxes_.insert(boxes_.end(), parts.begin(), parts.begin() + static_cast<std::ptrdiff_t>(count));
 }
 
 // Calls visit(box index) for each leaf that shares a part of the face; for none at the border.
@@ -103,10 +118,11 @@ void BoxSubdivision::visitNeighbors(const Box& leaf, Direction direction, Visito
     low[axis] = leaf.low[axis] - 1;
     high[axis] = leaf.low[axis];
   }
-  std::vector<std::uint32_t> stack{0};
-  while (!stack.empty()) {
-    const std::uint32_t b = stack.back();
-    stack.pop_back();
+  std::array<std::uint32_t, kMostOpen> stack;
+  std::size_t open = 0;
+  stack[open++] = 0;
+  while (open > 0) {
+    const std::uint32_t b = stack[--open];
     const Box& box = boxes_[b];
     bool overlaps = true;
     for (std::size_t a = 0; a < 3; ++a) {
@@ -114,7 +130,7 @@ void BoxSubdivision::visitNeighbors(const Box& leaf, Direction direction, Visito
     }
     if (!overlaps) continue;
     if (box.children == 0) visit(b);
-    for (std::uint32_t c = 0; c < box.children; ++c) stack.push_back(box.first_child + c);
+    for (std::uint32_t c = 0; c < box.children; ++c) stack[open++] = box.first_child + c;
   }
 }
 

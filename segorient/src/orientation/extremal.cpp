@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026, the segorient authors
+#include <segorient/common/threads.h>
 #include <segorient/orientation/box_subdivision.h>
 #include <segorient/orientation/extremal.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
-#include <utility>
+#include <cstddef>
 
 namespace segorient {
 namespace {
@@ -29,23 +31,33 @@ pcl::index_t extremalPoint(const PointView& points, const BoxSubdivision& space,
 }  // namespace
 
 std::vector<ExtremalPoint> findExtremalPoints(const PointView& points, const PointView& normals,
-                                              std::vector<pcl::index_t> rows,
-                                              std::size_t max_box_points) {
-  const BoxSubdivision space(points, std::move(rows), max_box_points);
-  std::vector<ExtremalPoint> out;
-  for (const BoxSubdivision::Box& box : space.boxes()) {
-    if (box.children != 0 || box.size == 0) continue;
+                                              const std::vector<pcl::index_t>& rows,
+                                              std::size_t max_box_points, int threads) {
+  const BoxSubdivision space(points, rows, max_box_points);
+  const auto boxes = static_cast<std::ptrdiff_t>(space.boxes().size());
+  std::vector<std::array<pcl::index_t, 6>> found(space.boxes().size());  // by side, -1 = none
+#pragma omp parallel for schedule(dynamic, 256) num_threads(resolveThreads(threads))
+  for (std::ptrdiff_t b = 0; b < boxes; ++b) {
+    const BoxSubdivision::Box& box = space.boxes()[static_cast<std::size_t>(b)];
     for (int side = 0; side < 6; ++side) {
       const BoxSubdivision::Direction direction{side / 2, side % 2 == 1};
-      if (!space.isFree(box, direction)) continue;
-      const pcl::index_t p = extremalPoint(points, space, box, direction);
-      const float along = normals[static_cast<std::size_t>(p)][direction.axis];
-      const float outward = direction.positive ? along : -along;
-      ExtremalPoint found;
-      found.point = p;
-      found.sign = outward < 0.F ? std::int8_t{-1} : std::int8_t{1};
-      found.angle = std::acos(std::min(1.F, std::abs(outward)));
-      out.push_back(found);
+      const bool full_leaf = box.children == 0 && box.size != 0;
+      found[static_cast<std::size_t>(b)][static_cast<std::size_t>(side)] =
+          full_leaf && space.isFree(box, direction) ? extremalPoint(points, space, box, direction)
+                                                    : -1;
+    }
+  }
+  std::vector<ExtremalPoint> out;
+  for (const std::array<pcl::index_t, 6>& of_box : found) {
+    for (std::size_t side = 0; side < 6; ++side) {
+      if (of_box[side] < 0) continue;
+      const float along = normals[static_cast<std::size_t>(of_box[side])][side / 2];
+      const float outward = side % 2 == 1 ? along : -along;
+      ExtremalPoint point;
+      point.point = of_box[side];
+      point.sign = outward < 0.F ? std::int8_t{-1} : std::int8_t{1};
+      point.angle = std::acos(std::min(1.F, std::abs(outward)));
+      out.push_back(point);
     }
   }
   return out;
@@ -76,7 +88,9 @@ std::vector<ExtremalEvidence> gatherExtremalEvidence(const std::vector<ExtremalP
     }
   }
   for (std::size_t s = 0; s < segments; ++s) {
-    if (total[s] > 0.F) out[s].agreement = std::abs(balance[s]) / total[s];
+    if (total[s] > 0.F) {
+      out[s].agreement = static_cast<float>(out[s].sign) * balance[s] / total[s];
+    }
   }
   return out;
 }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026, the segorient authors
+#include <segorient/common/threads.h>
 #include <segorient/orientation/folded_segments.h>
 
 #include <Eigen/Core>
@@ -8,6 +9,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <tuple>
 #include <vector>
 
@@ -38,7 +40,7 @@ Vector3f pointAt(const PointView& points, std::size_t row) {
 // Mean distance to the six nearest, averaged over some of the segment's points.
 float spacingOf(const PointView& points, const Neighborhoods& neighborhoods,
                 const Segmentation& segmentation, std::size_t segment) {
-  constexpr std::uint32_t kSample = 64;
+  constexpr std::uint32_t kSample = 16;
   const std::uint32_t size = segmentation.segments[segment].size;
   const std::uint32_t samples = std::min(size, kSample);
   double sum = 0.0;
@@ -56,6 +58,7 @@ float spacingOf(const PointView& points, const Neighborhoods& neighborhoods,
   return count > 0 ? static_cast<float>(sum / static_cast<double>(count)) : 0.F;
 }
 
+// The segment's points over the plane across its reference normal, unsorted.
 std::vector<Elevated> elevate(const PointView& points, const Segmentation& segmentation,
                               std::size_t segment, float square) {
   const auto& reference = segmentation.segments[segment].reference_normal;
@@ -73,8 +76,22 @@ std::vector<Elevated> elevate(const PointView& points, const Segmentation& segme
     out.push_back({static_cast<std::int32_t>(std::clamp(column, -kMost, kMost)),
                    static_cast<std::int32_t>(std::clamp(row, -kMost, kMost)), offset.dot(up)});
   }
-  std::sort(out.begin(), out.end());
   return out;
+}
+
+// Whether the heights of the segment's points differ by more than a gap at all.
+bool rangesOver(const PointView& points, const Segmentation& segmentation, std::size_t segment,
+                float gap) {
+  const auto& n = segmentation.segments[segment].reference_normal;
+  float low = std::numeric_limits<float>::max();
+  float high = std::numeric_limits<float>::lowest();
+  for (const pcl::index_t* p = segmentation.begin(segment); p != segmentation.end(segment); ++p) {
+    const float* x = points[static_cast<std::size_t>(*p)];
+    const float height = x[0] * n[0] + x[1] * n[1] + x[2] * n[2];
+    low = std::min(low, height);
+    high = std::max(high, height);
+  }
+  return high - low > gap;
 }
 
 // Whether two sheets lie over one square: [begin, end) ascends by height.
@@ -85,31 +102,44 @@ bool isDouble(const Elevated* begin, const Elevated* end, float gap) {
   return false;
 }
 
+bool isFolded(const PointView& points, const Neighborhoods& neighborhoods,
+              const Segmentation& segmentation, std::size_t s, float max_share) {
+  const Segment& segment = segmentation.segments[s];
+  if (segment.kind != SegmentKind::Regular || segment.size < 4) return false;
+  const float spacing = spacingOf(points, neighborhoods, segmentation, s);
+  if (!(spacing > 0.F) || !std::isfinite(spacing)) return false;
+  if (!rangesOver(points, segmentation, s, kGap * spacing)) return false;  // flat, as most are
+  std::vector<Elevated> elevated = elevate(points, segmentation, s, kSquare * spacing);
+  std::sort(elevated.begin(), elevated.end());
+  std::size_t doubled = 0;
+  for (std::size_t i = 0; i < elevated.size();) {
+    std::size_t j = i + 1;
+    while (j < elevated.size() && elevated[j].column == elevated[i].column &&
+           elevated[j].row == elevated[i].row) {
+      ++j;
+    }
+    if (isDouble(elevated.data() + i, elevated.data() + j, kGap * spacing)) doubled += j - i;
+    i = j;
+  }
+  return static_cast<float>(doubled) > max_share * static_cast<float>(segment.size);
+}
+
 }  // namespace
 
 std::vector<std::int32_t> findFoldedSegments(const PointView& points,
                                              const Neighborhoods& neighborhoods,
-                                             const Segmentation& segmentation, float max_share) {
+                                             const Segmentation& segmentation, float max_share,
+                                             int threads) {
+  const auto segments = static_cast<std::ptrdiff_t>(segmentation.segments.size());
+  std::vector<std::uint8_t> folded(segmentation.segments.size());
+#pragma omp parallel for schedule(dynamic, 16) num_threads(resolveThreads(threads))
+  for (std::ptrdiff_t i = 0; i < segments; ++i) {
+    const auto s = static_cast<std::size_t>(i);
+    folded[s] = isFolded(points, neighborhoods, segmentation, s, max_share) ? 1 : 0;
+  }
   std::vector<std::int32_t> out;
-  for (std::size_t s = 0; s < segmentation.segments.size(); ++s) {
-    const Segment& segment = segmentation.segments[s];
-    if (segment.kind != SegmentKind::Regular || segment.size < 4) continue;
-    const float spacing = spacingOf(points, neighborhoods, segmentation, s);
-    if (!(spacing > 0.F) || !std::isfinite(spacing)) continue;
-    const std::vector<Elevated> elevated = elevate(points, segmentation, s, kSquare * spacing);
-    std::size_t doubled = 0;
-    for (std::size_t i = 0; i < elevated.size();) {
-      std::size_t j = i + 1;
-      while (j < elevated.size() && elevated[j].column == elevated[i].column &&
-             elevated[j].row == elevated[i].row) {
-        ++j;
-      }
-      if (isDouble(elevated.data() + i, elevated.data() + j, kGap * spacing)) doubled += j - i;
-      i = j;
-    }
-    if (static_cast<float>(doubled) > max_share * static_cast<float>(segment.size)) {
-      out.push_back(static_cast<std::int32_t>(s));
-    }
+  for (std::size_t s = 0; s < folded.size(); ++s) {
+    if (folded[s] != 0) out.push_back(static_cast<std::int32_t>(s));
   }
   return out;
 }

@@ -7,6 +7,8 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <cstdint>
 
 #include "boundary_ballot.h"
 
@@ -53,6 +55,32 @@ float borderCosine(const PointView& points, const PointView& normals,
   return sum / (static_cast<float>(link.size) + kUndecidedPairs);
 }
 
+// A border point of a segment, and how its neighbours lie about it.
+struct BorderPoint {
+  pcl::index_t row = 0;
+  Vector3f position = Vector3f::Zero();
+  Vector3f normal = Vector3f::Zero();  // as its segment has it
+  Vector3f own = Vector3f::Zero();     // mean offset of the neighbours on its own side, and itself
+  Vector3f other = Vector3f::Zero();   // sum of offsets of those on the other side
+  float other_count = 0.F;
+  float reach = 0.F;  // distance of the farthest neighbour
+
+  // Direction of the walk along the border, the other side being where q and `other` are: at most 1
+  // long, shorter in the midst of the segment and where the way across the border leaves the
+  // tangent plane.
+  Vector3f walkTowards(const Vector3f& q) const {
+    const Vector3f across = (other + (q - position)) / (other_count + 1.F) - own;
+    const float length = across.norm();
+    if (!(length > 0.F) || !(reach > 0.F)) return Vector3f::Zero();
+    // Away from the own side, and over to the other: the first is right for blades, too, whose
+    // other side folds back over this one; the second is steadier. The centre of a half disc, which
+    // is what lies on the own side at a border, is 4 / (3 pi) radii from its middle.
+    constexpr float kHalfDisc = 0.4244132F;
+    const Vector3f out = across / length - own / (kHalfDisc * reach);
+    return normal.cross(0.5F * out);
+  }
+};
+
 class LocalBoundary {
  public:
   LocalBoundary(const PointView& points, const PointView& normals,
@@ -62,73 +90,89 @@ class LocalBoundary {
         neighborhoods_(neighborhoods),
         segmentation_(segmentation) {}
 
-  // Direction of the walk along the border at p, towards the segment of q: at most 1 long, shorter
-  // in the midst of the segment and where the way across the border leaves the tangent plane.
-  Vector3f walk(pcl::index_t p, pcl::index_t q) const {
-    const auto row = static_cast<std::size_t>(p);
-    const std::int32_t own_label = segmentation_.labels[row];
-    const std::int32_t other_label = segmentation_.labels[static_cast<std::size_t>(q)];
-    const Vector3f origin = vectorAt(points_, p);
-    const pcl::index_t* neighbors = neighborhoods_.indices(row);
-    const int count = neighborhoods_.count(row);
-    Vector3f own = Vector3f::Zero();
-    Vector3f other = vectorAt(points_, q) - origin;
-    float own_count = 1.F;
-    float other_count = 1.F;
-    float reach = 0.F;
-    for (int j = 1; j < count; ++j) {
-      const Vector3f offset = vectorAt(points_, neighbors[j]) - origin;
-      const std::int32_t label = segmentation_.labels[static_cast<std::size_t>(neighbors[j])];
-      reach = std::max(reach, offset.squaredNorm());
-      if (label == own_label) {
-        own += offset;
-        own_count += 1.F;
-      } else if (label == other_label) {
-        other += offset;
-        other_count += 1.F;
-      }
+  BoundaryVote vote(const SegmentLinks& links, const SegmentLink& link) const {
+    const BorderPair* begin = links.pairs.data() + link.first;
+    const BorderPair* end = begin + link.size;
+    const std::vector<BorderPoint> side_a = borderPoints(begin, end, &BorderPair::in_a, link.b);
+    const std::vector<BorderPoint> side_b = borderPoints(begin, end, &BorderPair::in_b, link.a);
+    BoundaryBallot ballot;
+    for (const BorderPair* pair = begin; pair != end; ++pair) {
+      const BorderPoint& a = find(side_a, pair->in_a);
+      const BorderPoint& b = find(side_b, pair->in_b);
+      ballot.add(-a.walkTowards(b.position).dot(b.walkTowards(a.position)));
     }
-    own /= own_count;
-    const Vector3f across = other / other_count - own;
-    const float length = across.norm();
-    if (!(length > 0.F) || !(reach > 0.F)) return Vector3f::Zero();
-    // Away from the own side, and over to the other: the first is right for blades, too, whose
-    // other side folds back over this one; the second is steadier. The centre of a half disc, which
-    // is what lies on the own side at a border, is 4 / (3 pi) radii from its middle.
-    constexpr float kHalfDisc = 0.4244132F;
-    const Vector3f out = across / length - own / (kHalfDisc * std::sqrt(reach));
-    return segmentNormal(normals_, segmentation_, p).cross(0.5F * out);
+    return ballot.count(std::min(side_a.size(), side_b.size()));
   }
 
  private:
+  // The distinct points of one side, ascending by row.
+  std::vector<BorderPoint> borderPoints(const BorderPair* begin, const BorderPair* end,
+                                        pcl::index_t BorderPair::*side,
+                                        std::int32_t other_label) const {
+    std::vector<pcl::index_t> rows;
+    for (const BorderPair* pair = begin; pair != end; ++pair) {
+      if (rows.empty() || rows.back() != pair->*side) rows.push_back(pair->*side);
+    }
+    keepDistinct(rows);
+    std::vector<BorderPoint> out;
+    out.reserve(rows.size());
+    for (const pcl::index_t row : rows) out.push_back(describe(row, other_label));
+    return out;
+  }
+
+  BorderPoint describe(pcl::index_t p, std::int32_t other_label) const {
+    const auto row = static_cast<std::size_t>(p);
+    BorderPoint out;
+    out.row = p;
+    out.position = vectorAt(points_, p);
+    out.normal = segmentNormal(normals_, segmentation_, p);
+    const std::int32_t own_label = segmentation_.labels[row];
+    const pcl::index_t* neighbors = neighborhoods_.indices(row);
+    const int count = neighborhoods_.count(row);
+    float own_count = 1.F;
+    float squared_reach = 0.F;
+    for (int j = 1; j < count; ++j) {
+      const Vector3f offset = vectorAt(points_, neighbors[j]) - out.position;
+      const std::int32_t label = segmentation_.labels[static_cast<std::size_t>(neighbors[j])];
+      squared_reach = std::max(squared_reach, offset.squaredNorm());
+      if (label == own_label) {
+        out.own += offset;
+        own_count += 1.F;
+      } else if (label == other_label) {
+        out.other += offset;
+        out.other_count += 1.F;
+      }
+    }
+    out.own /= own_count;
+    out.reach = std::sqrt(squared_reach);
+    return out;
+  }
+
+  static const BorderPoint& find(const std::vector<BorderPoint>& side, pcl::index_t row) {
+    return *std::lower_bound(side.begin(), side.end(), row,
+                             [](const BorderPoint& p, pcl::index_t r) { return p.row < r; });
+  }
+
   const PointView& points_;
   const PointView& normals_;
   const Neighborhoods& neighborhoods_;
   const Segmentation& segmentation_;
 };
 
-BoundaryVote voteOf(const LocalBoundary& boundary, const SegmentLinks& links,
-                    const SegmentLink& link) {
-  BoundaryBallot ballot;
-  for (std::uint32_t i = link.first; i < link.first + link.size; ++i) {
-    const BorderPair& pair = links.pairs[i];
-    ballot.add(pair, -boundary.walk(pair.in_a, pair.in_b).dot(boundary.walk(pair.in_b, pair.in_a)));
-  }
-  return ballot.count();
-}
-
 }  // namespace
 
 std::vector<float> segmentCosines(const PointView& points, const PointView& normals,
                                   const Segmentation& segmentation, const SegmentLinks& links,
-                                  SegmentAngle angle) {
-  std::vector<float> out;
-  out.reserve(links.links.size());
-  for (const SegmentLink& link : links.links) {
+                                  SegmentAngle angle, int threads) {
+  std::vector<float> out(links.links.size());
+  const auto count = static_cast<std::ptrdiff_t>(links.links.size());
+#pragma omp parallel for schedule(dynamic, 16) num_threads(resolveThreads(threads))
+  for (std::ptrdiff_t i = 0; i < count; ++i) {
+    const SegmentLink& link = links.links[static_cast<std::size_t>(i)];
     const float cosine = angle == SegmentAngle::REFERENCE_NORMALS
                              ? referenceCosine(segmentation, link)
                              : borderCosine(points, normals, segmentation, links, link);
-    out.push_back(std::clamp(cosine, -1.F, 1.F));
+    out[static_cast<std::size_t>(i)] = std::clamp(cosine, -1.F, 1.F);
   }
   return out;
 }
@@ -140,10 +184,10 @@ std::vector<BoundaryVote> localBoundaryVotes(const PointView& points, const Poin
   const LocalBoundary boundary(points, normals, neighborhoods, segmentation);
   std::vector<BoundaryVote> out(links.links.size());
   const auto count = static_cast<std::ptrdiff_t>(links.links.size());
-#pragma omp parallel for schedule(dynamic, 64) num_threads(resolveThreads(threads))
+#pragma omp parallel for schedule(dynamic, 16) num_threads(resolveThreads(threads))
   for (std::ptrdiff_t i = 0; i < count; ++i) {
     const auto l = static_cast<std::size_t>(i);
-    out[l] = voteOf(boundary, links, links.links[l]);
+    out[l] = boundary.vote(links, links.links[l]);
   }
   return out;
 }

@@ -63,15 +63,21 @@ std::vector<BoundaryVote> triangulatedBoundaryVotes(const PointView& points,
   const BoundaryDirections directions(points, meshes);
   for (std::size_t l = 0; l < links.links.size(); ++l) {
     BoundaryBallot ballot;
+    std::vector<pcl::index_t> voters_a;
+    std::vector<pcl::index_t> voters_b;
     const SegmentLink& link = links.links[l];
     for (std::uint32_t i = link.first; i < link.first + link.size; ++i) {
       const BorderPair& pair = links.pairs[i];
       const Vector3f& in_a = directions.at(pair.in_a);
       const Vector3f& in_b = directions.at(pair.in_b);
       if (in_a.isZero(0.F) || in_b.isZero(0.F)) continue;
-      ballot.add(pair, -in_a.dot(in_b));
+      ballot.add(-in_a.dot(in_b));
+      voters_a.push_back(pair.in_a);
+      voters_b.push_back(pair.in_b);
     }
-    out[l] = ballot.count();
+    keepDistinct(voters_a);
+    keepDistinct(voters_b);
+    out[l] = ballot.count(std::min(voters_a.size(), voters_b.size()));
   }
   return out;
 }

@@ -36,7 +36,8 @@ class BoxSubdivision {
 
   /// \param rows points to use, all finite; may be a subset
   /// \param max_points most points in a box, at least 1
-  BoxSubdivision(const PointView& points, std::vector<pcl::index_t> rows, std::size_t max_points);
+  BoxSubdivision(const PointView& points, const std::vector<pcl::index_t>& rows,
+                 std::size_t max_points);
 
   const std::vector<Box>& boxes() const { return boxes_; }  ///< parents before children
   /// The rows by box: a leaf's are [first, first + size).
@@ -46,14 +47,18 @@ class BoxSubdivision {
   bool isFree(const Box& leaf, Direction direction) const;
 
  private:
-  void measure(const PointView& points);
-  std::uint32_t cell(const float* point, std::size_t axis) const;
-  void split(const PointView& points, std::size_t box, std::size_t max_points);
+  // A row and its place on the grid.
+  struct Placed {
+    std::array<std::uint32_t, 3> cell;
+    pcl::index_t row;
+  };
+
+  std::vector<Placed> place(const PointView& points, const std::vector<pcl::index_t>& rows);
+  void split(std::vector<Placed>& placed, std::size_t box, std::size_t max_points);
   void removeExterior();
   template <typename Visitor>
   void visitNeighbors(const Box& leaf, Direction direction, Visitor&& visit) const;
 
-  std::array<double, 3> origin_{};
   std::array<double, 3> extent_{};
   std::vector<Box> boxes_;
   std::vector<pcl::index_t> rows_;

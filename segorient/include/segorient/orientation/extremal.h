@@ -22,18 +22,21 @@ struct ExtremalPoint {
 struct ExtremalEvidence {
   float angle = 0.F;     ///< M_CA of the paper: the smallest angle seen; gamma where there was none
   std::int8_t sign = 0;  ///< of the reference normal by that point; 0 = not reached
-  float agreement = 0.F;  ///< |signed votes| / votes of all the segment's extremal points
-  int votes = 0;          ///< number of extremal points within gamma
+  /// What all the segment's extremal points say about that sign, each by the cosine of its angle:
+  /// 1 all agree, -1 all but that one contradict.
+  float agreement = 0.F;
+  int votes = 0;  ///< number of extremal points within gamma
 };
 
 /// One extremal point per box and free direction, ties by index (paper, 3.3). Holds for closed
 /// objects: at the rim of an open one, the inside is taken for outside.
-/// \param rows points to subdivide; those with label -1 must not be among them
+/// \param rows points to subdivide; all of them have a normal
 /// \param max_box_points m of the paper
+/// \param threads see resolveThreads()
 /// \return in order of the boxes; a point can occur in several directions
 std::vector<ExtremalPoint> findExtremalPoints(const PointView& points, const PointView& normals,
-                                              std::vector<pcl::index_t> rows,
-                                              std::size_t max_box_points);
+                                              const std::vector<pcl::index_t>& rows,
+                                              std::size_t max_box_points, int threads = 0);
 
 /// M_CA and votes per segment; only regular segments get evidence, as only they are oriented in
 /// themselves.

@@ -24,9 +24,10 @@ enum class SegmentAngle : std::uint8_t {
 /// Reference normals of segments that were parted by the growing angle alone differ by about that
 /// angle, so they cannot tell a smooth border from a sharp one; the pairs at the border can. Pairs
 /// that face each other across a gap count as cosine 0.
+/// \param threads see resolveThreads()
 std::vector<float> segmentCosines(const PointView& points, const PointView& normals,
                                   const Segmentation& segmentation, const SegmentLinks& links,
-                                  SegmentAngle angle);
+                                  SegmentAngle angle, int threads = 0);
 
 /// How boundaries are told.
 enum class BoundaryTest : std::uint8_t {
