@@ -10,6 +10,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 
 #include "layout.h"
 
@@ -27,6 +28,8 @@ struct LayoutView {
   const Box* boxes;
   const Split* splits;
   const std::uint16_t* starts;
+  const std::uint8_t* flat;  ///< by node, or null
+  const std::uint32_t* flat_id;
 
   explicit LayoutView(const Layout& layout)
       : x(layout.x.data()),
@@ -38,15 +41,28 @@ struct LayoutView {
         region_count(layout.regions.size()),
         boxes(layout.boxes.data()),
         splits(layout.splits.data()),
-        starts(layout.starts.data()) {}
+        starts(layout.starts.data()),
+        flat(layout.flat.empty() ? nullptr : layout.flat.data()),
+        flat_id(layout.flat_id.data()) {}
 };
+
+/// The points of a node are those from its first region's on.
+inline std::size_t firstPoint(const LayoutView& view, std::size_t node) {
+  while (node < view.region_count) node = 2 * node;
+  return view.regions[node - view.region_count].begin;
+}
+inline std::size_t nodeSize(const LayoutView& view, std::size_t node) {
+  const std::size_t begin = firstPoint(view, node);
+  while (node < view.region_count) node = 2 * node + 1;
+  return view.regions[node - view.region_count].end - begin;
+}
 
 /// A sphere to collect from.
 struct Sphere {
   float center[3];
-  float limit;                   ///< points of a squared distance below this are collected
-  float prune;                   ///< <= limit; parts of space not nearer than this may be left out
-  std::uint32_t most_identical;  ///< of points in one place, how many (those of least id) suffice
+  float limit;               ///< points of a squared distance below this are collected
+  float prune;               ///< <= limit; parts of space not nearer than this may be left out
+  std::uint32_t most_equal;  ///< of a flat node that is equally far everywhere, how many suffice
 };
 
 /// The way down the tree to the region that a point is in.
@@ -83,30 +99,45 @@ struct Candidates {
 struct SortScratch {
   float* part_distance;
   std::uint32_t* part_id;
-  std::uint32_t* rank;
-  std::uint32_t* pairs;         ///< two entries a candidate
-  std::uint32_t* sorted_pairs;  ///< two entries a candidate
-  float* distance;              ///< where the result is left
-  std::uint32_t* id;            ///< where the result is left
+  float* distance;    ///< where the result is left
+  std::uint32_t* id;  ///< where the result is left
 };
 
 /// Most candidates that sortNearest() takes.
 constexpr std::size_t kMostToSort = 1024;
 
-/// Everything that allInRegion() reads and writes besides the layout.
-struct AllPointsTask {
-  std::uint32_t k;  ///< at most the number of points
+/// Rows of a region's radius search, one after another as they are found.
+struct RowBuffer {
+  pcl::index_t* indices;
+  float* distances;  ///< or null
+  std::size_t used;
+  std::size_t capacity;
+  std::size_t* begin;    ///< of each point of the region, where its row is
+  std::uint32_t* count;  ///< of each point of the region, how long its row is
+  void (*grow)(RowBuffer&, std::size_t capacity);  ///< makes room for at least as many
+  void* owner;                                     ///< for grow
+};
+
+/// Everything that an all-points search of a region reads and writes besides the layout.
+struct GroupTask {
+  std::uint32_t k;  ///< how many neighbours: at most the number of points, or of a radius search
+  // nearest k
   float epsilon;
   float margin;            ///< above 1: how much more than the last k-th distance is tried
   pcl::index_t* indices;   ///< output, k entries a row
   float* distances;        ///< output, or null
   std::size_t row_length;  ///< entries from one row of the output to the next
-  // work space of one thread
+  // radius
+  float limit;  ///< squared radius
+  RowBuffer* rows;
+  // work space of one thread; each array with Layout::kPadding entries more
   float* block[3];  ///< x, y, z of points that a group may have as neighbours
   std::uint32_t* block_id;
-  float* block_distance;
-  std::size_t block_capacity;  ///< each with Layout::kPadding entries more
-  Candidates candidates;       ///< room for block_capacity
+  std::size_t block_count;
+  std::size_t block_capacity;
+  float* candidate_distance;  ///< of all points of a group
+  std::uint32_t* candidate_id;
+  std::size_t candidate_capacity;
   SortScratch sort;
   std::uint32_t* neighbors;  ///< room for the number of regions
   std::uint32_t* failed;     ///< output: points without a result, to be searched for one by one
@@ -119,21 +150,31 @@ struct Kernels {
   bool (*collect)(const LayoutView&, const Path&, const Sphere&, Candidates&);
   /// The same from one region only.
   bool (*collectRegion)(const LayoutView&, std::size_t region, const Sphere&, Candidates&);
-  /// Leaves the k nearest candidates in ascending order, ties by id, in the scratch. All candidates
-  /// are nearer than `limit`; there are at most kMostToSort of them.
-  void (*sortNearest)(Candidates&, std::size_t k, float limit, const SortScratch&);
+  /// Leaves the k nearest of `count` candidates in ascending order, ties by id, in the scratch. All
+  /// are nearer than `limit`; there are at most kMostToSort, and those up to Layout::kPadding
+  /// beyond the last were set by padCandidates().
+  void (*sortNearest)(const float* distance, const std::uint32_t* id, std::size_t count,
+                      std::size_t k, float limit, const SortScratch&);
   /// The k nearest of every point of a region.
-  void (*allInRegion)(const LayoutView&, std::size_t region, AllPointsTask&);
+  void (*nearestInRegion)(const LayoutView&, std::size_t region, GroupTask&);
+  /// Everything within the radius of every point of a region.
+  void (*withinInRegion)(const LayoutView&, std::size_t region, GroupTask&);
 };
 
 /// The kernels of the best instruction set that this machine has, or of the one that the
 /// environment variable SEGORIENT_SIMD names (scalar, sse2, avx2) if it has that.
 const Kernels& chooseKernels();
 
-/// Sorts ids of equally distant points.
-void sortIds(std::uint32_t* ids, std::size_t count);
+/// Makes what lies beyond the last candidate come last in any order.
+inline void padCandidates(float* distance, std::uint32_t* id, std::size_t count) {
+  for (std::size_t i = 0; i < 8; ++i) {
+    distance[count + i] = std::numeric_limits<float>::infinity();
+    id[count + i] = 0xffffffffU;
+  }
+}
 
-/// Sorts candidates by distance, ties by id.
-void sortPairs(float* distances, std::uint32_t* ids, std::size_t count);
+/// Sorts candidates by distance, ties by id; in place, too.
+void sortPairs(const float* distance, const std::uint32_t* id, std::size_t count,
+               float* out_distance, std::uint32_t* out_id);
 
 }  // namespace segorient::search

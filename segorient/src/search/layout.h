@@ -4,9 +4,9 @@
 // How the points of a MedianHashIndex lie in memory.
 #pragma once
 
+#include <pcl/types.h>
 #include <segorient/common/fast_vector.h>
 
-#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
@@ -26,7 +26,7 @@ struct Region {
   std::uint32_t begin, end;   ///< its points
   std::uint32_t first_start;  ///< where its cells begin in Layout::starts
   std::uint16_t counts[3];    ///< cells along each axis
-  std::uint16_t identical;    ///< 1 if all its points are in one place; then ascending by id
+  std::uint16_t flat;         ///< 1 in or below a flat node, see Layout::flat
   float inverse_edge;         ///< 1 / edge length of a cell
   float spacing16;            ///< squared distance from a point to its 16th neighbour, typically
 };
@@ -52,34 +52,21 @@ struct Layout {
   std::vector<Split> splits;          ///< by inner node; the first is unused
   std::vector<std::uint16_t> starts;  ///< per region and cell: first point, counted from begin
 
-  std::size_t size() const { return x.empty() ? 0 : x.size() - kPadding; }
-  /// Reports indices[row] instead of row.
-  template <typename Index>
-  void useIndices(const std::vector<Index>& indices);
+  /// A node is flat if all squared distances within it are 0: many points in one place, or so near
+  /// each other that squares vanish. 1 at the topmost flat nodes; empty where there are none. Then
+  /// flat_id has the ids of each such node in ascending order, where its points are.
+  std::vector<std::uint8_t> flat;
+  FastVector<std::uint32_t> flat_id;
 
+  std::size_t size() const { return x.empty() ? 0 : x.size() - kPadding; }
   std::size_t memory() const {
     return (x.capacity() + y.capacity() + z.capacity()) * sizeof(float) +
            (id.capacity() + row.capacity()) * sizeof(std::uint32_t) +
            regions.capacity() * sizeof(Region) + boxes.capacity() * sizeof(Box) +
-           splits.capacity() * sizeof(Split) + starts.capacity() * sizeof(std::uint16_t);
+           splits.capacity() * sizeof(Split) + starts.capacity() * sizeof(std::uint16_t) +
+           flat.capacity() + flat_id.capacity() * sizeof(std::uint32_t);
   }
 };
-
-template <typename Index>
-void Layout::useIndices(const std::vector<Index>& indices) {
-  row = id;
-  for (std::size_t i = 0; i < size(); ++i) id[i] = static_cast<std::uint32_t>(indices[row[i]]);
-  for (const Region& region : regions) {
-    if (region.identical == 0) continue;
-    // Ascending by id, whatever the rows; they are all the same point.
-    const auto begin = row.begin() + region.begin;
-    const auto end = row.begin() + region.end;
-    std::sort(begin, end, [&](auto a, auto b) { return indices[a] < indices[b]; });
-    for (std::uint32_t i = region.begin; i < region.end; ++i) {
-      id[i] = static_cast<std::uint32_t>(indices[row[i]]);
-    }
-  }
-}
 
 /// A finite point on its way into the layout.
 struct BuildPoint {
@@ -90,8 +77,16 @@ struct BuildPoint {
 /// Sorts points into a layout.
 /// \param points used up
 /// \param region_size most points in a region; from 1 to kMostRegionSize
+/// \param indices if not null, indices[row] is reported instead of row
 /// \param threads at least 1; the layout does not depend on it
-Layout buildLayout(BuildPoint* points, std::size_t count, std::size_t region_size, int threads);
+Layout buildLayout(BuildPoint* points, std::size_t count, std::size_t region_size,
+                   const std::vector<pcl::index_t>* indices, int threads);
+
+/// The median subdivision of a layout: regions, boxes and splits.
+/// \param other room for as many points
+/// \return the points region by region, in one of the two arrays
+BuildPoint* subdivide(BuildPoint* points, BuildPoint* other, std::size_t count, std::size_t levels,
+                      int threads, Layout& layout);
 
 /// So that starts fit 16 bits.
 constexpr std::size_t kMostRegionSize = 32768;

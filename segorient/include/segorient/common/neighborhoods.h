@@ -74,4 +74,59 @@ class Neighborhoods {
   std::vector<std::uint32_t> counts_;
 };
 
+/// The neighbours within a radius of every point: rows of different lengths, one after another in
+/// flat arrays.
+///
+/// Rows belong to points and are ordered as in Neighborhoods. Memory: sizeof(pcl::index_t) + 4
+/// bytes a neighbour, or sizeof(pcl::index_t) without distances, and 8 bytes a row.
+class RadiusNeighborhoods {
+ public:
+  std::size_t size() const { return offsets_.size() - 1; }  ///< number of rows
+  bool hasDistances() const { return with_distances_; }     ///< see sqrDistances()
+  std::size_t entries() const { return offsets_.back(); }   ///< of all rows together
+  std::size_t count(std::size_t row) const {                ///< entries in a row
+    return offsets_[row + 1] - offsets_[row];
+  }
+
+  /// The row's neighbours, indices into the cloud.
+  const pcl::index_t* indices(std::size_t row) const { return indices_.data() + offsets_[row]; }
+
+  /// The row's squared distances, or null in a table without distances.
+  const float* sqrDistances(std::size_t row) const {
+    return with_distances_ ? distances_.data() + offsets_[row] : nullptr;
+  }
+
+  /// size() + 1 entries: where each row begins, and the end.
+  const std::vector<std::size_t>& offsets() const { return offsets_; }
+
+  /// For the search that fills the table: first reset(), then setCount() for rows that are not
+  /// empty, then finishCounts(), then the entries.
+  void reset(std::size_t rows, bool with_distances = true) {
+    with_distances_ = with_distances;
+    offsets_.assign(rows + 1, 0);
+  }
+  void setCount(std::size_t row, std::size_t count) { offsets_[row + 1] = count; }
+  void finishCounts() {
+    for (std::size_t i = 1; i < offsets_.size(); ++i) offsets_[i] += offsets_[i - 1];
+    indices_.resize(entries());
+    distances_.resize(with_distances_ ? entries() : 0);
+  }
+  pcl::index_t* mutableIndices(std::size_t row) { return indices_.data() + offsets_[row]; }
+  float* mutableSqrDistances(std::size_t row) {
+    return with_distances_ ? distances_.data() + offsets_[row] : nullptr;
+  }
+
+  /// Bytes in use.
+  std::size_t memory() const {
+    return indices_.capacity() * sizeof(pcl::index_t) + distances_.capacity() * sizeof(float) +
+           offsets_.capacity() * sizeof(std::size_t);
+  }
+
+ private:
+  bool with_distances_ = true;
+  std::vector<std::size_t> offsets_ = {0};
+  FastVector<pcl::index_t> indices_;
+  FastVector<float> distances_;
+};
+
 }  // namespace segorient

@@ -59,7 +59,7 @@ class MedianHash : public pcl::search::KdTree<PointT> {
   /// \param sorted whether radius results are ascending; k nearest are in any case
   explicit MedianHash(bool sorted = true);
 
-  /// Builds the structure on a copy of the coordinates. Resets epsilon to 0, as PCL's kd-tree.
+  /// Builds the structure on a copy of the coordinates. Settings stay as they are.
   /// \param indices points of `cloud` to use, or null for all; invalid ones are left out
   InputResult setInputCloud(const PointCloudConstPtr& cloud,
                             const IndicesConstPtr& indices = IndicesConstPtr()) override;
@@ -93,6 +93,12 @@ class MedianHash : public pcl::search::KdTree<PointT> {
   /// \param with_distances false leaves the squared distances out, which is faster
   void nearestKSearchAll(int k, Neighborhoods& out, bool with_distances = true) const;
 
+  /// All points within `radius` of every point of the input cloud (or of its indices), in rows as
+  /// those of nearestKSearchAll().
+  /// \param max_nn keeps the closest max_nn of each row only; 0 = all
+  void radiusSearchAll(double radius, RadiusNeighborhoods& out, unsigned int max_nn = 0,
+                       bool with_distances = true) const;
+
   /// Most points in a region of the median subdivision; takes effect at the next setInputCloud().
   /// Results do not depend on it. Default 2048.
   void setRegionSize(std::size_t points) {
@@ -102,8 +108,8 @@ class MedianHash : public pcl::search::KdTree<PointT> {
     return options_.region_size;
   }
 
-  /// Threads for building, for nearestKSearchAll() and for batches of queries; 0 (default) = all.
-  /// Results do not depend on it.
+  /// Threads for building, for the searches for all points and for batches of queries; 0 (default)
+  /// = all. Results do not depend on it.
   void setNumberOfThreads(unsigned int threads = 0);
   unsigned int getNumberOfThreads() const {
     return static_cast<unsigned int>(options_.threads);
@@ -126,6 +132,7 @@ class MedianHash : public pcl::search::KdTree<PointT> {
   bool build(const PointCloudConstPtr& cloud, const IndicesConstPtr& indices);
   Access chooseAccess() const;
   bool toFloats(const PointT& point, float* out) const;
+  void checkSearchAll(const char* method) const;
   const PointT* inputPoint(pcl::index_t index) const;
   std::vector<float> batchQueries(const PointCloud& cloud, const Indices& indices) const;
 

@@ -80,11 +80,18 @@ class MedianHashIndex {
   /// \param epsilon instead of the one of build()
   void nearestKAll(int k, Neighborhoods& out, bool with_distances, float epsilon) const;
 
+  /// All points nearer than `radius` to every row that build() was given, as nearestKAll(): each
+  /// row ascending, the point itself first. \param max_nn keeps the closest max_nn of a row only; 0
+  /// = all
+  void radiusAll(double radius, RadiusNeighborhoods& out, unsigned int max_nn = 0,
+                 bool with_distances = true) const;
+
   float epsilon() const;                 ///< as given to build()
   void setNumberOfThreads(int threads);  ///< 0 = all cores; results do not depend on it
 
+  struct Impl;  ///< not for users
+
  private:
-  struct Impl;
   std::unique_ptr<Impl> impl_;
 };
 

@@ -47,7 +47,6 @@ typename MedianHash<PointT>::InputResult MedianHash<PointT>::setInputCloud(
     const PointCloudConstPtr& cloud, const IndicesConstPtr& indices) {
   this->input_ = cloud;
   this->indices_ = indices;
-  this->setEpsilon(0.0F);
   return static_cast<InputResult>(build(cloud, indices));
 }
 
@@ -239,14 +238,26 @@ void MedianHash<PointT>::radiusSearch(const PointCloud& cloud, const Indices& in
   }
 }
 
+// PCL's kd-tree has no search for all points.
+template <typename PointT>
+void MedianHash<PointT>::checkSearchAll(const char* method) const {
+  if (access_ != Access::kPcl) return;
+  PCL_ERROR(
+      "[segorient::MedianHash::%s] The point representation has more than three dimensions!\n",
+      method);
+}
+
 template <typename PointT>
 void MedianHash<PointT>::nearestKSearchAll(int k, Neighborhoods& out, bool with_distances) const {
-  if (access_ == Access::kPcl) {
-    PCL_ERROR(
-        "[segorient::MedianHash::nearestKSearchAll] The point representation has more than three "
-        "dimensions!\n");
-  }
+  checkSearchAll("nearestKSearchAll");
   index_.nearestKAll(k, out, with_distances, this->getEpsilon());
+}
+
+template <typename PointT>
+void MedianHash<PointT>::radiusSearchAll(double radius, RadiusNeighborhoods& out,
+                                         unsigned int max_nn, bool with_distances) const {
+  checkSearchAll("radiusSearchAll");
+  index_.radiusAll(radius, out, max_nn, with_distances);
 }
 
 }  // namespace segorient::search

@@ -7,7 +7,7 @@
 
 // Squared distances as FLANN and any plain loop compute them: ((dx*dx + dy*dy) + dz*dz).
 inline Vector squaredNorm(Vector dx, Vector dy, Vector dz) {
-  return add(add(mul(dx, dx), mul(dy, dy)), mul(dz, dz));
+  return (dx * dx + dy * dy) + dz * dz;
 }
 
 inline float largest(float a, float b) {
@@ -33,6 +33,14 @@ inline float squaredGap(const Box& a, const Box& b) {
   return dx * dx + dy * dy + dz * dz;
 }
 
+// The squared distance from the farthest point of a box to the farthest of another.
+inline float squaredSpan(const Box& a, const Box& b) {
+  const float dx = largest(b.hi[0] - a.lo[0], a.hi[0] - b.lo[0]);
+  const float dy = largest(b.hi[1] - a.lo[1], a.hi[1] - b.lo[1]);
+  const float dz = largest(b.hi[2] - a.lo[2], a.hi[2] - b.lo[2]);
+  return dx * dx + dy * dy + dz * dz;
+}
+
 // ---------------------------------------------------------------------------------------------------
 // The cells of a region that come near a box
 
@@ -46,8 +54,9 @@ struct CellRange {
 // False where rounding would make cell numbers meaningless; then all points have to be looked at.
 inline bool cellRange(const Region& region, const Box& bounds, const Box& box, float squared_reach,
                       CellRange& range) {
-  // The smallest squares are rounded away, hence the absolute part.
-  const float reach = squareRoot(squared_reach) * 1.000001F + 1e-22F;
+  // The smallest squares are rounded away, hence the absolute part. Squares beyond all floats are
+  // not collected.
+  const float reach = squareRoot(smallest(squared_reach, kLargest)) * 1.000001F + 1e-22F;
   float magnitude = 0.0F;
   for (int a = 0; a < 3; ++a) {
     range.lo[a] = (box.lo[a] - bounds.lo[a]) * region.inverse_edge;
@@ -73,12 +82,8 @@ inline bool cellRange(const Region& region, const Box& bounds, const Box& box, f
 // to the box than the square root of squared_reach. Stops where take returns false.
 template <typename Take>
 inline bool forRanges(const LayoutView& view, std::size_t r, const Box& box, float squared_reach,
-                      std::uint32_t most_identical, Take& take) {
+                      Take& take) {
   const Region& region = view.regions[r];
-  if (region.identical != 0) {
-    const std::uint32_t count = region.end - region.begin;
-    return take(region.begin, region.begin + (count < most_identical ? count : most_identical));
-  }
   CellRange range;
   if (!cellRange(region, view.boxes[view.region_count + r], box, squared_reach, range)) {
     return take(region.begin, region.end);
@@ -133,9 +138,9 @@ struct CollectFromRange {
     float* const distance = out.distance;
     std::uint32_t* const id = out.id;
     for (std::uint32_t i = begin; i < end; i += kWidth) {
-      const Vector dx = sub(x, load(v.x + i));
-      const Vector dy = sub(y, load(v.y + i));
-      const Vector dz = sub(z, load(v.z + i));
+      const Vector dx = x - load(v.x + i);
+      const Vector dy = y - load(v.y + i);
+      const Vector dz = z - load(v.z + i);
       const Vector d = squaredNorm(dx, dy, dz);
       unsigned int mask = lessMask(d, bound);
       if (end - i < kWidth) mask &= (1U << (end - i)) - 1U;
@@ -163,8 +168,20 @@ inline Box pointBox(const float* p) {
 bool collectRegion(const LayoutView& view, std::size_t region, const Sphere& sphere,
                    Candidates& out) {
   CollectFromRange take = collector(view, sphere, out);
-  return forRanges(view, region, pointBox(sphere.center), sphere.prune, sphere.most_identical,
-                   take);
+  return forRanges(view, region, pointBox(sphere.center), sphere.prune, take);
+}
+
+// Of a flat node whose points are all equally far, those of the least ids.
+inline bool takeFlat(const LayoutView& view, std::size_t node, float distance, const Sphere& sphere,
+                     Candidates& out) {
+  if (!(distance < sphere.limit)) return true;
+  if (out.count + sphere.most_equal > out.capacity) return false;
+  const std::uint32_t* const id = view.flat_id + firstPoint(view, node);
+  for (std::size_t i = 0; i < sphere.most_equal; ++i) {
+    out.distance[out.count] = distance;
+    out.id[out.count++] = id[i];
+  }
+  return true;
 }
 
 // The regions below a node.
@@ -177,11 +194,17 @@ bool collectBelow(const LayoutView& view, std::size_t node, const Box& point, co
   while (depth > 0) {
     const std::size_t i = stack[--depth];
     if (!(squaredGap(view.boxes[i], point) < sphere.prune)) continue;
+    if (view.flat != nullptr && view.flat[i] != 0 && nodeSize(view, i) > sphere.most_equal) {
+      const float distance = squaredGap(view.boxes[i], point);
+      if (distance == squaredSpan(view.boxes[i], point)) {
+        if (!takeFlat(view, i, distance, sphere, take.out)) return false;
+        continue;
+      }
+    }
     if (i < view.region_count) {
       stack[depth++] = 2 * i;
       stack[depth++] = 2 * i + 1;
-    } else if (!forRanges(view, i - view.region_count, point, sphere.prune, sphere.most_identical,
-                          take)) {
+    } else if (!forRanges(view, i - view.region_count, point, sphere.prune, take)) {
       return false;
     }
   }
@@ -191,7 +214,8 @@ bool collectBelow(const LayoutView& view, std::size_t node, const Box& point, co
 bool collect(const LayoutView& view, const Path& path, const Sphere& sphere, Candidates& out) {
   CollectFromRange take = collector(view, sphere, out);
   const Box point = pointBox(sphere.center);
-  if (!forRanges(view, path.region, point, sphere.prune, sphere.most_identical, take)) return false;
+  if (view.regions[path.region].flat != 0) return collectBelow(view, 1, point, sphere, take);
+  if (!forRanges(view, path.region, point, sphere.prune, take)) return false;
   for (std::size_t i = path.length; i-- > 0;) {
     if (path.squared_distance[i] < sphere.prune &&
         !collectBelow(view, path.other_side[i], point, sphere, take)) {
@@ -199,124 +223,4 @@ bool collect(const LayoutView& view, const Path& path, const Sphere& sphere, Can
     }
   }
   return true;
-}
-
-// ---------------------------------------------------------------------------------------------------
-// Sorting
-
-// Where equal distances stay in the order they have.
-void rankStable(const float* distance, std::size_t count, std::uint32_t* rank) {
-  for (std::size_t i = 0; i < count; ++i) {
-    std::uint32_t before = 0;
-    for (std::size_t j = 0; j < i; ++j) before += distance[j] <= distance[i] ? 1U : 0U;
-    for (std::size_t j = i; j < count; ++j) before += distance[j] < distance[i] ? 1U : 0U;
-    rank[i] = before;
-  }
-}
-
-// For `kVectors` vectors of distances from vector number `first` on, how many of all are less.
-template <std::size_t kVectors>
-inline Counter rankVectors(const float* distance, std::size_t count, std::size_t first,
-                           std::uint32_t* rank) {
-  const float* const own = distance + first * kWidth;
-  rank += first * kWidth;
-  Vector v[kVectors];
-  Counter c[kVectors];
-  for (std::size_t i = 0; i < kVectors; ++i) {
-    v[i] = load(own + i * kWidth);
-    c[i] = zeroCounter();
-  }
-  for (std::size_t j = 0; j < count; ++j) {
-    const Vector other = broadcast(distance[j]);
-    for (std::size_t i = 0; i < kVectors; ++i) c[i] = countLess(c[i], other, v[i]);
-  }
-  Counter sum = zeroCounter();
-  for (std::size_t i = 0; i < kVectors; ++i) {
-    store(rank + i * kWidth, c[i]);
-    sum = addCounters(sum, c[i]);
-  }
-  return sum;
-}
-
-// Writes the candidates in ascending order. Each one's place is the number of those before it,
-// which takes quadratic but straight work: for some tens of candidates nothing else is as fast.
-void sortByRank(float* distance, std::uint32_t* id, std::size_t count, const SortScratch& scratch,
-                float* out_distance, std::uint32_t* out_id) {
-  const std::size_t vectors = (count + kWidth - 1) / kWidth;
-  const std::size_t padded = vectors * kWidth;
-  for (std::size_t i = count; i < padded; ++i) distance[i] = kInfinity;
-  std::uint32_t* const rank = scratch.rank;
-  Counter sum = zeroCounter();
-  std::size_t v = 0;
-  for (; v + 4 <= vectors; v += 4) {
-    sum = addCounters(sum, rankVectors<4>(distance, count, v, rank));
-  }
-  if (vectors - v == 3) sum = addCounters(sum, rankVectors<3>(distance, count, v, rank));
-  if (vectors - v == 2) sum = addCounters(sum, rankVectors<2>(distance, count, v, rank));
-  if (vectors - v == 1) sum = addCounters(sum, rankVectors<1>(distance, count, v, rank));
-  // Without ties, ranks are 0, 1, 2 ...; each pad counts all the others.
-  const bool ties = total(sum) != count * (count - 1) / 2 + (padded - count) * count;
-  if (ties) rankStable(distance, count, rank);
-  // As pairs, so that there is one write each.
-  for (std::size_t i = 0; i < padded; i += kWidth) {
-    interleave(distance + i, id + i, scratch.pairs + 2 * i);
-  }
-  for (std::size_t i = 0; i < count; ++i) {
-    __builtin_memcpy(scratch.sorted_pairs + 2 * std::size_t{rank[i]}, scratch.pairs + 2 * i, 8);
-  }
-  for (std::size_t i = 0; i < padded; i += kWidth) {
-    deinterleave(scratch.sorted_pairs + 2 * i, out_distance + i, out_id + i);
-  }
-  if (!ties) return;
-  for (std::size_t i = 0; i + 1 < count;) {
-    std::size_t end = i + 1;
-    while (end < count && out_distance[end] == out_distance[i]) ++end;
-    if (end - i > 1) sortIds(out_id + i, end - i);
-    i = end;
-  }
-}
-
-// Above this, candidates are first divided by distance.
-constexpr std::size_t kMostToRank = 96;
-
-// Copies the candidates of distances in [from, to).
-std::size_t select(const Candidates& in, float from, float to, float* distance, std::uint32_t* id) {
-  const Vector low = broadcast(from);
-  const Vector high = broadcast(to);
-  std::size_t count = 0;
-  for (std::size_t i = 0; i < in.count; i += kWidth) {
-    const Vector d = load(in.distance + i);
-    unsigned int mask = lessMask(d, high) & ~lessMask(d, low);
-    if (in.count - i < kWidth) mask &= (1U << (in.count - i)) - 1U;
-    compress(d, mask, distance + count);
-    count += compressIds(in.id + i, mask, id + count);
-  }
-  return count;
-}
-
-void sortNearest(Candidates& in, std::size_t k, float limit, const SortScratch& scratch) {
-  if (in.count <= kMostToRank) {
-    sortByRank(in.distance, in.id, in.count, scratch, scratch.distance, scratch.id);
-    return;
-  }
-  const std::size_t parts = in.count / 32;
-  const float step = limit / static_cast<float>(parts);
-  std::size_t done = 0;
-  float from = 0.0F;
-  for (std::size_t part = 1; part <= parts && done < k; ++part) {
-    const float to = part == parts ? limit : step * static_cast<float>(part);
-    const std::size_t count = select(in, from, to, scratch.part_distance, scratch.part_id);
-    if (count <= kMostToRank) {
-      sortByRank(scratch.part_distance, scratch.part_id, count, scratch, scratch.distance + done,
-                 scratch.id + done);
-    } else {
-      for (std::size_t i = 0; i < count; ++i) {
-        scratch.distance[done + i] = scratch.part_distance[i];
-        scratch.id[done + i] = scratch.part_id[i];
-      }
-      sortPairs(scratch.distance + done, scratch.id + done, count);
-    }
-    done += count;
-    from = to;
-  }
 }

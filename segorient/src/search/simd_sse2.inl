@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the segorient authors
+//
+// Every x86-64 machine has SSE2. There is no shuffle by a variable, hence the plain stores.
+
+constexpr std::uint32_t kWidth = 4;
+#include "simd_vector.inl"
+
+inline Vector largestOf(Vector a, Vector b) {
+  return _mm_max_ps(a, b);
+}
+inline unsigned int lessMask(Vector a, Vector b) {
+  return static_cast<unsigned int>(_mm_movemask_ps(_mm_cmplt_ps(a, b)));
+}
+inline void compress(Vector v, unsigned int mask, float* out) {
+  if (mask == 0) return;
+  float lanes[4];
+  _mm_storeu_ps(lanes, v);
+  std::size_t n = 0;
+  for (unsigned int lane = 0; lane < 4; ++lane) {
+    out[n] = lanes[lane];
+    n += (mask >> lane) & 1U;
+  }
+}
+inline std::size_t compressIds(const std::uint32_t* ids, unsigned int mask, std::uint32_t* out) {
+  if (mask == 0) return 0;
+  std::size_t n = 0;
+  for (unsigned int lane = 0; lane < 4; ++lane) {
+    out[n] = ids[lane];
+    n += (mask >> lane) & 1U;
+  }
+  return n;
+}
+
+struct Keys {
+  __m128d low, high;
+};
+
+inline Keys packKeys(const float* distance, const std::uint32_t* id) {
+  const __m128i biased = _mm_add_epi32(_mm_castps_si128(_mm_loadu_ps(distance)),
+                                       _mm_set1_epi32(static_cast<int>(kKeyBias)));
+  const __m128i ids = _mm_loadu_si128(reinterpret_cast<const __m128i*>(id));
+  return {_mm_castsi128_pd(_mm_unpacklo_epi32(ids, biased)),
+          _mm_castsi128_pd(_mm_unpackhi_epi32(ids, biased))};
+}
+inline void unpackKeys(const Keys& keys, float* distance, std::uint32_t* id) {
+  const __m128 a = _mm_castpd_ps(keys.low);
+  const __m128 b = _mm_castpd_ps(keys.high);
+  const __m128i biased = _mm_castps_si128(_mm_shuffle_ps(a, b, 0xdd));
+  _mm_storeu_si128(reinterpret_cast<__m128i*>(distance),
+                   _mm_sub_epi32(biased, _mm_set1_epi32(static_cast<int>(kKeyBias))));
+  _mm_storeu_si128(reinterpret_cast<__m128i*>(id), _mm_castps_si128(_mm_shuffle_ps(a, b, 0x88)));
+}
+inline Keys minOf(const Keys& a, const Keys& b) {
+  return {_mm_min_pd(a.low, b.low), _mm_min_pd(a.high, b.high)};
+}
+inline Keys maxOf(const Keys& a, const Keys& b) {
+  return {_mm_max_pd(a.low, b.low), _mm_max_pd(a.high, b.high)};
+}
+inline Keys swapPairs(const Keys& a) {
+  return {_mm_shuffle_pd(a.low, a.low, 1), _mm_shuffle_pd(a.high, a.high, 1)};
+}
+inline Keys reverse(const Keys& a) {
+  return {_mm_shuffle_pd(a.high, a.high, 1), _mm_shuffle_pd(a.low, a.low, 1)};
+}
+inline Keys swapHalves(const Keys& a) {
+  return {a.high, a.low};
+}
+inline Keys evenOdd(const Keys& even, const Keys& odd) {
+  return {_mm_shuffle_pd(even.low, odd.low, 2), _mm_shuffle_pd(even.high, odd.high, 2)};
+}
+inline Keys lowHigh(const Keys& low, const Keys& high) {
+  return {low.low, high.high};
+}
+inline void transpose(Keys (&k)[4]) {
+  const Keys a = k[0];
+  const Keys b = k[1];
+  const Keys c = k[2];
+  const Keys d = k[3];
+  k[0] = {_mm_unpacklo_pd(a.low, b.low), _mm_unpacklo_pd(c.low, d.low)};
+  k[1] = {_mm_unpackhi_pd(a.low, b.low), _mm_unpackhi_pd(c.low, d.low)};
+  k[2] = {_mm_unpacklo_pd(a.high, b.high), _mm_unpacklo_pd(c.high, d.high)};
+  k[3] = {_mm_unpackhi_pd(a.high, b.high), _mm_unpackhi_pd(c.high, d.high)};
+}

@@ -1,0 +1,181 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the segorient authors
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include "layout.h"
+
+namespace segorient::search {
+namespace {
+
+// Fewer points than this are a task of their own no longer.
+constexpr std::size_t kTaskSize = 20000;
+
+Box boxOf(const BuildPoint* points, std::size_t count) {
+  constexpr float kInfinity = std::numeric_limits<float>::infinity();
+  float lo[3] = {kInfinity, kInfinity, kInfinity};
+  float hi[3] = {-kInfinity, -kInfinity, -kInfinity};
+  for (std::size_t i = 0; i < count; ++i) {
+    for (int a = 0; a < 3; ++a) {
+      const float v = points[i].xyz[a];
+      lo[a] = v < lo[a] ? v : lo[a];
+      hi[a] = v > hi[a] ? v : hi[a];
+    }
+  }
+  return {{lo[0], lo[1], lo[2]}, {hi[0], hi[1], hi[2]}};
+}
+
+int longestAxis(const Box& box) {
+  int axis = 0;
+  for (int a = 1; a < 3; ++a) {
+    // Halves, since the extent itself may overflow.
+    if (box.hi[a] / 2 - box.lo[a] / 2 > box.hi[axis] / 2 - box.lo[axis] / 2) axis = a;
+  }
+  return axis;
+}
+
+Box merged(const Box& a, const Box& b) {
+  Box box;
+  for (int i = 0; i < 3; ++i) {
+    box.lo[i] = std::min(a.lo[i], b.lo[i]);
+    box.hi[i] = std::max(a.hi[i], b.hi[i]);
+  }
+  return box;
+}
+
+// What a sample tells: an interval that the element of a rank is most likely in.
+struct Estimate {
+  float lo, hi;
+};
+
+// Every `stride`-th point is the sample.
+std::size_t sampleSize(std::size_t count) {
+  return std::min(std::max<std::size_t>(count / 16, 64), std::size_t{1024});
+}
+
+Estimate estimate(const BuildPoint* points, std::size_t count, std::size_t rank, int axis) {
+  std::array<float, 1024> sample;
+  const std::size_t size = sampleSize(count);
+  for (std::size_t i = 0; i < size; ++i) sample[i] = points[i * count / size].xyz[axis];
+  // 2.5 standard deviations of the rank, which is at most that of a fair coin.
+  const auto deviation = static_cast<std::size_t>(1.25 * std::sqrt(static_cast<double>(size))) + 1;
+  const std::size_t middle = rank * size / count;
+  const std::size_t low = middle - std::min(deviation, middle);
+  const std::size_t high = std::min(middle + deviation, size - 1);
+  float* const end = sample.data() + size;
+  std::nth_element(sample.data(), sample.data() + low, end);
+  std::nth_element(sample.data() + low, sample.data() + high, end);
+  return {sample[low], sample[high]};
+}
+
+int longestAxisOfSample(const BuildPoint* points, std::size_t count) {
+  std::array<BuildPoint, 256> sample;
+  const std::size_t size = std::min(sample.size(), count);
+  for (std::size_t i = 0; i < size; ++i) sample[i] = points[i * count / size];
+  return longestAxis(boxOf(sample.data(), size));
+}
+
+// Copies to `to`, the `half` points of the least coordinates in front. What is below or above an
+// estimated interval is in place after one pass without a branch; the rest is divided likewise.
+// \param scratch room for twice as many points
+// \return the least coordinate behind
+float divideInTwo(const BuildPoint* from, std::size_t count, BuildPoint* to, std::size_t half,
+                  int axis, BuildPoint* scratch) {
+  const auto less = [axis](const BuildPoint& p, const BuildPoint& q) {
+    return p.xyz[axis] < q.xyz[axis];
+  };
+  if (count < 200) {
+    std::copy(from, from + count, to);
+    std::nth_element(to, to + half, to + count, less);
+    return to[half].xyz[axis];
+  }
+  const Estimate guess = estimate(from, count, half, axis);
+  BuildPoint* const inside = scratch;
+  std::size_t left = 0;
+  std::size_t right = count;
+  std::size_t middle = 0;
+  for (std::size_t i = 0; i < count; ++i) {
+    const BuildPoint p = from[i];
+    const float v = p.xyz[axis];
+    const bool below = v < guess.lo;
+    const bool above = v > guess.hi;
+    to[left] = p;
+    to[right - 1] = p;
+    inside[middle] = p;
+    left += below ? 1 : 0;
+    right -= above ? 1 : 0;
+    middle += below || above ? 0 : 1;
+  }
+  if (left <= half && half < left + middle && middle < count / 2) {
+    return divideInTwo(inside, middle, to + left, half - left, axis, inside + middle + 1);
+  }
+  // The estimate was wrong, or many coordinates are equal.
+  std::copy(inside, inside + middle, to + left);
+  std::nth_element(to, to + half, to + count, less);
+  return to[half].xyz[axis];
+}
+
+class Subdivision {
+ public:
+  Subdivision(BuildPoint* points, BuildPoint* other, std::size_t levels, Layout& layout)
+      : points_(points), other_(other), levels_(levels), layout_(layout) {
+    layout.boxes.resize(std::size_t{2} << levels);
+    layout.splits.resize(std::size_t{1} << levels);
+    layout.regions.resize(std::size_t{1} << levels);
+  }
+
+  // \return the points region by region, in one of the two arrays
+  BuildPoint* run(std::size_t count, int threads) {
+#pragma omp parallel num_threads(threads) if (threads > 1)
+#pragma omp single
+    divide(1, 0, 0, count);
+    for (std::size_t node = layout_.regions.size() - 1; node > 0; --node) {
+      layout_.boxes[node] = merged(layout_.boxes[2 * node], layout_.boxes[2 * node + 1]);
+    }
+    return levels_ % 2 == 0 ? points_ : other_;
+  }
+
+ private:
+  void divide(std::size_t node, std::size_t level, std::size_t begin, std::size_t end) {
+    const BuildPoint* from = (level % 2 == 0 ? points_ : other_) + begin;
+    const std::size_t count = end - begin;
+    if (level == levels_) {
+      layout_.boxes[node] = boxOf(from, count);
+      Region& region = layout_.regions[node - layout_.regions.size()];
+      region.begin = static_cast<std::uint32_t>(begin);
+      region.end = static_cast<std::uint32_t>(end);
+      return;
+    }
+    const std::size_t half = count / 2;
+    {
+      thread_local FastVector<BuildPoint> scratch;
+      scratch.resize(2 * count + 2);
+      const int axis = longestAxisOfSample(from, count);
+      BuildPoint* to = (level % 2 == 0 ? other_ : points_) + begin;
+      const float value = divideInTwo(from, count, to, half, axis, scratch.data());
+      layout_.splits[node] = {value, static_cast<std::uint32_t>(axis)};
+    }
+    const std::size_t middle = begin + half;
+#pragma omp task if (count > kTaskSize)
+    divide(2 * node, level + 1, begin, middle);
+#pragma omp task if (count > kTaskSize)
+    divide(2 * node + 1, level + 1, middle, end);
+#pragma omp taskwait
+  }
+
+  BuildPoint* points_;
+  BuildPoint* other_;
+  std::size_t levels_;
+  Layout& layout_;
+};
+
+}  // namespace
+
+BuildPoint* subdivide(BuildPoint* points, BuildPoint* other, std::size_t count, std::size_t levels,
+                      int threads, Layout& layout) {
+  return Subdivision(points, other, levels, layout).run(count, threads);
+}
+
+}  // namespace segorient::search

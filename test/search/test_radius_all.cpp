@@ -1,0 +1,185 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the segorient authors
+#include <gtest/gtest.h>
+#include <segorient/search/median_hash.h>
+
+#include <cmath>
+#include <cstdlib>
+#include <limits>
+
+#include "brute_force.h"
+#include "search_clouds.h"
+
+namespace segorient::test {
+namespace {
+
+using search::MedianHashIndex;
+
+std::vector<Neighbor> row(const RadiusNeighborhoods& table, std::size_t i) {
+  std::vector<Neighbor> result;
+  for (std::size_t j = 0; j < table.count(i); ++j) {
+    result.push_back({table.sqrDistances(i)[j], table.indices(i)[j]});
+  }
+  return result;
+}
+
+// What the table owes to point `self`: itself first, then all that is strictly nearer than the
+// radius.
+std::vector<Neighbor> expectedRow(const PointView& points, pcl::index_t self, double radius,
+                                  unsigned int max_nn,
+                                  const std::vector<pcl::index_t>* indices = nullptr) {
+  const std::size_t rows = indices != nullptr ? indices->size() : points.size;
+  std::vector<Neighbor> all = bruteForceRow(points, self, rows, indices);
+  const auto limit = static_cast<float>(std::min(radius * radius, 1e300));
+  const auto far = std::find_if(all.begin(), all.end(),
+                                [&](const Neighbor& n) { return !(n.distance < limit); });
+  all.erase(far, all.end());
+  if (max_nn > 0 && all.size() > max_nn) all.resize(max_nn);
+  return all;
+}
+
+// Radii with about 1, 20 and 150 results, and one with all.
+std::vector<double> radii(const SearchCloud& cloud) {
+  std::vector<double> result{1e25};
+  std::size_t at = cloud.size() / 2;
+  while (!isFinite(cloud.view()[at])) ++at;
+  const auto all = bruteForce(cloud.view(), cloud.view()[at]);
+  for (const std::size_t rank : {std::size_t{1}, std::size_t{20}, std::size_t{150}}) {
+    result.push_back(std::sqrt(static_cast<double>(all[rank].distance)));
+  }
+  return result;
+}
+
+class RadiusAll : public testing::TestWithParam<SearchCloud> {};
+
+TEST_P(RadiusAll, EqualsBruteForce) {
+  const SearchCloud& cloud = GetParam();
+  for (const std::size_t region_size : {std::size_t{40}, std::size_t{2048}}) {
+    MedianHashIndex::Options options;
+    options.region_size = region_size;
+    MedianHashIndex index;
+    index.build(cloud.view(), nullptr, options);
+    for (const double radius : radii(cloud)) {
+      for (const unsigned int max_nn : {0U, 3U}) {
+        RadiusNeighborhoods table;
+        index.radiusAll(radius, table, max_nn);
+        ASSERT_EQ(table.size(), cloud.size());
+        for (std::size_t i = 0; i < cloud.size(); i += 31) {
+          std::vector<Neighbor> expected;
+          if (isFinite(cloud.view()[i])) {
+            expected = expectedRow(cloud.view(), static_cast<pcl::index_t>(i), radius, max_nn);
+          }
+          ASSERT_EQ(row(table, i), expected) << "row " << i << ", radius " << radius;
+        }
+      }
+    }
+  }
+}
+
+TEST_P(RadiusAll, SubsetOfIndices) {
+  const SearchCloud& cloud = GetParam();
+  std::vector<pcl::index_t> indices;
+  for (std::size_t i = 0; i < cloud.size(); i += 2) {
+    indices.push_back(static_cast<pcl::index_t>(cloud.size() - 1 - i));
+  }
+  indices.push_back(indices.front());
+  indices.insert(indices.begin() + 5, -7);
+  indices.push_back(static_cast<pcl::index_t>(cloud.size()));
+  MedianHashIndex index;
+  index.build(cloud.view(), &indices, {});
+  const double radius = radii(cloud)[2];
+  RadiusNeighborhoods table;
+  index.radiusAll(radius, table);
+  ASSERT_EQ(table.size(), indices.size());
+  for (std::size_t i = 0; i < indices.size(); i += i < 10 ? 1 : 13) {
+    const bool valid = indices[i] >= 0 && static_cast<std::size_t>(indices[i]) < cloud.size() &&
+                       isFinite(cloud.view()[static_cast<std::size_t>(indices[i])]);
+    const auto expected =
+        valid ? expectedRow(cloud.view(), indices[i], radius, 0, &indices) : std::vector<Neighbor>{};
+    ASSERT_EQ(row(table, i), expected) << "row " << i;
+  }
+}
+
+TEST_P(RadiusAll, SameForAnyNumberOfThreadsAndInstructionSet) {
+  const SearchCloud& cloud = GetParam();
+  const double radius = radii(cloud)[2];
+  RadiusNeighborhoods first;
+  for (const char* instruction_set : {"scalar", "sse2", "avx2"}) {
+    setenv("SEGORIENT_SIMD", instruction_set, 1);
+    MedianHashIndex::Options options;
+    options.region_size = 100;
+    options.threads = 3;
+    MedianHashIndex index;
+    index.build(cloud.view(), nullptr, options);
+    unsetenv("SEGORIENT_SIMD");
+    RadiusNeighborhoods table;
+    index.radiusAll(radius, table, 0, false);
+    ASSERT_FALSE(table.hasDistances());
+    EXPECT_EQ(table.sqrDistances(0), nullptr);
+    index.setNumberOfThreads(1);
+    RadiusNeighborhoods one;
+    index.radiusAll(radius, one);
+    if (first.size() == 0) first = one;
+    ASSERT_EQ(table.offsets(), first.offsets());
+    ASSERT_EQ(one.offsets(), first.offsets());
+    ASSERT_GT(first.entries(), 0U);
+    ASSERT_TRUE(std::equal(table.indices(0), table.indices(0) + first.entries(), first.indices(0)));
+    ASSERT_TRUE(std::equal(one.indices(0), one.indices(0) + first.entries(), first.indices(0)));
+    ASSERT_TRUE(std::equal(one.sqrDistances(0), one.sqrDistances(0) + first.entries(),
+                           first.sqrDistances(0)));
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Clouds, RadiusAll, testing::ValuesIn(searchClouds(1000)));
+
+using Cloud = pcl::PointCloud<pcl::PointXYZ>;
+
+Cloud::Ptr toPcl(const SearchCloud& from) {
+  auto cloud = pcl::make_shared<Cloud>();
+  for (std::size_t i = 0; i < from.size(); ++i) {
+    cloud->push_back({from.view()[i][0], from.view()[i][1], from.view()[i][2]});
+  }
+  return cloud;
+}
+
+TEST(RadiusAllOfMedianHash, EqualsQueriesByIndex) {
+  const auto cloud = toPcl(searchClouds(9000).at(1));
+  const auto indices = pcl::make_shared<pcl::Indices>();
+  for (pcl::index_t i = 8000; i > 0; i -= 3) indices->push_back(i);
+  search::MedianHash<pcl::PointXYZ> tree;
+  for (const auto& used : {pcl::IndicesPtr(), indices}) {
+    tree.setInputCloud(cloud, used);
+    RadiusNeighborhoods table;
+    tree.radiusSearchAll(0.06, table, 30);
+    ASSERT_EQ(table.size(), used ? used->size() : cloud->size());
+    pcl::Indices found;
+    std::vector<float> distances;
+    for (std::size_t i = 0; i < table.size(); ++i) {
+      tree.radiusSearch(static_cast<pcl::index_t>(i), 0.06, found, distances, 30);
+      ASSERT_EQ(found, pcl::Indices(table.indices(i), table.indices(i) + table.count(i)));
+      ASSERT_EQ(distances, std::vector<float>(table.sqrDistances(i),
+                                              table.sqrDistances(i) + table.count(i)));
+    }
+  }
+}
+
+TEST(RadiusAllOfMedianHash, NothingToFind) {
+  search::MedianHash<pcl::PointXYZ> tree;
+  RadiusNeighborhoods table;
+  EXPECT_EQ(table.size(), 0U);
+  tree.radiusSearchAll(1.0, table);
+  EXPECT_EQ(table.size(), 0U);
+  EXPECT_EQ(table.entries(), 0U);
+  const auto cloud = toPcl(searchClouds(50).front());
+  tree.setInputCloud(cloud);
+  for (const double radius : {0.0, -1.0, 1e-40, std::numeric_limits<double>::quiet_NaN()}) {
+    tree.radiusSearchAll(radius, table);
+    EXPECT_EQ(table.size(), cloud->size()) << radius;
+    EXPECT_EQ(table.entries(), 0U) << radius;
+  }
+  tree.radiusSearchAll(std::numeric_limits<double>::infinity(), table);
+  EXPECT_EQ(table.entries(), cloud->size() * cloud->size());
+}
+
+}  // namespace
+}  // namespace segorient::test
