@@ -133,7 +133,7 @@ TEST(NormalSegmentation, AllWaysToNeighborsGiveTheSame) {
   ready.extract(clusters);
   SegmentationOptions options;
   options.neighbors = static_cast<int>(ready.getNumberOfNeighbours());
-  EXPECT_EQ(ready.getLabels(), prepared.segment(options).labels);
+  EXPECT_EQ(ready.getSegmentation().labels, prepared.segment(options).labels);
 }
 
 TEST(NormalSegmentation, IndicesAndBadPoints) {

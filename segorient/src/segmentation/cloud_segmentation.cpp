@@ -94,16 +94,20 @@ Segmentation expand(const Segmentation& compact, const std::vector<pcl::index_t>
 
 void CloudSegmentation::clear() {
   result_ = Segmentation{};
+  faces_ = Segmentation{};
+  united_ = false;
   report_ = SegmentationReport{};
   table_ = nullptr;
   own_table_ = Neighborhoods{};
   source_.clear();
+  row_of_point_.clear();
 }
 
 bool CloudSegmentation::compute(const Input& input, const SegmentationOptions& options) {
   clear();
   if (input.normals.size() != 4 * input.points.size || input.points.size == 0) return false;
   neighbors_ = std::max(input.neighbors, 1);
+  united_ = input.unite_smooth;
   if (input.table != nullptr) return computeWithTable(input, options);
   computeCompact(input, options);
   return true;
@@ -126,7 +130,7 @@ bool CloudSegmentation::computeWithTable(const Input& input, const SegmentationO
   used.neighbors = neighbors_;
   table_ = input.table;
   result_ = segmentByNormals(input.points, {normals.data(), 4, input.points.size}, *table_, used,
-                             &report_);
+                             &report_, united_ ? &faces_ : nullptr);
   return true;
 }
 
@@ -136,10 +140,10 @@ void CloudSegmentation::computeCompact(const Input& input, const SegmentationOpt
     return input.indices != nullptr ? (*input.indices)[position]
                                     : static_cast<pcl::index_t>(position);
   };
-  std::vector<pcl::index_t> row_of_point(input.points.size, -1);
+  row_of_point_.assign(input.points.size, -1);
   for (std::size_t i = 0; i < compact.row_of.size(); ++i) {
     if (compact.row_of[i] >= 0)
-      row_of_point[static_cast<std::size_t>(pointAt(i))] = compact.row_of[i];
+      row_of_point_[static_cast<std::size_t>(pointAt(i))] = compact.row_of[i];
   }
   source_.reserve(compact.size());
   std::vector<float> normals(4 * compact.size());
@@ -150,7 +154,7 @@ void CloudSegmentation::computeCompact(const Input& input, const SegmentationOpt
   const int k = static_cast<int>(std::min<std::size_t>(static_cast<std::size_t>(neighbors_) + 1,
                                                        std::max<std::size_t>(compact.size(), 1)));
   if (input.search) {
-    searchEach(input.search, source_, row_of_point, k, own_table_);
+    searchEach(input.search, source_, row_of_point_, k, own_table_);
   } else {
     search::MedianHashIndex index;
     search::MedianHashIndex::Options search_options;
@@ -160,9 +164,35 @@ void CloudSegmentation::computeCompact(const Input& input, const SegmentationOpt
   }
   SegmentationOptions used = options;
   used.neighbors = neighbors_;
-  const Segmentation segments = segmentByNormals(
-      compact.view(), {normals.data(), 4, compact.size()}, own_table_, used, &report_);
-  result_ = expand(segments, row_of_point, input.normals);
+  Segmentation faces;
+  const Segmentation segments =
+      segmentByNormals(compact.view(), {normals.data(), 4, compact.size()}, own_table_, used,
+                       &report_, united_ ? &faces : nullptr);
+  result_ = expand(segments, row_of_point_, input.normals);
+  if (united_) faces_ = expand(faces, row_of_point_, input.normals);
+}
+
+std::vector<float> CloudSegmentation::confidences() const {
+  const std::vector<std::int32_t>& labels = faces().labels;
+  const Neighborhoods& table = table_ != nullptr ? *table_ : own_table_;
+  std::vector<float> result(labels.size(), 0.F);
+  const auto pointOf = [&](pcl::index_t row) {
+    return static_cast<std::size_t>(table_ != nullptr ? row
+                                                      : source_[static_cast<std::size_t>(row)]);
+  };
+  for (std::size_t row = 0; row < table.size(); ++row) {
+    const std::size_t p = pointOf(static_cast<pcl::index_t>(row));
+    const int count = std::min(table.count(row), neighbors_ + 1);
+    if (labels[p] < 0 || count < 2) continue;
+    int same = 0;
+    for (int j = 1; j < count; ++j) same += labels[pointOf(table.indices(row)[j])] == labels[p];
+    result[p] = static_cast<float>(same) / static_cast<float>(count - 1);
+  }
+  // Exact duplicates have the row of the first of them.
+  for (std::size_t p = 0; p < row_of_point_.size(); ++p) {
+    if (row_of_point_[p] >= 0) result[p] = result[pointOf(row_of_point_[p])];
+  }
+  return result;
 }
 
 SegmentGraph CloudSegmentation::graph() const {

@@ -103,8 +103,14 @@ struct GrowthState {
   std::vector<std::int8_t> signs;
   std::vector<std::uint8_t> on_border;  ///< 0 = surely no neighbour in another segment
   std::vector<Cluster> clusters;
-  std::vector<SegmentKind> kinds;  ///< by cluster, after the clean-up
+  std::vector<std::uint8_t> strips;  ///< by cluster: 1 = has no inside, see findStrips()
+  std::vector<SegmentKind> kinds;    ///< by cluster, after the clean-up
 
+  /// Whether a cluster is one that points can be moved to and others be measured by.
+  bool isFace(std::int32_t label, std::size_t small_size) const {
+    const auto at = static_cast<std::size_t>(label);
+    return clusters[at].size >= small_size && strips[at] == 0;
+  }
   int rowSize(std::size_t row) const { return std::min(neighborhoods->count(row), neighbors); }
 };
 
@@ -115,12 +121,20 @@ void prepare(const PointView& points, const PointView& normals, const Segmentati
 /// Region growing.
 void grow(const SegmentationOptions& options, GrowthState& state);
 
+/// Marks the clusters that have no inside: rows of points along sharp edges, where the normals lean
+/// over both faces and agree with each other. However long they are, they are no faces.
+void findStrips(const SegmentationOptions& options, GrowthState& state);
+
 /// The three clean-up passes; sets the kinds.
 void cleanUp(const SegmentationOptions& options, GrowthState& state, SegmentationReport& report);
 
 /// Moves points along sharp borders to the segment whose surface passes nearest to them.
 /// \return how many moved
 std::size_t settleEdges(const SegmentationOptions& options, GrowthState& state);
+
+/// Unites regular segments whose common border is smooth. Signs follow.
+/// \return how many segments became part of another one
+std::size_t uniteSmooth(const SegmentationOptions& options, GrowthState& state);
 
 /// Final labels and segment data.
 Segmentation finish(const PointView& points, const GrowthState& state);

@@ -8,9 +8,11 @@ namespace segorient {
 
 Segmentation segmentByNormals(const PointView& points, const PointView& normals,
                               const Neighborhoods& neighborhoods,
-                              const SegmentationOptions& options, SegmentationReport* report) {
+                              const SegmentationOptions& options, SegmentationReport* report,
+                              Segmentation* faces) {
   SegmentationReport counts;
   Segmentation result;
+  if (faces != nullptr) *faces = Segmentation{};
   if (points.size > 0 && points.size == normals.size && points.size == neighborhoods.size()) {
     segmentation::GrowthState state;
     state.neighborhoods = &neighborhoods;
@@ -27,6 +29,10 @@ Segmentation segmentByNormals(const PointView& points, const PointView& normals,
       counts.regular += segment.kind == SegmentKind::Regular;
       counts.connected += segment.kind == SegmentKind::Connected;
       counts.isolated += segment.kind == SegmentKind::Isolated;
+    }
+    if (faces != nullptr) {
+      counts.united = segmentation::uniteSmooth(options, state);
+      *faces = counts.united > 0 ? segmentation::finish(points, state) : result;
     }
   }
   if (report != nullptr) *report = counts;

@@ -34,6 +34,7 @@ class CleanUp {
   bool isSmall(std::int32_t label) const {
     return state_.clusters[static_cast<std::size_t>(label)].size < small_size_;
   }
+  bool isFace(std::int32_t label) const { return state_.isFace(label, small_size_); }
   std::int32_t bestHost(std::int32_t label);
   void join(std::int32_t from, std::int32_t into);
   bool tryExtract(std::uint32_t slot);
@@ -134,7 +135,7 @@ bool CleanUp::tryExtract(std::uint32_t slot) {
   double best_sign = 1.0;
   adjacency_.forEachNeighbor(slot, [&](std::size_t q) {
     const std::int32_t label = state_.labels[q];
-    if (label == own || isSmall(label)) return;
+    if (label == own || !isFace(label)) return;
     const Node& node = state_.nodes[p];
     if (!(std::abs(dotNormals(node, state_.nodes[q])) > cos_alpha_)) return;
     if (!state_.limits.admissible(state_.nodes[q], node)) return;
@@ -164,19 +165,18 @@ void CleanUp::extractEdges(SegmentationReport& report) {
   std::vector<std::uint32_t> queue;
   std::vector<std::uint8_t> queued(adjacency_.size(), 0);
   for (std::uint32_t slot = 0; slot < adjacency_.size(); ++slot) {
-    if (!isSmall(state_.labels[adjacency_.point(slot)])) continue;
+    if (isFace(state_.labels[adjacency_.point(slot)])) continue;
     queue.push_back(slot);
     queued[slot] = 1;
   }
   for (std::size_t head = 0; head < queue.size(); ++head) {
     const std::uint32_t slot = queue[head];
     queued[slot] = 0;
-    if (!isSmall(state_.labels[adjacency_.point(slot)]) || !tryExtract(slot)) continue;
+    if (isFace(state_.labels[adjacency_.point(slot)]) || !tryExtract(slot)) continue;
     ++report.extracted;
     adjacency_.forEachNeighbor(slot, [&](std::size_t q) {
       const std::uint32_t other = adjacency_.slot(q);
-      if (other == SmallAdjacency::kNone || queued[other] != 0 || !isSmall(state_.labels[q]))
-        return;
+      if (other == SmallAdjacency::kNone || queued[other] != 0 || isFace(state_.labels[q])) return;
       queue.push_back(other);
       queued[other] = 1;
     });
@@ -230,7 +230,33 @@ void CleanUp::connectSmall() {
 
 }  // namespace
 
+void findStrips(const SegmentationOptions& options, GrowthState& state) {
+  // The inside of a band of w spacings is about 1 - 2 / w of it.
+  constexpr std::uint32_t kPointsPerInner = 4;
+  std::vector<std::uint32_t> inner(state.clusters.size(), 0);
+  for (std::size_t p = 0; p < state.nodes.size(); ++p) {
+    const std::int32_t label = state.labels[p];
+    if (label < 0) continue;
+    bool inside = true;
+    if (state.on_border[p] != 0) {
+      const pcl::index_t* row = state.neighborhoods->indices(p);
+      const int count = std::min(state.neighborhoods->count(p), kRing + 1);
+      for (int j = 1; j < count && inside; ++j) {
+        const auto q = static_cast<std::size_t>(row[j]);
+        inside = state.labels[q] == label || !state.limits.near(state.nodes[p], state.nodes[q]);
+      }
+    }
+    inner[static_cast<std::size_t>(label)] += inside ? 1U : 0U;
+  }
+  for (std::size_t s = 0; s < inner.size(); ++s) {
+    const std::uint32_t size = state.clusters[s].size;
+    state.strips[s] = size >= options.small_size && kPointsPerInner * inner[s] < size ? 1 : 0;
+  }
+}
+
 void cleanUp(const SegmentationOptions& options, GrowthState& state, SegmentationReport& report) {
+  state.strips.assign(state.clusters.size(), 0);
+  if (options.settle_edges) findStrips(options, state);
   CleanUp passes(options, state);
   if (options.absorb_small) passes.absorbSmall(report);
   if (options.extract_edges) passes.extractEdges(report);

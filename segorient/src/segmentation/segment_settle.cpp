@@ -9,8 +9,9 @@
 namespace segorient::segmentation {
 namespace {
 
-/// Flat points of a segment whose tangent planes speak for it.
-constexpr std::size_t kWitnesses = 5;
+/// Flat points of a segment that its plane near a point is taken from.
+constexpr std::size_t kWitnesses = 8;
+constexpr std::size_t kLeastWitnesses = 3;
 /// Segments that are compared at one point; three meet at a corner.
 constexpr std::size_t kCandidates = 6;
 /// Neighbours of each row that are looked at: near, but beyond the reach of the edge. Not fewer
@@ -19,16 +20,28 @@ constexpr int kReach = 12;
 /// 80 degrees. The normal of a point right at an edge may lean far over; near a right angle to the
 /// reference normal its sign would be arbitrary.
 constexpr double kMostLean = 1.3962634;
-/// A point changes between regular segments only if its own surface is this far off, in spacings,
-/// and the other one less than half as far: a smooth border stays where it is.
+/// Where two surfaces meet at less than alpha, a point changes between them only if its own one is
+/// this far off, in spacings, and the other one less than half as far: a smooth border stays where
+/// it is.
 constexpr float kClearlyOff = 0.2F;
+/// Points nearer than this to the middle between two faces, in spacings, as all points on an edge
+/// are: the smaller label gets them, so that grids have straight borders.
+constexpr float kTie = 1e-3F;
 
-/// A regular segment near a point, with its flattest points near there.
+struct Vector {
+  float x = 0.F, y = 0.F, z = 0.F;
+  float dot(const Vector& o) const { return x * o.x + y * o.y + z * o.z; }
+  Vector operator-(const Vector& o) const { return {x - o.x, y - o.y, z - o.z}; }
+};
+
+/// A regular segment near a point, with its flattest points near there and their mean plane.
 struct Candidate {
   std::int32_t label = -1;
   std::size_t count = 0;
   std::array<std::int32_t, kWitnesses> points{};
   std::array<float, kWitnesses> curvature{};
+  Vector center;
+  Vector normal;
 
   void offer(std::int32_t point, float value) {
     if (count == kWitnesses && !(value < curvature[count - 1])) return;
@@ -48,7 +61,9 @@ struct Candidate {
 class Settler {
  public:
   Settler(const SegmentationOptions& options, const GrowthState& state)
-      : state_(state), small_size_(options.small_size) {}
+      : state_(state),
+        small_size_(options.small_size),
+        cos_alpha_(std::cos(std::min(options.alpha, kRightAngle))) {}
 
   /// Label that a point should have.
   std::int32_t settle(std::size_t p) const {
@@ -58,27 +73,25 @@ class Settler {
     const bool own_regular = isRegular(own);
     if (count == 0 || (own_regular && (count == 1 || !meetsOther(p)))) return own;
     gatherWitnesses(p, candidates, count);
-    std::int32_t best = -1;
-    float best_offset = std::numeric_limits<float>::max();
-    float own_offset = std::numeric_limits<float>::max();
+    const Candidate* best = nullptr;
+    const Candidate* found = nullptr;
     for (std::size_t i = 0; i < count; ++i) {
-      const float offset = meanOffset(p, candidates[i]);
-      if (candidates[i].label == own) own_offset = offset;
-      if (offset < best_offset && (candidates[i].label == own || fits(p, candidates[i].label))) {
-        best_offset = offset;
-        best = candidates[i].label;
-      }
+      if (candidates[i].label == own) found = &candidates[i];
     }
-    if (best < 0 || best == own) return own;
-    const float unit = state_.nodes[p].spacing;
-    if (!own_regular) return best_offset <= state_.limits.offset * unit ? best : own;
-    const float clearly_off = std::max(kClearlyOff, state_.typical_offset) * unit;
-    return own_offset > clearly_off && best_offset < 0.5F * own_offset ? best : own;
+    if (found != nullptr && found->count >= kLeastWitnesses) best = found;
+    for (std::size_t i = 0; i < count; ++i) {
+      const Candidate& other = candidates[i];
+      if (other.label == own || other.count < kLeastWitnesses || !fits(p, other.label)) continue;
+      if (best == nullptr || isNearer(p, other, *best)) best = &other;
+    }
+    if (best == nullptr || best->label == own) return own;
+    const float reach = state_.limits.offset * state_.nodes[p].spacing;
+    return own_regular || std::abs(offset(p, *best)) <= reach ? best->label : own;
   }
 
  private:
   bool isRegular(std::int32_t label) const {
-    return label >= 0 && state_.clusters[static_cast<std::size_t>(label)].size >= small_size_;
+    return label >= 0 && state_.isFace(label, small_size_);
   }
 
   int reach(std::size_t row) const {
@@ -133,17 +146,52 @@ class Settler {
         }
       }
     }
+    for (std::size_t c = 0; c < count; ++c) setPlane(candidates[c]);
   }
 
-  float meanOffset(std::size_t p, const Candidate& candidate) const {
-    if (candidate.count < 3) return std::numeric_limits<float>::max();
-    const Node& node = state_.nodes[p];
+  // Flat points count more: on exact planes those that an edge has no part in decide alone, under
+  // noise all have a say.
+  void setPlane(Candidate& candidate) const {
+    if (candidate.count == 0) return;
+    constexpr float kFloor = 1e-7F;
+    const float flattest = std::max(0.F, candidate.curvature[0]) + kFloor;
+    Vector center;
+    Vector normal;
     float sum = 0.F;
     for (std::size_t i = 0; i < candidate.count; ++i) {
       const Node& q = state_.nodes[static_cast<std::size_t>(candidate.points[i])];
-      sum += std::abs((node.x - q.x) * q.nx + (node.y - q.y) * q.ny + (node.z - q.z) * q.nz);
+      const float weight = flattest / (std::max(0.F, candidate.curvature[i]) + flattest);
+      center = {center.x + weight * q.x, center.y + weight * q.y, center.z + weight * q.z};
+      normal = {normal.x + weight * q.nx, normal.y + weight * q.ny, normal.z + weight * q.nz};
+      sum += weight;
     }
-    return sum / static_cast<float>(candidate.count);
+    const float length = std::sqrt(std::max(normal.dot(normal), 1e-30F));
+    candidate.center = {center.x / sum, center.y / sum, center.z / sum};
+    candidate.normal = {normal.x / length, normal.y / length, normal.z / length};
+  }
+
+  static float offset(const Vector& p, const Candidate& candidate) {
+    return candidate.normal.dot(p - candidate.center);
+  }
+  float offset(std::size_t p, const Candidate& candidate) const {
+    const Node& node = state_.nodes[p];
+    return offset(Vector{node.x, node.y, node.z}, candidate);
+  }
+
+  // Whether p is rather a point of `other` than of `current`. At a sharp edge that is decided by
+  // the plane midway between the two faces, also for noisy points off both of them: with each
+  // offset counted as negative on the side where the other face is, it is the larger one that wins.
+  bool isNearer(std::size_t p, const Candidate& other, const Candidate& current) const {
+    const float unit = state_.nodes[p].spacing;
+    float to_other = offset(p, other);
+    float to_current = offset(p, current);
+    if (std::abs(other.normal.dot(current.normal)) >= cos_alpha_) {
+      const float clearly_off = std::max(kClearlyOff, state_.typical_offset) * unit;
+      return std::abs(to_current) > clearly_off && std::abs(to_other) < 0.5F * std::abs(to_current);
+    }
+    if (offset(current.center, other) > 0.F) to_other = -to_other;
+    if (offset(other.center, current) > 0.F) to_current = -to_current;
+    return to_other > to_current + (other.label < current.label ? -kTie : kTie) * unit;
   }
 
   bool fits(std::size_t p, std::int32_t label) const {
@@ -152,8 +200,11 @@ class Settler {
            std::cos(kMostLean) * std::sqrt(reference.squaredNorm());
   }
 
+  static constexpr float kRightAngle = 1.5707963F;
+
   const GrowthState& state_;
   std::size_t small_size_;
+  float cos_alpha_;
 };
 
 void move(std::size_t p, std::int32_t into, GrowthState& state) {
@@ -196,7 +247,8 @@ std::size_t settleEdges(const SegmentationOptions& options, GrowthState& state) 
     const std::int32_t own = state.labels[p];
     // A regular segment stays one.
     if (wanted[i] == own ||
-        state.clusters[static_cast<std::size_t>(own)].size == options.small_size)
+        (state.clusters[static_cast<std::size_t>(own)].size == options.small_size &&
+         state.isFace(own, options.small_size)))
       continue;
     move(p, wanted[i], state);
     ++moved;

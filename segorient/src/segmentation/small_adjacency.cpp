@@ -4,7 +4,7 @@
 
 namespace segorient::segmentation {
 
-SmallAdjacency::SmallAdjacency(const GrowthState& state, std::uint32_t small_size)
+SmallAdjacency::SmallAdjacency(const GrowthState& state, std::size_t small_size)
     : state_(state),
       slots_(state.nodes.size(), kNone),
       heads_(state.clusters.size(), kNone),
@@ -12,7 +12,7 @@ SmallAdjacency::SmallAdjacency(const GrowthState& state, std::uint32_t small_siz
       stamps_(state.nodes.size(), 0) {
   for (std::size_t p = 0; p < state.nodes.size(); ++p) {
     const std::int32_t label = state.labels[p];
-    if (label < 0 || state.clusters[static_cast<std::size_t>(label)].size >= small_size) continue;
+    if (label < 0 || state.isFace(label, small_size)) continue;
     const auto slot = static_cast<std::uint32_t>(points_.size());
     slots_[p] = slot;
     points_.push_back(static_cast<pcl::index_t>(p));

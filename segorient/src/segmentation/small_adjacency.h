@@ -8,13 +8,14 @@
 
 namespace segorient::segmentation {
 
-/// The points of small segments ("slots"), their neighbours in both directions (two points are
-/// neighbours if either is among the other's), and the small segments as lists of points.
+/// The points of small segments and strips ("slots"), their neighbours in both directions (two
+/// points are neighbours if either is among the other's), and the small segments as lists of
+/// points.
 class SmallAdjacency {
  public:
   static constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
 
-  SmallAdjacency(const GrowthState& state, std::uint32_t small_size);
+  SmallAdjacency(const GrowthState& state, std::size_t small_size);
 
   std::uint32_t size() const { return static_cast<std::uint32_t>(points_.size()); }
   std::size_t point(std::uint32_t slot) const { return static_cast<std::size_t>(points_[slot]); }

@@ -28,6 +28,7 @@ class CloudSegmentation {
     const Neighborhoods* table = nullptr;  ///< of the whole cloud, or null to search; outlives this
     Search search;                         ///< empty = search::MedianHashIndex
     int neighbors = 10;                    ///< neighbours of each point, itself not counted
+    bool unite_smooth = false;             ///< whether faces() differ from segmentation()
   };
 
   /// \return false if sizes do not agree or the table is not of this cloud; the result is empty
@@ -38,6 +39,11 @@ class CloudSegmentation {
   /// Of the whole cloud: points that were not to be segmented have label -1. Exact duplicates share
   /// their label.
   const Segmentation& segmentation() const { return result_; }
+  /// With `unite_smooth` the segments united over smooth borders, see segmentByNormals(); else the
+  /// segments as they are.
+  const Segmentation& faces() const { return united_ ? faces_ : result_; }
+  /// By point: share of its neighbours that are in the same face; 0 without one.
+  std::vector<float> confidences() const;
   const SegmentationReport& report() const { return report_; }
   /// Pairs are indices into the cloud; of duplicates only the first is in a pair.
   SegmentGraph graph() const;
@@ -47,10 +53,13 @@ class CloudSegmentation {
   void computeCompact(const Input& input, const SegmentationOptions& options);
 
   Segmentation result_;
+  Segmentation faces_;
+  bool united_ = false;
   SegmentationReport report_;
   const Neighborhoods* table_ = nullptr;
   Neighborhoods own_table_;
-  std::vector<pcl::index_t> source_;  ///< row of own_table_ to index into the cloud
+  std::vector<pcl::index_t> source_;        ///< row of own_table_ to index into the cloud
+  std::vector<pcl::index_t> row_of_point_;  ///< and back; -1 = in no row
   int neighbors_ = 0;
 };
 

@@ -34,6 +34,11 @@ namespace segorient {
 /// of the points. Neighbours come from an all-points search of its own; a search method is only
 /// needed to have others.
 ///
+/// Beta keeps each segment so flat that it can be seen through a plane: triangulation and
+/// orientation build on that, and take getSegmentation(). A round face consists of several such
+/// segments. Everything else here, extract() and getLabels() first of all, gives whole faces:
+/// segments united where their common border is smooth, unless setUniteSmooth (false).
+///
 /// Without a cloud, or with normals of another size, extract() reports through PCL_ERROR and gives
 /// no segments. Points with NaN coordinates or normals are in no segment.
 template <typename PointT, typename NormalT>
@@ -119,14 +124,23 @@ class NormalSegmentation : public pcl::PCLBase<PointT> {
   void setSettleEdges(bool value);
   bool getSettleEdges() const { return options_.settle_edges; }
 
-  /// Clean-up passes 1 to 3; all on by default. Without pass 3 small segments stay apart, as
-  /// isolated.
+  /// Clean-up pass 1: a small segment joins the neighbouring one that agrees with it best; default
+  /// true. What it did: getReport().absorbed.
   void setAbsorbSmall(bool value);
   bool getAbsorbSmall() const { return options_.absorb_small; }
+  /// Pass 2: points of small segments join regular ones one by one; default true. What it did:
+  /// getReport().extracted.
   void setExtractEdges(bool value);
   bool getExtractEdges() const { return options_.extract_edges; }
+  /// Pass 3: small segments that touch become connected ones; without it they stay isolated.
+  /// Default true. What it did: getReport().connected.
   void setConnectSmall(bool value);
   bool getConnectSmall() const { return options_.connect_small; }
+
+  /// Whether segments that only beta parted become one face again; default true. What it did:
+  /// getReport().united.
+  void setUniteSmooth(bool value);
+  bool getUniteSmooth() const { return unite_smooth_; }
 
   /// Segments that extract() leaves out: those of fewer points (default 1) or more (default: no
   /// limit).
@@ -141,24 +155,30 @@ class NormalSegmentation : public pcl::PCLBase<PointT> {
   }
   unsigned int getNumberOfThreads() const { return static_cast<unsigned int>(options_.threads); }
 
-  /// The segments by descending size, as indices into the cloud.
+  /// The faces by descending size, as indices into the cloud.
   virtual void extract(std::vector<pcl::PointIndices>& clusters);
 
-  /// The segment that holds a point; empty if the point is in none.
+  /// The face that holds a point; empty if the point is in none.
   virtual void getSegmentFromPoint(pcl::index_t index, pcl::PointIndices& cluster);
 
-  /// The cloud with a colour a segment (pcl::GlasbeyLUT by label; always the same for the same
-  /// segments), grey where there is none. Null before extract().
+  /// The cloud with a colour a face (pcl::GlasbeyLUT by label; always the same for the same faces),
+  /// grey where there is none. Null before extract().
   pcl::PointCloud<pcl::PointXYZRGB>::Ptr getColoredCloud();
   pcl::PointCloud<pcl::PointXYZRGBA>::Ptr getColoredCloudRGBA();
 
-  /// Segment of each point of the cloud, -1 = none; empty before extract().
-  const std::vector<std::int32_t>& getLabels() const { return result_.segmentation().labels; }
-  /// The segments with all that is known of them; empty before extract().
+  /// Face of each point of the cloud, -1 = none; empty before extract().
+  const std::vector<std::int32_t>& getLabels() const { return result_.faces().labels; }
+  /// The faces by label: kind, size, reference normal, centroid, area, rms; empty before extract().
+  const std::vector<Segment>& getSegments() const { return result_.faces().segments; }
+  /// How surely each point of the cloud is in its face: the share of its neighbours that are in the
+  /// same one, 0 without a face; empty before extract().
+  std::vector<float> getConfidences() const { return result_.confidences(); }
+  /// The segments before they were united, with labels of their own: what SegmentTriangulation and
+  /// SegmentOrientation take. Empty before extract().
   const Segmentation& getSegmentation() const { return result_.segmentation(); }
   /// What growing and each clean-up pass did.
   const SegmentationReport& getReport() const { return result_.report(); }
-  /// Which segments touch, and the point pairs across each border.
+  /// Which segments of getSegmentation() touch, and the point pairs across each border.
   SegmentGraph getSegmentGraph() const { return result_.graph(); }
 
  protected:
@@ -181,6 +201,7 @@ class NormalSegmentation : public pcl::PCLBase<PointT> {
   SegmentationOptions options_;
   unsigned int neighbors_ = 10;
   bool curvature_test_ = true;
+  bool unite_smooth_ = true;
   pcl::uindex_t min_size_ = 1;
   pcl::uindex_t max_size_ = std::numeric_limits<pcl::uindex_t>::max();
   CloudSegmentation result_;

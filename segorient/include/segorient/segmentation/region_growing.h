@@ -36,7 +36,8 @@ struct SegmentationOptions {
   bool absorb_small = true;   ///< clean-up pass 1: small segments join a neighbouring segment
   bool extract_edges = true;  ///< clean-up pass 2: their points join regular ones one by one
   /// Beyond the paper, after pass 2: normals along a sharp edge are means over both faces, so a
-  /// point there goes to the segment whose flat part, continued, passes nearest to it.
+  /// point there goes to the segment whose flat part, continued, passes nearest to it. So do the
+  /// points of strips: segments without an inside, such as the row of points on an edge of a grid.
   bool settle_edges = true;
   bool connect_small = true;  ///< clean-up pass 3: small segments that touch become connected ones
   int threads = 0;            ///< see resolveThreads()
@@ -52,6 +53,7 @@ struct SegmentationReport {
   std::size_t regular = 0;    ///< segments of each kind at the end
   std::size_t connected = 0;
   std::size_t isolated = 0;
+  std::size_t united = 0;    ///< segments that became part of another one's face
   float offset_limit = 0.F;  ///< the limit in use, in local spacings
 };
 
@@ -66,10 +68,15 @@ struct SegmentationReport {
 /// \param points all rows finite where the normal is finite
 /// \param normals row = unit normal and curvature (4 floats); points with a NaN normal get label -1
 /// \param neighborhoods of every point; rows without distances are measured anew
+/// \param faces where not null: the segments once more, those united whose common border is smooth.
+///        Beta keeps segments so flat that each can be seen through a plane, as triangulation and
+///        the paper's orientation ask for, and cuts round faces up by it; here a cylinder is one
+///        again. A border is smooth where growing could have crossed it but for beta, and the
+///        surface bends there by less than alpha more than its curvature on both sides explains.
 /// \return empty if the sizes of the three do not agree
 Segmentation segmentByNormals(const PointView& points, const PointView& normals,
                               const Neighborhoods& neighborhoods,
                               const SegmentationOptions& options,
-                              SegmentationReport* report = nullptr);
+                              SegmentationReport* report = nullptr, Segmentation* faces = nullptr);
 
 }  // namespace segorient

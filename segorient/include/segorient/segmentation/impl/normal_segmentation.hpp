@@ -157,6 +157,12 @@ void NormalSegmentation<PointT, NormalT>::setSettleEdges(bool value) {
 }
 
 template <typename PointT, typename NormalT>
+void NormalSegmentation<PointT, NormalT>::setUniteSmooth(bool value) {
+  unite_smooth_ = value;
+  outdated();
+}
+
+template <typename PointT, typename NormalT>
 CloudSegmentation::Search NormalSegmentation<PointT, NormalT>::searchFunction() {
   if (!search_) return {};
   // Unless it is on this cloud already, possibly on more of it than our indices.
@@ -192,6 +198,7 @@ bool NormalSegmentation<PointT, NormalT>::segment() {
     if (!fake_indices_) input.indices = indices_.get();
     input.table = neighborhoods_.get();
     input.neighbors = static_cast<int>(neighbors_);
+    input.unite_smooth = unite_smooth_;
     if (!neighborhoods_ && !input_->empty()) input.search = searchFunction();
     SegmentationOptions options = options_;
     if (!curvature_test_) options.max_curvature = std::numeric_limits<float>::max();
@@ -208,7 +215,7 @@ template <typename PointT, typename NormalT>
 void NormalSegmentation<PointT, NormalT>::extract(std::vector<pcl::PointIndices>& clusters) {
   clusters.clear();
   if (!done_ && !segment()) return;
-  const Segmentation& s = result_.segmentation();
+  const Segmentation& s = result_.faces();
   for (std::size_t i = 0; i < s.segments.size(); ++i) {
     if (s.segments[i].size < min_size_ || s.segments[i].size > max_size_) continue;
     clusters.emplace_back();
@@ -222,7 +229,7 @@ void NormalSegmentation<PointT, NormalT>::getSegmentFromPoint(pcl::index_t index
                                                               pcl::PointIndices& cluster) {
   cluster.indices.clear();
   if (!done_ && !segment()) return;
-  const Segmentation& s = result_.segmentation();
+  const Segmentation& s = result_.faces();
   cluster.header = input_->header;
   if (index < 0 || static_cast<std::size_t>(index) >= s.labels.size()) return;
   const std::int32_t label = s.labels[static_cast<std::size_t>(index)];
