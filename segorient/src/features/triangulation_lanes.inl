@@ -52,6 +52,7 @@ inline Mask isNeighbor(const Lanes3& d) {
 inline Lanes3 fanNormals(Batch& batch, const Plane& plane, SortingNetwork& network, float* keys) {
   const Frame frame = frameOf(plane.normal);
   const int count = batch.count < 4096 ? batch.count : 4096;
+  if (count == 0) return plane.normal;  // no neighbours in any lane, and no plane
   Lanes3 center{};
   Lanes neighbors{};
   for (int j = 0; j < count; ++j) {
