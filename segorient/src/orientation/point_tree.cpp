@@ -80,7 +80,8 @@ std::vector<Edge> sortedEdges(const PointView& normals, const Neighborhoods& nei
     const int end = k > 0 ? std::min(k + 1, neighborhoods.count(i)) : neighborhoods.count(i);
     const pcl::index_t* row = neighborhoods.indices(i);
     for (int j = 1; j < end; ++j) {
-      const float cost = 1.F - std::abs(dot(normals[i], normals[static_cast<std::size_t>(row[j])]));
+      const float cosine = std::abs(dot(normals[i], normals[static_cast<std::size_t>(row[j])]));
+      const float cost = 1.F - std::min(cosine, 1.F);  // rounding may exceed 1
       if (std::isfinite(cost)) edges.push_back({cost, static_cast<pcl::index_t>(i), row[j]});
     }
   }
@@ -101,7 +102,7 @@ void pointHighestUp(const PointView& points, const PointView& normals, Orientati
     const float up = normals[top][2] * static_cast<float>(result.point_signs[top]);
     result.components[c].sign = up < 0.F ? std::int8_t{-1} : std::int8_t{1};
     result.components[c].evidence = up;
-    result.components[c].confidence = std::abs(up);
+    result.components[c].confidence = std::min(std::abs(up), 1.F);
     result.components[c].by = DecidedBy::EXTREMAL;
   }
   for (std::size_t i = 0; i < points.size; ++i) {
