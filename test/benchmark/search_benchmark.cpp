@@ -2,180 +2,87 @@
 // Copyright (c) 2026, the segorient authors
 //
 // search::MedianHash against the searches that a PCL user has today, in one process and in turn.
-// Prints times as multiples: how many times as fast as a loop of queries to pcl::search::KdTree.
+// Prints times as multiples: how many times as fast as the first of a line, which is
+// pcl::search::KdTree with a loop of queries.
 //
-//   search_benchmark [--points N] [--k K,K,...] [--cloud NAME] [--runs R] [--threads T] [--slow]
+//   search_benchmark [--points N,...] [--k K,...] [--cloud NAME,...] [--order NAME,...] [--runs R]
+//                    [--threads T,...] [--csv FILE] [--whole]
 //
-// NAME: uniform, uniform-curve, surface, surface-random, lidar, lidar-random. --slow adds PCL's
-// octree and plain FLANN. SEGORIENT_SIMD=scalar|sse2|avx2 forces an instruction set.
-#include <pcl/io/pcd_io.h>
+// NAME of a cloud: uniform, surface, lidar; of an order: coherent (along a curve or as scanned),
+// random. --threads 0 means all cores. --whole measures all of them with 20k to 5M points; without
+// it, 200k points on one thread. SEGORIENT_SIMD=scalar|sse2|avx2 forces an instruction set.
 #include <pcl/search/kdtree.h>
 #include <pcl/search/octree.h>
 #include <segorient/search/median_hash.h>
 
-#include <chrono>
-#include <cstdio>
 #include <cstdlib>
-#include <ctime>
-#include <functional>
+#include <fstream>
 #include <map>
 #include <sstream>
 
-#include "benchmark_clouds.h"
-#ifdef SEGORIENT_HAVE_NANOFLANN
-#include <nanoflann.hpp>
-#endif
+#include "search_peers.h"
 
 namespace segorient::benchmark {
 namespace {
 
+using OurTree = search::MedianHash<pcl::PointXYZ>;
+using PclTree = pcl::search::KdTree<pcl::PointXYZ>;
+
 struct Options {
-  std::size_t points = 200000;
-  std::vector<int> k{5, 10, 15, 25, 50};
-  std::string cloud;
-  int runs = 3;
-  unsigned int threads = 1;
-  bool slow = false;
+  std::vector<std::size_t> points{200000};
+  std::vector<std::size_t> k{5, 15, 50};
+  std::vector<std::size_t> threads{1};
+  std::vector<std::string> clouds{"uniform", "surface", "lidar"};
+  std::vector<std::string> orders{"coherent", "random"};
+  std::size_t runs = 3;
+  std::string csv;
 };
+
+std::vector<std::string> words(const std::string& list) {
+  std::vector<std::string> result;
+  std::stringstream stream(list);
+  for (std::string word; std::getline(stream, word, ',');) result.push_back(word);
+  return result;
+}
+
+std::vector<std::size_t> numbers(const std::string& list) {
+  std::vector<std::size_t> result;
+  for (const auto& word : words(list)) result.push_back(std::strtoull(word.c_str(), nullptr, 10));
+  return result;
+}
 
 Options parse(int argc, char** argv) {
   Options options;
   for (int i = 1; i < argc; ++i) {
     const std::string name = argv[i];
-    if (name == "--slow") {
-      options.slow = true;
+    if (name == "--whole") {
+      options.points = {20000, 200000, 1000000, 5000000};
+      options.k = {5, 10, 15, 25, 50};
+      options.threads = {1, 0};
       continue;
     }
     if (i + 1 == argc) break;
     const char* value = argv[++i];
-    if (name == "--points") options.points = std::strtoull(value, nullptr, 10);
-    if (name == "--cloud") options.cloud = value;
-    if (name == "--runs") options.runs = std::atoi(value);
-    if (name == "--threads") options.threads = static_cast<unsigned int>(std::atoi(value));
-    if (name == "--k") {
-      options.k.clear();
-      std::stringstream list(value);
-      for (std::string k; std::getline(list, k, ',');) options.k.push_back(std::stoi(k));
-    }
+    if (name == "--points") options.points = numbers(value);
+    if (name == "--k") options.k = numbers(value);
+    if (name == "--threads") options.threads = numbers(value);
+    if (name == "--cloud") options.clouds = words(value);
+    if (name == "--order") options.orders = words(value);
+    if (name == "--runs") options.runs = numbers(value).front();
+    if (name == "--csv") options.csv = value;
   }
   return options;
 }
 
-/// Contenders measured in turn, so that all of them meet the same load of the machine.
-class Race {
- public:
-  explicit Race(const Options& options) : wall_clock_(options.threads != 1) {}
-
-  using Work = std::function<double()>;  ///< does the work, returns a sum over its results
-  void add(const std::string& name, Work work) {
-    contenders_.push_back({name, std::move(work), {}});
-  }
-
-  /// Prints medians relative to the first contender, and its time for one of `items`.
-  void run(const std::string& title, int runs, std::size_t items) {
-    for (int r = 0; r < runs; ++r) {
-      for (auto& c : contenders_) {
-        const double start = now();
-        sink_ += c.work();
-        c.seconds.push_back(now() - start);
-      }
-    }
-    std::printf("%-44s", title.c_str());
-    const double base = median(contenders_.front().seconds);
-    for (auto& c : contenders_) {
-      const double seconds = median(c.seconds);
-      if (&c == &contenders_.front()) {
-        std::printf(" %s %.0f ns |", c.name.c_str(), 1e9 * seconds / static_cast<double>(items));
-      } else {
-        std::printf(" %s %.2f |", c.name.c_str(), base / seconds);
-      }
-    }
-    std::printf("\n");
-    std::fflush(stdout);
-  }
-
- private:
-  // Processor time where one thread works, so that other programs matter less.
-  double now() const {
-    if (wall_clock_) {
-      return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch())
-          .count();
-    }
-    return static_cast<double>(std::clock()) / CLOCKS_PER_SEC;
-  }
-  static double median(std::vector<double>& values) {
-    std::sort(values.begin(), values.end());
-    return values[values.size() / 2];
-  }
-  struct Contender {
-    std::string name;
-    Work work;
-    std::vector<double> seconds;
-  };
-  std::vector<Contender> contenders_;
-  bool wall_clock_;
-  double sink_ = 0.0;
-};
-
-#ifdef SEGORIENT_HAVE_NANOFLANN
-/// nanoflann on a PCL cloud, in place.
-class Nanoflann {
- public:
-  explicit Nanoflann(const Cloud& cloud) : adaptor_{cloud}, tree_(3, adaptor_, {15}) {
-    tree_.buildIndex();
-  }
-  std::size_t nearestK(const float* query, std::size_t k, std::uint32_t* indices,
-                       float* distances) const {
-    return tree_.knnSearch(query, k, indices, distances);
-  }
-
- private:
-  struct Adaptor {
-    const Cloud& cloud;
-    std::size_t kdtree_get_point_count() const { return cloud.size(); }
-    float kdtree_get_pt(std::size_t i, std::size_t axis) const { return cloud[i].data[axis]; }
-    template <class Box>
-    bool kdtree_get_bbox(Box& /*box*/) const {
-      return false;
-    }
-  };
-  using Tree =
-      nanoflann::KDTreeSingleIndexAdaptor<nanoflann::L2_Simple_Adaptor<float, Adaptor>, Adaptor, 3>;
-  Adaptor adaptor_;
-  Tree tree_;
-};
-#endif
-
-double queryLoop(const pcl::search::Search<pcl::PointXYZ>& tree, const Cloud& queries, int k) {
-  pcl::Indices indices;
-  std::vector<float> distances;
-  double sum = 0.0;
-  for (const auto& q : queries) {
-    tree.nearestKSearch(q, k, indices, distances);
-    sum += static_cast<double>(distances.back());
-  }
-  return sum;
-}
-
-double radiusLoop(const pcl::search::Search<pcl::PointXYZ>& tree, const Cloud& queries, double r) {
-  pcl::Indices indices;
-  std::vector<float> distances;
-  double sum = 0.0;
-  for (const auto& q : queries) {
-    tree.radiusSearch(q, r, indices, distances);
-    sum += static_cast<double>(distances.size());
-  }
-  return sum;
-}
-
-double allPoints(const search::MedianHash<pcl::PointXYZ>& tree, int k, bool with_distances,
-                 Neighborhoods& table) {
-  tree.nearestKSearchAll(k, table, with_distances);
-  return static_cast<double>(table.indices(table.size() / 2)[table.count(0) - 1]);
+Cloud::Ptr makeCloud(const std::string& name, const std::string& order, std::size_t n) {
+  const bool coherent = order == "coherent";
+  if (name == "lidar") return coherent ? lidarLike(n, 1) : shuffled(*lidarLike(n, 1), 2);
+  const Cloud::Ptr random = name == "surface" ? bumpySphere(n, 1) : uniformCube(n, 1);
+  return coherent ? alongCurve(*random) : random;
 }
 
 /// Mean distance to the 20th neighbour: a radius of about 20 results.
-double radiusOf20(const pcl::search::Search<pcl::PointXYZ>& tree, const Cloud& cloud) {
+double radiusOf20(const OurTree& tree, const Cloud& cloud) {
   pcl::Indices indices;
   std::vector<float> distances;
   double sum = 0.0;
@@ -187,122 +94,155 @@ double radiusOf20(const pcl::search::Search<pcl::PointXYZ>& tree, const Cloud& c
   return sum / count;
 }
 
-/// Each coordinate moved by about a spacing: queries that are not points of the cloud.
-Cloud::Ptr moved(const Cloud& cloud, double radius) {
-  auto copy = pcl::make_shared<Cloud>(cloud);
+/// Each coordinate moved by about a spacing, in random order: queries that are not of the cloud.
+Cloud::Ptr separateQueries(const Cloud& cloud, double radius) {
+  auto queries = shuffled(cloud, 3);
   std::mt19937 random(5);
   std::normal_distribution<float> g(0.0F, static_cast<float>(radius) / 4.0F);
-  for (auto& p : *copy) p.getVector3fMap() += Eigen::Vector3f(g(random), g(random), g(random));
-  return copy;
+  for (auto& p : *queries) p.getVector3fMap() += Eigen::Vector3f(g(random), g(random), g(random));
+  return queries;
 }
 
-void measure(const std::string& name, const Cloud::Ptr& cloud, const Options& options) {
-  std::printf("\n%s, %zu points\n", name.c_str(), cloud->size());
-  pcl::search::KdTree<pcl::PointXYZ> pcl_tree;
-  pcl_tree.setInputCloud(cloud);
-  search::MedianHash<pcl::PointXYZ> ours;
-  ours.setNumberOfThreads(options.threads);
-  ours.setInputCloud(cloud);
-  std::printf("memory of the structure: %.1f bytes a point\n",
-              static_cast<double>(ours.memory()) / static_cast<double>(cloud->size()));
-  {
-    Race race(options);
-    race.add("pcl", [&] {
-      pcl::search::KdTree<pcl::PointXYZ> tree;
-      tree.setInputCloud(cloud);
-      return 0.0;
-    });
-    race.add("median hash", [&] {
-      search::MedianHash<pcl::PointXYZ> tree;
-      tree.setNumberOfThreads(options.threads);
-      tree.setInputCloud(cloud);
-      return 0.0;
-    });
-#ifdef SEGORIENT_HAVE_NANOFLANN
-    race.add("nanoflann", [&] {
-      const Nanoflann tree(*cloud);
-      return 0.0;
-    });
-#endif
-    race.run("build", options.runs, cloud->size());
+/// All races on one cloud.
+class CloudRaces {
+ public:
+  CloudRaces(const std::string& name, const std::string& order, std::size_t points,
+             unsigned int threads, std::size_t runs, std::vector<Measurement>& results)
+      : cloud_(makeCloud(name, order, points)),
+        like_{name, order, points, threads, "", "", 0, 0.0, 0.0},
+        runs_(static_cast<int>(runs)),
+        results_(results) {
+    pcl_.setInputCloud(cloud_);
+    ours_.setNumberOfThreads(threads);
+    ours_.setInputCloud(cloud_);
+    radius_ = radiusOf20(ours_, *cloud_);
+    std::printf("%s, %s order, %zu points, threads %u: %.1f bytes a point\n", name.c_str(),
+                order.c_str(), points, threads,
+                static_cast<double>(ours_.memory()) / static_cast<double>(points));
   }
+
+  void run(const std::vector<std::size_t>& ks) {
+    build();
+    const Flann flann(*cloud_);
 #ifdef SEGORIENT_HAVE_NANOFLANN
-  const Nanoflann nano(*cloud);
+    const Nanoflann nano(*cloud_);
 #endif
-  pcl::search::Octree<pcl::PointXYZ> octree(radiusOf20(ours, *cloud));
-  if (options.slow) octree.setInputCloud(cloud);
-  const auto separate = moved(*shuffled(*cloud, 3), radiusOf20(ours, *cloud));
-  Neighborhoods table;
-  for (const int k : options.k) {
-    Race race(options);
-    race.add("pcl", [&] { return queryLoop(pcl_tree, *cloud, k); });
-    race.add("all points", [&] { return allPoints(ours, k, true, table); });
-    race.add("without distances", [&] { return allPoints(ours, k, false, table); });
-    race.add("query by query", [&] { return queryLoop(ours, *cloud, k); });
+    // The octree is left out where it would take longer than all others together.
+    const bool with_octree = cloud_->size() <= 200000;
+    pcl::search::Octree<pcl::PointXYZ> octree(radius_);
+    if (with_octree) octree.setInputCloud(cloud_);
+    const unsigned int threads = like_.threads;
+    for (const std::size_t wanted : ks) {
+      const int k = static_cast<int>(wanted);
+      Race race;
+      race.add("pcl kdtree", [&, k] { nearestLoop(pcl_, *cloud_, k, threads); });
+      race.add("all points", [&, k] { ours_.nearestKSearchAll(k, table_); });
+      race.add("without distances", [&, k] { ours_.nearestKSearchAll(k, table_, false); });
+      race.add("query by query", [&, k] { nearestLoop(ours_, *cloud_, k, threads); });
 #ifdef SEGORIENT_HAVE_NANOFLANN
-    race.add("nanoflann", [&] {
-      std::vector<std::uint32_t> indices(static_cast<std::size_t>(k));
-      std::vector<float> distances(static_cast<std::size_t>(k));
-      double sum = 0.0;
-      for (const auto& q : *cloud) {
-        nano.nearestK(q.data, indices.size(), indices.data(), distances.data());
-        sum += static_cast<double>(distances.back());
+      race.add("nanoflann", [&, k] { nano.nearest(*cloud_, k, threads); });
+#endif
+      race.add("flann", [&, k] { flann.nearest(*cloud_, k, threads); });
+      if (with_octree && k == 15) {
+        race.add("pcl octree", [&, k] { nearestLoop(octree, *cloud_, k, threads); });
       }
-      return sum;
-    });
-#endif
-    if (options.slow) {
-      race.add("pcl octree", [&] { return queryLoop(octree, *cloud, k); });
+      finish(race, "nearest", k);
     }
-    race.run("k = " + std::to_string(k), options.runs, cloud->size());
+    const Cloud::Ptr queries = separateQueries(*cloud_, radius_);
+    Race separate;
+    separate.add("pcl kdtree", [&] { nearestLoop(pcl_, *queries, 15, threads); });
+    separate.add("query by query", [&] { nearestLoop(ours_, *queries, 15, threads); });
+#ifdef SEGORIENT_HAVE_NANOFLANN
+    separate.add("nanoflann", [&] { nano.nearest(*queries, 15, threads); });
+#endif
+    finish(separate, "separate queries", 15);
+    Race within;
+    RadiusNeighborhoods rows;
+    within.add("pcl kdtree", [&] { radiusLoop(pcl_, *cloud_, radius_, threads); });
+    within.add("all points", [&] { ours_.radiusSearchAll(radius_, rows); });
+    within.add("query by query", [&] { radiusLoop(ours_, *cloud_, radius_, threads); });
+#ifdef SEGORIENT_HAVE_NANOFLANN
+    within.add("nanoflann", [&] { nano.within(*cloud_, radius_, threads); });
+#endif
+    finish(within, "radius of 20", 0);
+    approximate();
   }
-  {
+
+ private:
+  void finish(Race& race, const std::string& task, int k) {
+    like_.task = task;
+    like_.k = k;
+    race.run(runs_, like_, results_);
+  }
+
+  void build() {
+    Race race;
+    race.add("pcl kdtree", [&] { PclTree().setInputCloud(cloud_); });
+    race.add("median hash", [&] {
+      OurTree tree;
+      tree.setNumberOfThreads(like_.threads);
+      tree.setInputCloud(cloud_);
+    });
+#ifdef SEGORIENT_HAVE_NANOFLANN
+    race.add("nanoflann", [&] { const Nanoflann tree(*cloud_); });
+#endif
+    finish(race, "build", 0);
+  }
+
+  // What approximation gains over the exact search of the same kind.
+  void approximate() {
     const int k = 15;
-    Race race(options);
-    race.add("pcl", [&] { return queryLoop(pcl_tree, *separate, k); });
-    race.add("query by query", [&] { return queryLoop(ours, *separate, k); });
-    race.run("separate queries, k = 15", options.runs, cloud->size());
-  }
-  {
-    const double radius = radiusOf20(ours, *cloud);
-    Race race(options);
-    race.add("pcl", [&] { return radiusLoop(pcl_tree, *cloud, radius); });
-    race.add("query by query", [&] { return radiusLoop(ours, *cloud, radius); });
-    race.run("radius, about 20 results", options.runs, cloud->size());
-  }
-  {
-    Race race(options);
-    race.add("exact", [&] { return queryLoop(ours, *cloud, 15); });
-    for (const float epsilon : {0.1F, 0.5F, 1.0F}) {
-      race.add("epsilon " + std::to_string(epsilon).substr(0, 3), [&, epsilon] {
-        ours.setEpsilon(epsilon);
-        const double sum = queryLoop(ours, *cloud, 15);
-        ours.setEpsilon(0.0F);
-        return sum;
+    Race single;
+    Race all;
+    for (const float epsilon : {0.0F, 0.1F, 0.5F, 1.0F}) {
+      const std::string name = "epsilon " + std::to_string(epsilon).substr(0, 3);
+      single.add(name, [&, epsilon] {
+        ours_.setEpsilon(epsilon);
+        nearestLoop(ours_, *cloud_, k, like_.threads);
+      });
+      all.add(name, [&, epsilon] {
+        ours_.setEpsilon(epsilon);
+        ours_.nearestKSearchAll(k, table_);
       });
     }
-    race.add("all points, epsilon 1", [&] {
-      ours.setEpsilon(1.0F);
-      const double sum = allPoints(ours, 15, true, table);
-      ours.setEpsilon(0.0F);
-      return sum;
-    });
-    race.run("approximate, k = 15", options.runs, cloud->size());
+    finish(single, "approximate", k);
+    finish(all, "all approximate", k);
+    ours_.setEpsilon(0.0F);
+  }
+
+  Cloud::Ptr cloud_;
+  Measurement like_;
+  int runs_;
+  std::vector<Measurement>& results_;
+  PclTree pcl_;
+  OurTree ours_;
+  Neighborhoods table_;
+  double radius_ = 0.0;
+};
+
+void writeCsv(const std::string& file, const std::vector<Measurement>& results) {
+  std::ofstream out(file);
+  out << "cloud,order,points,threads,task,k,method,nanoseconds,times_as_fast\n";
+  for (const Measurement& m : results) {
+    out << m.cloud << ',' << m.order << ',' << m.points << ',' << m.threads << ',' << m.task << ','
+        << m.k << ',' << m.method << ',' << m.nanoseconds << ',' << m.times_as_fast << '\n';
   }
 }
 
 int run(int argc, char** argv) {
   const Options options = parse(argc, argv);
-  const std::size_t n = options.points;
-  const std::map<std::string, std::function<Cloud::Ptr()>> clouds{
-      {"uniform", [&] { return uniformCube(n, 1); }},
-      {"uniform-curve", [&] { return alongCurve(*uniformCube(n, 1)); }},
-      {"surface", [&] { return alongCurve(*bumpySphere(n, 1)); }},
-      {"surface-random", [&] { return bumpySphere(n, 1); }},
-      {"lidar", [&] { return lidarLike(n, 1); }},
-      {"lidar-random", [&] { return shuffled(*lidarLike(n, 1), 2); }}};
-  for (const auto& [name, make] : clouds) {
-    if (options.cloud.empty() || options.cloud == name) measure(name, make(), options);
+  std::vector<Measurement> results;
+  for (const std::size_t points : options.points) {
+    for (const std::string& cloud : options.clouds) {
+      for (const std::string& order : options.orders) {
+        for (const std::size_t threads : options.threads) {
+          CloudRaces(cloud, order, points, static_cast<unsigned int>(threads), options.runs,
+                     results)
+              .run(options.k);
+          if (!options.csv.empty()) writeCsv(options.csv, results);
+        }
+      }
+    }
   }
   return 0;
 }
