@@ -17,11 +17,12 @@
 #include "io/readers.h"
 #include "render/scene.h"
 #include "support/command_line.h"
+#include "support/hint_options.h"
 #include "support/poisson.h"
 #include "support/progress_bar.h"
 #include "support/stage_options.h"
-#include "support/stages.h"
 #include "support/stopwatch.h"
+#include "support/true_surface.h"
 
 namespace segorient::program {
 namespace po = boost::program_options;
@@ -31,9 +32,15 @@ constexpr double kDegrees = 57.295779513082320877;
 
 using Normals = std::vector<float>;  // 4 floats a point
 
+struct PclResult {
+  Normals normals;
+  double search = 0.0;  // seconds
+  double estimation = 0.0;
+};
+
 // As most PCL programs do it: k neighbours by KdTree, turned towards the viewpoint.
-Normals normalsByPcl(const PointView& points, const CloudTable& table,
-                     const std::array<double, 3>& origin, int k, int threads) {
+PclResult runPcl(const PointView& points, const std::array<float, 3>& viewpoint, int k,
+                 int threads) {
   pcl::PointCloud<pcl::PointXYZ>::Ptr cloud(new pcl::PointCloud<pcl::PointXYZ>);
   std::vector<std::size_t> rows;
   for (std::size_t i = 0; i < points.size; ++i) {
@@ -41,21 +48,24 @@ Normals normalsByPcl(const PointView& points, const CloudTable& table,
     cloud->push_back({points[i][0], points[i][1], points[i][2]});
     rows.push_back(i);
   }
+  PclResult out;
+  const Stopwatch search_time;
+  const auto tree = pcl::make_shared<pcl::search::KdTree<pcl::PointXYZ>>();
+  tree->setInputCloud(cloud);
+  out.search = search_time.seconds();
+  const Stopwatch estimation_time;
   pcl::NormalEstimationOMP<pcl::PointXYZ, pcl::Normal> estimation(static_cast<unsigned>(threads));
   estimation.setInputCloud(cloud);
-  estimation.setSearchMethod(pcl::make_shared<pcl::search::KdTree<pcl::PointXYZ>>());
+  estimation.setSearchMethod(tree);
   estimation.setKSearch(k);
-  std::array<float, 3> viewpoint{};
-  for (std::size_t a = 0; a < 3; ++a) {
-    viewpoint[a] = static_cast<float>(table.viewpoint[a] - origin[a]);
-  }
   estimation.setViewPoint(viewpoint[0], viewpoint[1], viewpoint[2]);
   pcl::PointCloud<pcl::Normal> normals;
   estimation.compute(normals);
-  Normals out(4 * points.size, NAN);
+  out.estimation = estimation_time.seconds();
+  out.normals.assign(4 * points.size, NAN);
   for (std::size_t i = 0; i < rows.size(); ++i) {
-    std::copy_n(normals[i].normal, 3, &out[4 * rows[i]]);
-    out[4 * rows[i] + 3] = normals[i].curvature;
+    std::copy_n(normals[i].normal, 3, &out.normals[4 * rows[i]]);
+    out.normals[4 * rows[i] + 3] = normals[i].curvature;
   }
   return out;
 }
@@ -113,6 +123,24 @@ void printAgainstTruth(const char* name, const Normals& truth, const Normals& no
       d.share(std::max(d.opposite, d.compared - d.opposite)), d.rms, d.median);
 }
 
+void print(const CloudTable& table, const PipelineReport& report, const PclResult& pcl_result,
+           const Normals& our_normals) {
+  const Difference d = compareNormals(pcl_result.normals, our_normals);
+  std::printf("points      %zu; %d neighbours\n", table.size, report.k);
+  std::printf("seconds     PCL %.2f: search %.2f  normals and viewpoint %.2f\n",
+              pcl_result.search + pcl_result.estimation, pcl_result.search, pcl_result.estimation);
+  std::printf("            ours %.2f: %s\n", report.seconds, timesText(report.stages).c_str());
+  std::printf("angle       median %.3f  p90 %.3f deg between the two, signs ignored\n", d.median,
+              d.p90);
+  std::printf("orientation %.3f %% of %zu points differ\n", d.share(d.opposite), d.compared);
+  if (table.hasNormals()) {
+    const Normals truth = ownNormals(table);
+    std::printf("against the input's own normals:\n");
+    printAgainstTruth("PCL", truth, pcl_result.normals);
+    printAgainstTruth("segorient", truth, our_normals);
+  }
+}
+
 Scene sceneOf(const CloudTable& table, const LocalPoints& points, const Normals& normals,
               int threads) {
   return makeScene(table, points, normals.data(), Coloring::Normal, threads);
@@ -129,21 +157,29 @@ int runCompare(const std::vector<std::string>& words) {
       "segorient compare scan.ply --picture compare.png --poisson poisson");
   CommonOptions common;
   StageOptions stages;
+  HintOptions hints;
   std::string picture_path;
+  std::string truth_path;
   std::string poisson_prefix;
   int depth = 0;
   line.arguments({"IN"});
   stages.add(line);
+  hints.add(line);
   line.options()("picture", po::value(&picture_path), "PNG: PCL left, ours right")(
       "poisson", po::value(&poisson_prefix),
       "surfaces of pcl::Poisson from both: writes NAME_pcl.ply, NAME_ours.ply, NAME.png")(
-      "depth", po::value(&depth)->default_value(8), "of pcl::Poisson's octree");
+      "depth", po::value(&depth)->default_value(8), "of pcl::Poisson's octree")(
+      "truth", po::value(&truth_path),
+      "the true surface, to measure those of pcl::Poisson by: a mesh, or a cloud with normals; "
+      "left out: IN, if it has normals");
   common.add(line);
   if (!line.parse(words)) return 0;
   common.check();
   require(depth >= 2 && depth <= 14, "--depth must be 2 to 14");
   PipelineOptions options;
   stages.apply(line, common, options);
+  hints.check(line, common, options);
+  StageOptions::warnOfUnused(line, common, options);
   std::optional<OutputFile> picture;
   if (!picture_path.empty()) {
     requireEnding(picture_path, {".png"});
@@ -152,44 +188,43 @@ int runCompare(const std::vector<std::string>& words) {
 
   const CloudTable table = readUsableCloud(line.argument("IN"));
   const LocalPoints points(table);
+  hints.apply(table, line.argument("IN"), points, options);
+  // PCL's viewpoint is 0, 0, 0 unless it is told otherwise.
+  std::array<float, 3> viewpoint = options.orientation.hints->viewpoint;
+  for (std::size_t a = 0; a < 3 && !options.orientation.hints->has_viewpoint; ++a) {
+    viewpoint[a] = static_cast<float>(-points.origin()[a]);
+  }
   OrientedCloud ours;
-  const Stopwatch our_time;
+  PclResult pcl_result;
+  std::string poisson_text;
   {
     ProgressBar bar(!common.quiet, table.size);
-    ours = orientCloud(points.view(), nullptr, options,
-                       [&](const char* stage, double fraction) { bar.update(stage, fraction); });
+    const double share = poisson_prefix.empty() ? 0.5 : 0.3;
+    ours = orientCloud(points.view(), nullptr, options, [&](const char* stage, double fraction) {
+      bar.update(stage, share * fraction);
+    });
+    bar.update("PCL", share);
+    // PCL counts the point itself.
+    pcl_result =
+        runPcl(points.view(), viewpoint, ours.report.k + 1, resolveThreads(common.threads));
+    if (!poisson_prefix.empty()) {
+      bar.update("poisson", 2.0 * share);
+      const TrueSurface truth(truth_path.empty() ? table : readUsableCloud(truth_path),
+                              points.origin(), common.threads);
+      poisson_text = comparePoisson(points, {pcl_result.normals, ours.normals}, depth,
+                                    poisson_prefix, truth, bar);
+    }
   }
-  const double our_seconds = our_time.seconds();
-  const int k = ours.report.k + 1;  // PCL counts the point itself
-  const Stopwatch pcl_time;
-  const Normals pcl_normals =
-      normalsByPcl(points.view(), table, points.origin(), k, resolveThreads(common.threads));
-  const double pcl_seconds = pcl_time.seconds();
-
-  const Difference d = compareNormals(pcl_normals, ours.normals);
-  std::printf("points      %zu; %d neighbours\n", table.size, ours.report.k);
-  std::printf("seconds     PCL %.2f (normals and viewpoint); ours %.2f: %s\n", pcl_seconds,
-              our_seconds, timesText(ours.report.stages).c_str());
-  std::printf("angle       median %.3f  p90 %.3f deg between the two, signs ignored\n", d.median,
-              d.p90);
-  std::printf("orientation %.3f %% of %zu points differ\n", d.share(d.opposite), d.compared);
-  if (table.hasNormals()) {
-    const Normals truth = ownNormals(table);
-    std::printf("against the input's own normals:\n");
-    printAgainstTruth("PCL", truth, pcl_normals);
-    printAgainstTruth("segorient", truth, ours.normals);
-  }
+  if (!common.quiet) print(table, ours.report, pcl_result, ours.normals);
   if (picture) {
     View view;
-    writePng(beside({drawScene(sceneOf(table, points, pcl_normals, common.threads), view),
+    writePng(beside({drawScene(sceneOf(table, points, pcl_result.normals, common.threads), view),
                      drawScene(sceneOf(table, points, ours.normals, common.threads), view)}),
              *picture);
     picture->commit();
-    std::printf("written     %s\n", picture_path.c_str());
+    if (!common.quiet) std::printf("written     %s\n", picture_path.c_str());
   }
-  if (!poisson_prefix.empty()) {
-    comparePoisson(points, {pcl_normals, ours.normals}, depth, poisson_prefix);
-  }
+  if (!common.quiet) std::fputs(poisson_text.c_str(), stdout);
   return 0;
 }
 

@@ -12,6 +12,7 @@
 #include "io/readers.h"
 #include "support/command_line.h"
 #include "support/json.h"
+#include "support/stage_options.h"
 
 namespace segorient::program {
 namespace {
@@ -163,9 +164,13 @@ int runEvaluate(const std::vector<std::string>& words) {
       "normals. A point of RESULT without a normal counts as wrong.",
       "segorient evaluate truth.ply oriented.pcd --report score.json");
   std::string report_path;
+  CommonOptions common;
   line.arguments({"TRUTH", "RESULT"});
   line.options()("report", boost::program_options::value(&report_path), "the same as JSON");
+  takeSharedOptions(line);
+  common.add(line);
   if (!line.parse(words)) return 0;
+  common.check();
 
   std::optional<OutputFile> report_file;
   if (!report_path.empty()) report_file.emplace(report_path);
@@ -175,7 +180,7 @@ int runEvaluate(const std::vector<std::string>& words) {
   if (!result.hasNormals()) throw FileError(line.argument("RESULT"), "has no normals");
   checkSamePoints(truth, result, line.argument("RESULT"));
   const Evaluation e = evaluate(truth, result);
-  print(e);
+  if (!common.quiet) print(e);
   if (report_file) {
     report_file->write(report(e));
     report_file->commit();

@@ -14,6 +14,8 @@
 #include "io/output_file.h"
 #include "io/readers.h"
 #include "support/command_line.h"
+#include "support/progress_bar.h"
+#include "support/stage_options.h"
 #include "support/stopwatch.h"
 
 namespace segorient::program {
@@ -119,6 +121,7 @@ int runKnn(const std::vector<std::string>& words) {
   line.arguments({"IN", "OUT.csv"}, 1);
   line.options()("neighbors,k", po::value(&k)->default_value(15), "neighbours, the point included")(
       "alone", po::bool_switch(&alone), "without pcl::search::KdTree");
+  takeSharedOptions(line, false);
   common.add(line);
   if (!line.parse(words)) return 0;
   common.check();
@@ -135,15 +138,25 @@ int runKnn(const std::vector<std::string>& words) {
   const Cloud::Ptr cloud = finitePoints(LocalPoints(table).view(), rows);
   const int threads = resolveThreads(common.threads);
   Neighborhoods neighborhoods;
-  const Timing ours = searchByHash(cloud, k, threads, neighborhoods);
+  Timing ours;
+  Timing pcl_timing;
+  std::size_t differing = 0;
+  const bool both = !alone && !common.quiet;
+  {
+    ProgressBar bar(!common.quiet, cloud->size());
+    bar.update("search", 0.0);
+    ours = searchByHash(cloud, k, threads, neighborhoods);
+    if (both) {
+      bar.update("PCL", 0.2);
+      pcl_timing = searchByKdTree(cloud, k, threads, neighborhoods, differing);
+    }
+  }
   if (!common.quiet) {
     std::printf("points                 %zu finite of %zu; k = %d, threads = %d\n", cloud->size(),
                 table.size, k, threads);
     printTiming("search::MedianHash", ours, cloud->size());
   }
-  if (!alone && !common.quiet) {
-    std::size_t differing = 0;
-    const Timing pcl_timing = searchByKdTree(cloud, k, threads, neighborhoods, differing);
+  if (both) {
     printTiming("pcl::search::KdTree", pcl_timing, cloud->size());
     std::printf("queries                %.2f times as fast; %zu distances differ\n",
                 pcl_timing.query / ours.query, differing);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026, the segorient authors
-#include <algorithm>
+#include <segorient/orientation/first_stages.h>
+
 #include <cmath>
 #include <cstdio>
 
@@ -8,11 +9,25 @@
 #include "io/output_file.h"
 #include "io/readers.h"
 #include "support/command_line.h"
+#include "support/progress_bar.h"
 #include "support/result_columns.h"
 #include "support/stage_options.h"
-#include "support/stages.h"
 
 namespace segorient::program {
+namespace {
+
+void printSummary(const FirstStages& stages, const std::vector<float>& normals,
+                  const PipelineOptions& options, const std::string& path) {
+  std::size_t without = 0;
+  for (std::size_t i = 0; i < normals.size(); i += 4) without += std::isfinite(normals[i]) ? 0 : 1;
+  std::printf(
+      "points          %zu\nwithout normal  %zu\nneighbours      %d, %s\nseconds         %s\n"
+      "written         %s\n",
+      normals.size() / 4, without, stages.k(), estimatorName(options.normals.estimator),
+      timesText(stages.times()).c_str(), path.c_str());
+}
+
+}  // namespace
 
 int runNormals(const std::vector<std::string>& words) {
   CommandLine line("normals IN OUT [options]",
@@ -22,17 +37,11 @@ int runNormals(const std::vector<std::string>& words) {
                    "segorient normals scan.ply normals.pcd --normals ldt");
   CommonOptions common;
   StageOptions stage_options;
-  int rounds = 0;
   line.arguments({"IN", "OUT"});
   stage_options.add(line);
-  line.options()(
-      "recompute", boost::program_options::value(&rounds)->default_value(0),
-      "rounds of recomputation at sharp edges: from one side's surface, or by the paper's "
-      "rule where --delta is given");
   common.add(line);
   if (!line.parse(words)) return 0;
   common.check();
-  require(rounds >= 0 && rounds <= 100, "--recompute must be 0 to 100");
   PipelineOptions options;
   stage_options.apply(line, common, options);
   requireEnding(line.argument("OUT"), {".pcd", ".ply"});
@@ -40,26 +49,19 @@ int runNormals(const std::vector<std::string>& words) {
   OutputFile file(line.argument("OUT"));
   const CloudTable table = readUsableCloud(line.argument("IN"));
   const LocalPoints points(table);
-  Stages stages(points.view(), options, !common.quiet);
+  ProgressBar bar(!common.quiet, table.size);
+  FirstStages stages(points.view(), options, bar.callback());
   stages.findNormals();
-  if (rounds > 0) {
+  if (options.recomputations > 0) {
     stages.findSegments();
-    stages.recomputeNormals(rounds, stage_options.delta());
+    stages.recomputeNormals();
   }
   const std::vector<float> normals = stages.normals();
-  OutputCloud out(table);
-  addNormalColumns(normals, out);
-  out.addRest(table);
-  writeCloud(out, file);
+  Results results;
+  results.normals = &normals;
+  writeResults(table, results, file);
   file.commit();
-  if (common.quiet) return 0;
-  std::size_t without = 0;
-  for (std::size_t i = 0; i < table.size; ++i) without += std::isfinite(normals[4 * i]) ? 0 : 1;
-  std::printf(
-      "points          %zu\nwithout normal  %zu\nneighbours      %d, %s\nseconds         %s\n"
-      "written         %s\n",
-      table.size, without, stages.k(), estimatorName(options.normals.estimator),
-      timesText(stages.times()).c_str(), file.path().c_str());
+  if (!common.quiet) printSummary(stages, normals, options, file.path());
   return 0;
 }
 

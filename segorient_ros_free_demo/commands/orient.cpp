@@ -4,13 +4,13 @@
 
 #include <array>
 #include <cstdio>
-#include <memory>
 #include <optional>
 
 #include "commands/commands.h"
 #include "io/output_file.h"
 #include "io/readers.h"
 #include "support/command_line.h"
+#include "support/hint_options.h"
 #include "support/json.h"
 #include "support/progress_bar.h"
 #include "support/result_columns.h"
@@ -50,9 +50,8 @@ void printSummary(const PipelineReport& report, const std::array<double, 3>& ori
         report.contradictions.size(), origin[0] + static_cast<double>(where[0]),
         origin[1] + static_cast<double>(where[1]), origin[2] + static_cast<double>(where[2]));
   }
-  std::printf("seconds         %.2f:", report.seconds);
-  for (const StageTime& s : report.stages) std::printf("  %s %.2f", s.stage.c_str(), s.seconds);
-  std::printf("\npeak memory     %.0f MB\n", static_cast<double>(report.peak_memory) / 1048576.0);
+  std::printf("seconds         %.2f: %s\n", report.seconds, timesText(report.stages).c_str());
+  std::printf("peak memory     %.0f MB\n", static_cast<double>(report.peak_memory) / 1048576.0);
   std::printf("written         %s\n", out.c_str());
 }
 
@@ -65,10 +64,18 @@ void addSegments(const OrientedCloud& cloud, JsonWriter& json) {
     json.field("label", i);
     json.field("kind", kindName(s.kind));
     json.field("points", s.size);
+    json.field("component", r.component);
+    json.field("sign", static_cast<int>(r.sign));
     json.field("oriented_by", toString(r.by));
     json.field("confidence", r.confidence);
-    json.field("component", r.component);
+    json.field("extremal_agreement", r.extremal_agreement);
+    json.field("hard", r.hard);
     json.endObject();
+  }
+  json.endArray();
+  json.beginArray("hard_segments");
+  for (std::size_t i = 0; i < cloud.segments.size(); ++i) {
+    if (cloud.segments[i].hard) json.item(i);
   }
   json.endArray();
 }
@@ -105,6 +112,7 @@ std::string reportText(const OrientedCloud& cloud, const std::array<double, 3>& 
     json.field("sign", static_cast<int>(c.sign));
     json.field("evidence", c.evidence);
     json.field("confidence", c.confidence);
+    json.field("contradiction", c.contradiction);
     json.endObject();
   }
   json.endArray();
@@ -122,28 +130,6 @@ std::string reportText(const OrientedCloud& cloud, const std::array<double, 3>& 
   return json.finish();
 }
 
-void write(const CloudTable& table, const OrientedCloud& cloud, OutputFile& file) {
-  OutputCloud out(table);
-  addNormalColumns(cloud.normals, out);
-  const SegmentColumns segments(cloud.segmentation);
-  // Colours that the input has are worth more than ours; the label tells the segments.
-  if (table.find("rgb") == nullptr) segments.addColors(out);
-  segments.addLabels(out);
-  out.addRest(table);
-  writeCloud(out, file);
-}
-
-// Three numbers between commas, or none.
-std::vector<double> parseViewpoint(const std::string& text) {
-  if (text.empty()) return {};
-  std::vector<double> v(3);
-  char end = 0;
-  if (std::sscanf(text.c_str(), "%lf,%lf,%lf%c", &v[0], &v[1], &v[2], &end) != 3) {
-    throw UsageError("--viewpoint takes three numbers, as in --viewpoint=1.5,0,-2");
-  }
-  return v;
-}
-
 }  // namespace
 
 int runOrient(const std::vector<std::string>& words) {
@@ -156,19 +142,19 @@ int runOrient(const std::vector<std::string>& words) {
       "segorient orient scan.ply oriented.pcd --report report.json");
   CommonOptions common;
   StageOptions stages;
+  HintOptions hints;
   std::string report_path;
-  std::string viewpoint_text;
   line.arguments({"IN", "OUT"});
   stages.add(line);
-  line.options()("report", po::value(&report_path), "what was done, as JSON")(
-      "viewpoint", po::value(&viewpoint_text),
-      "=X,Y,Z: where an open surface was seen from; closed ones know their outside (method auto)");
+  hints.add(line);
+  line.options()("report", po::value(&report_path), "what was done, as JSON");
   common.add(line);
   if (!line.parse(words)) return 0;
   common.check();
-  const std::vector<double> viewpoint = parseViewpoint(viewpoint_text);
   PipelineOptions options;
   stages.apply(line, common, options);
+  hints.check(line, common, options);
+  StageOptions::warnOfUnused(line, common, options);
   requireEnding(line.argument("OUT"), {".pcd", ".ply"});
 
   if (report_path == line.argument("OUT")) throw UsageError("--report and OUT are the same file");
@@ -182,19 +168,15 @@ int runOrient(const std::vector<std::string>& words) {
   {
     const LocalPoints points(table);
     origin = points.origin();
-    if (!viewpoint.empty()) {
-      auto hints = std::make_shared<OrientationHints>();
-      hints->has_viewpoint = true;
-      for (std::size_t a = 0; a < 3; ++a) {
-        hints->viewpoint[a] = static_cast<float>(viewpoint[a] - origin[a]);
-      }
-      options.orientation.hints = hints;
-    }
+    hints.apply(table, line.argument("IN"), points, options);
     ProgressBar bar(!common.quiet, table.size);
-    cloud = orientCloud(points.view(), nullptr, options,
-                        [&](const char* stage, double fraction) { bar.update(stage, fraction); });
+    cloud = orientCloud(points.view(), nullptr, options, bar.callback());
   }
-  write(table, cloud, out);
+  Results results;
+  results.normals = &cloud.normals;
+  results.segmentation = &cloud.segmentation;
+  results.keep_colors = true;  // worth more than ours; the label tells the segments
+  writeResults(table, results, out);
   if (report) report->write(reportText(cloud, origin));
   out.commit();
   if (report) report->commit();

@@ -5,6 +5,8 @@
 #include "io/readers.h"
 #include "render/scene.h"
 #include "support/command_line.h"
+#include "support/hard_segments.h"
+#include "support/stage_options.h"
 
 namespace segorient::program {
 namespace po = boost::program_options;
@@ -14,26 +16,32 @@ int runRender(const std::vector<std::string>& words) {
       "render IN OUT.png [options]",
       "Draws a cloud as closed surfaces, from two opposite sides. Needs no screen.\n"
       "Colours by normal: light where normals point to the viewer, red where they point\n"
-      "away, blue where there is none; on a closed object all should be light. A PLY\n"
-      "with faces is drawn as the mesh that it is.",
+      "away, blue where there is none; on a closed object all should be light. By\n"
+      "orientation: the same with a tint for each segment, and hard ones marked: those\n"
+      "that the report lists as decided by no method. A PLY with faces is drawn as the\n"
+      "mesh that it is.",
       "segorient render oriented.pcd oriented.png --color normal");
   View view;
   std::string color;
+  std::string report;
   bool single = false;
-  int threads = 0;
+  CommonOptions common;
   line.arguments({"IN", "OUT.png"});
   line.options()("color", po::value(&color)->default_value("auto"),
-                 "auto, normal, segment (field label), rgb")(
+                 "auto, normal, segment (field label), orientation, rgb")(
+      "report", po::value(&report),
+      "of orient: hard segments are violet, dark where they face away (colour orientation)")(
       "azimuth", po::value(&view.azimuth)->default_value(view.azimuth), "degrees about the z axis")(
       "elevation", po::value(&view.elevation)->default_value(view.elevation),
       "degrees above the horizon")("single", po::bool_switch(&single), "one side only")(
       "width", po::value<std::size_t>(&view.width)->default_value(1600), "pixels")(
-      "height", po::value<std::size_t>(&view.height)->default_value(800), "pixels")(
-      "threads", po::value(&threads)->default_value(0), "threads; 0 = all cores");
+      "height", po::value<std::size_t>(&view.height)->default_value(800), "pixels");
+  takeSharedOptions(line);
+  common.add(line);
   if (!line.parse(words)) return 0;
   require(view.width >= 2 && view.width <= 16384 && view.height >= 1 && view.height <= 16384,
           "--width and --height must be 2 to 16384");
-  require(threads >= 0, "--threads must not be negative");
+  common.check();
   requireEnding(line.argument("OUT.png"), {".png"});
 
   OutputFile out(line.argument("OUT.png"));
@@ -41,7 +49,10 @@ int runRender(const std::vector<std::string>& words) {
   const CloudTable table = readUsableCloud(path);
   const LocalPoints points(table);
   const Coloring coloring = parseColoring(color, table, path);
-  writePng(drawViews(makeScene(table, points, nullptr, coloring, threads), view, !single), out);
+  std::vector<std::uint32_t> hard;
+  if (!report.empty()) hard = readHardSegments(report);
+  const Scene scene = makeScene(table, points, nullptr, coloring, common.threads, hard);
+  writePng(drawViews(scene, view, !single), out);
   out.commit();
   return 0;
 }

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026, the segorient authors
+#include <segorient/orientation/first_stages.h>
+
 #include <array>
 #include <cstdio>
 
@@ -7,21 +9,22 @@
 #include "io/output_file.h"
 #include "io/readers.h"
 #include "support/command_line.h"
+#include "support/progress_bar.h"
 #include "support/result_columns.h"
 #include "support/stage_options.h"
-#include "support/stages.h"
 
 namespace segorient::program {
 namespace {
 
-void printSummary(const Stages& stages, const std::string& path) {
+void printSummary(const FirstStages& stages, const Segmentation& segmentation,
+                  const std::string& path) {
   std::array<std::size_t, 3> count{0, 0, 0};
   std::array<std::size_t, 3> points{0, 0, 0};
-  for (const Segment& s : stages.compactSegmentation().segments) {
+  for (const Segment& s : segmentation.segments) {
     ++count[static_cast<std::size_t>(s.kind)];
     points[static_cast<std::size_t>(s.kind)] += s.size;
   }
-  std::printf("points     %zu, %zu not finite, %zu duplicates\n", stages.cloud().row_of.size(),
+  std::printf("points     %zu, %zu not finite, %zu duplicates\n", segmentation.labels.size(),
               stages.nonFinite(), stages.duplicates());
   for (const SegmentKind kind :
        {SegmentKind::Regular, SegmentKind::Connected, SegmentKind::Isolated}) {
@@ -55,24 +58,23 @@ int runSegment(const std::vector<std::string>& words) {
   OutputFile file(line.argument("OUT"));
   const CloudTable table = readUsableCloud(line.argument("IN"));
   const LocalPoints points(table);
-  Stages stages(points.view(), options, !common.quiet);
+  ProgressBar bar(!common.quiet, table.size);
+  FirstStages stages(points.view(), options, bar.callback());
   stages.findNormals();
   stages.findSegments();
-  const Segmentation segmentation = stages.segmentation();
-  std::vector<float> normals = stages.normals();
-  for (std::size_t i = 0; i < table.size; ++i) {
-    for (std::size_t a = 0; a < 3 && segmentation.signs[i] < 0; ++a) normals[4 * i + a] *= -1.F;
+  if (options.recomputations > 0) {
+    stages.recomputeNormals();
+    stages.findSegments();
   }
-  OutputCloud out(table);
-  addNormalColumns(normals, out);
-  const SegmentColumns columns(segmentation);
-  columns.addColors(out);
-  columns.addLabels(out);
-  columns.addKinds(out);
-  out.addRest(table);
-  writeCloud(out, file);
+  const Segmentation segmentation = stages.segmentation();
+  const std::vector<float> normals = stages.normalsBySegment();
+  Results results;
+  results.normals = &normals;
+  results.segmentation = &segmentation;
+  results.kinds = true;
+  writeResults(table, results, file);
   file.commit();
-  if (!common.quiet) printSummary(stages, file.path());
+  if (!common.quiet) printSummary(stages, segmentation, file.path());
   return 0;
 }
 

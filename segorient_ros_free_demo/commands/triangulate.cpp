@@ -9,6 +9,7 @@
 #include "io/output_file.h"
 #include "io/readers.h"
 #include "support/command_line.h"
+#include "support/hint_options.h"
 #include "support/progress_bar.h"
 #include "support/result_columns.h"
 #include "support/stage_options.h"
@@ -28,18 +29,6 @@ std::vector<Triangle> allTriangles(const std::vector<SegmentMesh>& meshes) {
   return out;
 }
 
-void write(const CloudTable& table, const OrientedCloud& cloud,
-           const std::vector<Triangle>& triangles, OutputFile& file) {
-  OutputCloud out(table);
-  addNormalColumns(cloud.normals, out);
-  const SegmentColumns segments(cloud.segmentation);
-  segments.addColors(out);
-  segments.addLabels(out);
-  out.addRest(table);
-  out.triangles = &triangles;
-  writeCloud(out, file);
-}
-
 }  // namespace
 
 int runTriangulate(const std::vector<std::string>& words) {
@@ -51,10 +40,12 @@ int runTriangulate(const std::vector<std::string>& words) {
       "segorient triangulate scan.ply segments.vtk");
   CommonOptions common;
   StageOptions stages;
+  HintOptions hints;
   TriangulationOptions triangulation;
   bool all = false;
   line.arguments({"IN", "OUT"});
   stages.add(line);
+  hints.add(line);
   line.options()("kappa1", po::value(&triangulation.kappa1)->default_value(triangulation.kappa1),
                  "share of the fullest bin of edge lengths that counts as a maximum")(
       "kappa2", po::value(&triangulation.kappa2)->default_value(triangulation.kappa2),
@@ -67,21 +58,32 @@ int runTriangulate(const std::vector<std::string>& words) {
   require(triangulation.kappa2 > 0.F, "--kappa2 must be above 0");
   PipelineOptions options;
   stages.apply(line, common, options);
+  hints.check(line, common, options);
+  StageOptions::warnOfUnused(line, common, options);
   requireEnding(line.argument("OUT"), {".ply", ".vtk"});
 
   OutputFile file(line.argument("OUT"));
   const CloudTable table = readUsableCloud(line.argument("IN"));
   const LocalPoints points(table);
+  hints.apply(table, line.argument("IN"), points, options);
   OrientedCloud cloud;
+  std::vector<Triangle> triangles;
   {
     ProgressBar bar(!common.quiet, table.size);
-    cloud = orientCloud(points.view(), nullptr, options,
-                        [&](const char* stage, double fraction) { bar.update(stage, fraction); });
+    // Triangulation takes about a fifth of the time.
+    cloud = orientCloud(points.view(), nullptr, options, [&](const char* stage, double fraction) {
+      bar.update(stage, 0.8 * fraction);
+    });
+    bar.update("triangulation", 0.8);
+    triangulation.threads = common.threads;
+    triangles =
+        allTriangles(triangulateSegments(points.view(), cloud.segmentation, triangulation, all));
   }
-  triangulation.threads = common.threads;
-  const std::vector<Triangle> triangles =
-      allTriangles(triangulateSegments(points.view(), cloud.segmentation, triangulation, all));
-  write(table, cloud, triangles, file);
+  Results results;
+  results.normals = &cloud.normals;
+  results.segmentation = &cloud.segmentation;
+  results.triangles = &triangles;
+  writeResults(table, results, file);
   file.commit();
   if (common.quiet) return 0;
   std::printf("points     %zu\nsegments   %zu regular, %zu connected, %zu isolated\n", table.size,

@@ -10,6 +10,7 @@
 #include "io/readers.h"
 #include "render/scene.h"
 #include "support/command_line.h"
+#include "support/stage_options.h"
 
 namespace segorient::program {
 namespace po = boost::program_options;
@@ -76,11 +77,15 @@ int runView(const std::vector<std::string>& words) {
       "segorient view oriented.pcd --color segment");
   std::string color;
   int every = 0;
+  CommonOptions common;
   line.arguments({"IN"});
   line.options()("color", po::value(&color)->default_value("auto"),
                  "auto (segment, else rgb), normal, segment, rgb")(
       "every", po::value(&every)->default_value(10), "a line at one of so many normals; 0 = none");
+  takeSharedOptions(line);
+  common.add(line);
   if (!line.parse(words)) return 0;
+  common.check();
   require(every >= 0, "--every must not be negative");
 
   const std::string path = line.argument("IN");
@@ -97,7 +102,7 @@ int runView(const std::vector<std::string>& words) {
                     "there is no screen to show it on (DISPLAY is not set); see segorient render");
   }
   const LocalPoints points(table);
-  show(makeScene(table, points, nullptr, coloring, 0), every, 0.02 * points.extent());
+  show(makeScene(table, points, nullptr, coloring, common.threads), every, 0.02 * points.extent());
   return 0;
 }
 

@@ -6,17 +6,20 @@
 
 #include "io/file_endings.h"
 #include "io/readers.h"
+#include "support/command_line.h"
 
 namespace segorient::program {
 namespace {
 
-void checkCoordinates(const InputFile& file, const CloudTable& table) {
+// All coordinates are floating point numbers afterwards; some scanners write whole ones.
+void checkCoordinates(const InputFile& file, CloudTable& table) {
+  bool real = true;
   for (const Field* f : table.xyz()) {
     if (f == nullptr) file.fail("has no fields x, y, z");
-    if (f->type != 'F' || f->count != 1) {
-      file.fail("field " + f->name + " is not a floating point number");
-    }
+    if (f->count != 1) file.fail("field " + f->name + " is not a single number");
+    real = real && f->type == 'F';
   }
+  if (!real) table.makeReal({"x", "y", "z"});
 }
 
 }  // namespace
@@ -59,6 +62,9 @@ CloudTable readCloud(const std::string& path) {
         "is of a kind not known by its ending (known: .pcd .ply .obj .xyz .txt .asc .csv .pts)");
   }
   checkCoordinates(file, table);
+  for (const std::string& name : table.dropped) {
+    warn(path + ": the lists '" + name + "' of its points are left out");
+  }
   if (table.size == 0) file.fail("has no points");
   return table;
 }

@@ -68,6 +68,41 @@ bool CloudTable::hasNormals() const {
   return std::all_of(n.begin(), n.end(), [](const Field* f) { return f != nullptr; });
 }
 
+void CloudTable::makeReal(const std::vector<std::string>& names) {
+  constexpr double kExactInFloat = 16777216.0;  // 2^24
+  CloudTable real;
+  for (const Field& f : fields) {
+    const bool chosen =
+        f.type != 'F' && std::find(names.begin(), names.end(), f.name) != names.end();
+    bool wide = false;
+    for (std::size_t i = 0; i < (chosen ? size * f.count : 0) && !wide; ++i) {
+      wide =
+          std::abs(value(f, i / f.count, static_cast<std::uint32_t>(i % f.count))) > kExactInFloat;
+    }
+    real.addField(f.name, chosen ? 'F' : f.type, chosen ? (wide ? 8 : 4) : f.size, f.count);
+  }
+  real.rows.resize(size * real.row_bytes);
+  for (std::size_t i = 0; i < size; ++i) {
+    for (std::size_t c = 0; c < fields.size(); ++c) {
+      const Field& from = fields[c];
+      const Field& to = real.fields[c];
+      if (from.type == to.type) {
+        std::memcpy(real.at(to, i), at(from, i), from.bytes());
+        continue;
+      }
+      for (std::uint32_t e = 0; e < from.count; ++e) {
+        const double v = value(from, i, e);
+        const auto single = static_cast<float>(v);
+        std::memcpy(real.at(to, i) + std::size_t{e} * to.size,
+                    to.size == 8 ? static_cast<const void*>(&v) : &single, to.size);
+      }
+    }
+  }
+  fields = std::move(real.fields);
+  row_bytes = real.row_bytes;
+  rows = std::move(real.rows);
+}
+
 LocalPoints::LocalPoints(const CloudTable& table) {
   const auto xyz = table.xyz();
   constexpr double kMax = std::numeric_limits<double>::max();

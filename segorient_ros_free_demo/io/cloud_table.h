@@ -37,7 +37,8 @@ struct CloudTable {
   std::size_t height = 1;                                ///< above 1 in an organised cloud
   std::array<double, 7> viewpoint{0, 0, 0, 1, 0, 0, 0};  ///< origin and quaternion, as in a PCD
   std::vector<std::uint8_t> rows;
-  std::vector<Triangle> triangles;  ///< faces of a PLY, where it has any
+  std::vector<Triangle> triangles;   ///< faces of a PLY, where it has any
+  std::vector<std::string> dropped;  ///< properties of the file that a table has no place for
 
   /// Appends a field behind the others; only before rows are stored.
   void addField(std::string name, char type, std::uint32_t field_size, std::uint32_t count = 1);
@@ -61,6 +62,10 @@ struct CloudTable {
     return {find("normal_x"), find("normal_y"), find("normal_z")};
   }
   bool hasNormals() const;
+
+  /// Makes fields of whole numbers floating point ones: of 4 bytes where that loses nothing, else
+  /// of 8.
+  void makeReal(const std::vector<std::string>& names);
 };
 
 /// A number in memory as a double.

@@ -198,7 +198,7 @@ std::string pclName(const std::string& name) {
 
 // Where red, green and blue of 8 bits go: byte 2, 1, 0 of a packed rgb; -1 for any other property.
 int colourByte(const Property& p) {
-  if (p.value.type != 'U' || p.value.size != 1) return -1;
+  if (p.is_list || p.value.type != 'U' || p.value.size != 1) return -1;
   if (p.name == "red" || p.name == "diffuse_red") return 2;
   if (p.name == "green" || p.name == "diffuse_green") return 1;
   if (p.name == "blue" || p.name == "diffuse_blue") return 0;
@@ -207,20 +207,22 @@ int colourByte(const Property& p) {
 
 void readVertices(InputFile& file, Body& body, const Element& element, bool ascii,
                   CloudTable& table) {
-  if (element.hasLists()) file.fail("its vertices have lists, which are not supported");
   const auto& properties = element.properties;
   const auto has = [&](const char* name) {
     return std::any_of(properties.begin(), properties.end(),
                        [&](const Property& p) { return p.name == name; });
   };
-  // Where each property goes; npos: it is dropped.
+  // Where each property goes; npos: it is dropped. Lists have no place in a table.
   std::vector<std::size_t> offsets;
   const bool colours = std::count_if(properties.begin(), properties.end(),
                                      [](const Property& p) { return colourByte(p) >= 0; }) == 3;
   for (const Property& p : properties) {
     const bool twin = p.name == "scalar_label" && has("label");  // written for CloudCompare
     const int byte = colours ? colourByte(p) : -1;
-    if (byte >= 0) {
+    if (p.is_list) {
+      table.dropped.push_back(p.name);
+      offsets.push_back(std::string::npos);
+    } else if (byte >= 0) {
       if (table.find("rgb") == nullptr) table.addField("rgb", 'F', 4);
       offsets.push_back(table.find("rgb")->offset + static_cast<std::size_t>(byte));
     } else if (twin) {
@@ -232,7 +234,7 @@ void readVertices(InputFile& file, Body& body, const Element& element, bool asci
   }
   allocateRows(file, table, element.count, element.leastBytes(ascii));
   table.width = table.size;
-  if (body.isVerbatim() && table.row_bytes == element.leastBytes(false) &&
+  if (body.isVerbatim() && !element.hasLists() && table.row_bytes == element.leastBytes(false) &&
       std::is_sorted(offsets.begin(), offsets.end())) {
     file.read(table.rows.data(), table.rows.size());
     return;
@@ -243,7 +245,10 @@ void readVertices(InputFile& file, Body& body, const Element& element, bool asci
     std::uint8_t* to = table.rows.data() + row * table.row_bytes;
     for (std::size_t i = 0; i < properties.size(); ++i) {
       const bool dropped = offsets[i] == std::string::npos;
-      body.value(properties[i].value, dropped ? ignored.data() : to + offsets[i]);
+      const std::uint64_t n = properties[i].is_list ? body.length(properties[i].length) : 1;
+      for (std::uint64_t entry = 0; entry < n; ++entry) {
+        body.value(properties[i].value, dropped ? ignored.data() : to + offsets[i]);
+      }
     }
   }
 }

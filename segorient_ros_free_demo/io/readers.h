@@ -24,7 +24,8 @@ CloudTable readObj(InputFile& file);
 CloudTable readText(InputFile& file);
 
 /// A cloud by the file's ending (.pcd, .ply, .obj, .xyz, .txt, .asc, .csv, .pts), checked to have
-/// coordinates in floating point.
+/// coordinates; whole numbers among them become floating point ones. Says on standard error what of
+/// the file is left out.
 CloudTable readCloud(const std::string& path);
 
 /// The same, and at least one point has finite coordinates.

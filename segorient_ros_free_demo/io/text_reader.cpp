@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026, the segorient authors
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstring>
 
@@ -20,11 +21,12 @@ struct Numbers {
   double at(std::size_t row, std::size_t column) const { return values[row * columns + column]; }
 };
 
-// Floats resolve 1e-7 of a cloud's extent only near the origin; text far from it stays in double.
-bool needsDouble(const Numbers& numbers) {
+// Floats resolve 1e-7 of a range only near 0; text far from it (map coordinates, times) stays in
+// double. The longest range and the largest number of these columns are compared.
+bool needsDouble(const Numbers& numbers, const std::vector<std::size_t>& columns) {
   double extent = 0.0;
   double reach = 0.0;
-  for (std::size_t c = 0; c < 3; ++c) {
+  for (const std::size_t c : columns) {
     double low = INFINITY;
     double high = -INFINITY;
     for (std::size_t i = 0; i < numbers.rows(); ++i) {
@@ -50,12 +52,24 @@ bool endsInNormals(const Numbers& numbers) {
   return true;
 }
 
+// Columns that PCL has as floats.
+bool isFloatInPcl(const std::string& name) {
+  static const std::array<const char*, 6> kNames{"normal_x",  "normal_y",  "normal_z",
+                                                 "curvature", "intensity", "rgb"};
+  return std::find(kNames.begin(), kNames.end(), name) != kNames.end();
+}
+
 CloudTable makeTable(const Numbers& numbers, const std::vector<std::string>& names) {
   CloudTable table;
-  const std::uint32_t coordinate_size = needsDouble(numbers) ? 8 : 4;
+  std::vector<std::size_t> xyz;
   for (std::size_t c = 0; c < numbers.columns; ++c) {
-    const bool coordinate = names[c] == "x" || names[c] == "y" || names[c] == "z";
-    table.addField(names[c], 'F', coordinate ? coordinate_size : 4);
+    if (names[c] == "x" || names[c] == "y" || names[c] == "z") xyz.push_back(c);
+  }
+  const bool far = needsDouble(numbers, xyz);
+  for (std::size_t c = 0; c < numbers.columns; ++c) {
+    const bool coordinate = std::find(xyz.begin(), xyz.end(), c) != xyz.end();
+    const bool wide = coordinate ? far : !isFloatInPcl(names[c]) && needsDouble(numbers, {c});
+    table.addField(names[c], 'F', wide ? 8 : 4);
   }
   table.size = numbers.rows();
   table.width = table.size;

@@ -29,6 +29,7 @@ bool CommandLine::parse(const std::vector<std::string>& words) {
     return false;
   }
   po::options_description all = options_;
+  all.add(unlisted_);
   po::positional_options_description positions;
   for (const std::string& name : arguments_) {
     all.add_options()(name.c_str(), po::value<std::string>());
@@ -55,6 +56,10 @@ std::string CommandLine::argument(const std::string& name) const {
 
 void require(bool condition, const std::string& text) {
   if (!condition) throw UsageError(text);
+}
+
+void warn(const std::string& text) {
+  std::cerr << "segorient: " << text << "\n";
 }
 
 void requireEnding(const std::string& path, const std::vector<std::string>& endings) {

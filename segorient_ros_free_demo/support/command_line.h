@@ -20,6 +20,10 @@ class CommandLine {
 
   /// For the command's own options: `options ()("name", value, "text")`.
   boost::program_options::options_description_easy_init options() { return options_.add_options(); }
+  /// For options that are taken but not listed in the help.
+  boost::program_options::options_description_easy_init unlisted() {
+    return unlisted_.add_options();
+  }
   /// Names of the arguments that are no options, in order; the last `optional` of them may be
   /// missing.
   void arguments(std::vector<std::string> names, std::size_t optional = 0);
@@ -42,6 +46,7 @@ class CommandLine {
   std::string purpose_;
   std::string example_;
   boost::program_options::options_description options_{"Options"};
+  boost::program_options::options_description unlisted_;
   std::vector<std::string> arguments_;
   std::size_t optional_ = 0;
   boost::program_options::variables_map values_;
@@ -49,6 +54,8 @@ class CommandLine {
 
 /// Throws a UsageError with this text unless the condition holds.
 void require(bool condition, const std::string& text);
+/// One line on standard error, about something that works otherwise than it was perhaps meant.
+void warn(const std::string& text);
 /// Throws a UsageError unless the ending of an output file is one of these.
 void requireEnding(const std::string& path, const std::vector<std::string>& endings);
 

@@ -55,7 +55,7 @@ CloudTable poissonSurface(const LocalPoints& points, const std::vector<float>& n
   return table;
 }
 
-// Distances from each row of `from` to the nearest row of `to`, ascending.
+// Distances from each row of `from` to the nearest row of `to`.
 std::vector<double> distances(const PointView& from, const PointView& to) {
   search::MedianHashIndex index;
   index.build(to, nullptr, {});
@@ -67,26 +67,40 @@ std::vector<double> distances(const PointView& from, const PointView& to) {
       out.push_back(std::sqrt(static_cast<double>(squared)));
     }
   }
-  std::sort(out.begin(), out.end());
   return out;
 }
 
-void printDistances(const char* name, const std::vector<double>& d, double extent) {
-  if (d.empty()) return;
-  std::printf("  %-26s median %.4f  p95 %.4f  largest %.4f %% of the extent\n", name,
-              100.0 * d[d.size() / 2] / extent, 100.0 * d[d.size() * 95 / 100] / extent,
-              100.0 * d.back() / extent);
+std::vector<double> distances(const PointView& from, const TrueSurface& truth) {
+  std::vector<double> out;
+  for (std::size_t i = 0; i < from.size && !truth.empty(); ++i) {
+    out.push_back(truth.distance(from[i]));
+  }
+  return out;
+}
+
+std::string distancesText(const char* name, std::vector<double> d, double extent) {
+  if (d.empty()) return {};
+  std::sort(d.begin(), d.end());
+  char text[160];
+  std::snprintf(text, sizeof(text),
+                "  %-26s median %.4f  p95 %.4f  largest %.4f %% of the extent\n", name,
+                100.0 * d[d.size() / 2] / extent, 100.0 * d[d.size() * 95 / 100] / extent,
+                100.0 * d.back() / extent);
+  return text;
 }
 
 }  // namespace
 
-void comparePoisson(const LocalPoints& points, const std::array<std::vector<float>, 2>& normals,
-                    int depth, const std::string& prefix) {
+std::string comparePoisson(const LocalPoints& points,
+                           const std::array<std::vector<float>, 2>& normals, int depth,
+                           const std::string& prefix, const TrueSurface& truth, ProgressBar& bar) {
+  std::string text;
   const std::array<std::string, 2> names{"pcl", "ours"};
   OutputFile picture_file(prefix + ".png");
   std::vector<Picture> pictures;
   for (std::size_t i = 0; i < 2; ++i) {
     OutputFile file(prefix + "_" + names[i] + ".ply");
+    bar.update("poisson", 0.6 + 0.2 * static_cast<double>(i));
     const CloudTable surface = poissonSurface(points, normals[i], depth);
     OutputCloud out(surface);
     out.triangles = &surface.triangles;
@@ -101,18 +115,21 @@ void comparePoisson(const LocalPoints& points, const std::array<std::vector<floa
       }
     }
     const PointView view{near.data(), 3, surface.size};
-    std::printf("Poisson surface from %s normals: %zu triangles, %s\n", i == 0 ? "PCL's" : "our",
-                surface.triangles.size(), file.path().c_str());
-    printDistances("surface to nearest point", distances(view, points.view()), points.extent());
-    printDistances("point to nearest vertex", distances(points.view(), view), points.extent());
+    text += std::string("Poisson surface from ") + (i == 0 ? "PCL's" : "our") +
+            " normals: " + std::to_string(surface.triangles.size()) + " triangles, " + file.path() +
+            "\n";
+    const double extent = points.extent();
+    text += distancesText("surface to nearest point", distances(view, points.view()), extent);
+    text += distancesText("point to nearest vertex", distances(points.view(), view), extent);
+    text += distancesText("surface to the truth", distances(view, truth), extent);
     if (!surface.triangles.empty()) {
       pictures.push_back(drawScene(makeScene(surface, vertices, nullptr, Coloring::Normal, 0), {}));
     }
   }
-  if (pictures.empty()) return;
+  if (pictures.empty()) return text;
   writePng(beside(pictures), picture_file);
   picture_file.commit();
-  std::printf("written     %s\n", picture_file.path().c_str());
+  return text + "written     " + picture_file.path() + "\n";
 }
 
 }  // namespace segorient::program

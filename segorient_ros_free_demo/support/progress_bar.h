@@ -5,6 +5,7 @@
 #include <chrono>
 #include <condition_variable>
 #include <cstddef>
+#include <functional>
 #include <mutex>
 #include <string>
 #include <thread>
@@ -27,6 +28,10 @@ class ProgressBar {
   /// \param stage its name
   /// \param fraction of the whole work that is done, 0 to 1
   void update(const std::string& stage, double fraction);
+  /// The same as a function for the library's stages; this object must outlive it.
+  std::function<void(const char* stage, double fraction)> callback() {
+    return [this](const char* stage, double fraction) { update(stage, fraction); };
+  }
 
  private:
   using Clock = std::chrono::steady_clock;

@@ -5,40 +5,53 @@
 #include "support/colors.h"
 
 namespace segorient::program {
+namespace {
 
-void addNormalColumns(const std::vector<float>& normals, OutputCloud& cloud) {
-  cloud.add("normal_x", normals.data(), 4);
-  cloud.add("normal_y", normals.data() + 1, 4);
-  cloud.add("normal_z", normals.data() + 2, 4);
-  cloud.add("curvature", normals.data() + 3, 4);
-}
+// Columns made from a segmentation.
+struct SegmentColumns {
+  std::vector<std::uint32_t> colors;
+  std::vector<std::uint32_t> labels;
+  std::vector<std::uint8_t> kinds;
 
-SegmentColumns::SegmentColumns(const Segmentation& segmentation) {
-  const std::size_t size = segmentation.labels.size();
-  colors_.reserve(size);
-  labels_.reserve(size);
-  kinds_.reserve(size);
-  for (const std::int32_t label : segmentation.labels) {
-    labels_.push_back(label < 0 ? kNoSegment : static_cast<std::uint32_t>(label));
-    colors_.push_back(segmentColor(labels_.back()));
-    const auto kind = label < 0 ? SegmentKind::Isolated
-                                : segmentation.segments[static_cast<std::size_t>(label)].kind;
-    kinds_.push_back(static_cast<std::uint8_t>(kind));
+  explicit SegmentColumns(const Segmentation& segmentation) {
+    const std::size_t size = segmentation.labels.size();
+    colors.reserve(size);
+    labels.reserve(size);
+    kinds.reserve(size);
+    for (const std::int32_t label : segmentation.labels) {
+      labels.push_back(label < 0 ? kNoSegment : static_cast<std::uint32_t>(label));
+      colors.push_back(segmentColor(labels.back()));
+      const auto kind = label < 0 ? SegmentKind::Isolated
+                                  : segmentation.segments[static_cast<std::size_t>(label)].kind;
+      kinds.push_back(static_cast<std::uint8_t>(kind));
+    }
   }
-}
+};
 
-void SegmentColumns::addColors(OutputCloud& cloud) const {
-  // The bits of an integer under the type of a float: that is how PCL stores colours.
-  cloud.columns.push_back(
-      {{"rgb", 'F', 4, 1, 0}, reinterpret_cast<const std::uint8_t*>(colors_.data()), 4});
-}
+}  // namespace
 
-void SegmentColumns::addLabels(OutputCloud& cloud) const {
-  cloud.add("label", labels_.data());
-}
-
-void SegmentColumns::addKinds(OutputCloud& cloud) const {
-  cloud.add("segment_kind", kinds_.data());
+void writeResults(const CloudTable& table, const Results& results, OutputFile& file) {
+  OutputCloud out(table);
+  const float* normals = results.normals->data();
+  out.add("normal_x", normals, 4);
+  out.add("normal_y", normals + 1, 4);
+  out.add("normal_z", normals + 2, 4);
+  out.add("curvature", normals + 3, 4);
+  const SegmentColumns segments(results.segmentation != nullptr ? *results.segmentation
+                                                                : Segmentation{});
+  if (results.segmentation != nullptr) {
+    if (!results.keep_colors || table.find("rgb") == nullptr) {
+      // The bits of an integer under the type of a float: that is how PCL stores colours.
+      out.columns.push_back({{"rgb", 'F', 4, 1, 0},
+                             reinterpret_cast<const std::uint8_t*>(segments.colors.data()),
+                             4});
+    }
+    out.add("label", segments.labels.data());
+    if (results.kinds) out.add("segment_kind", segments.kinds.data());
+  }
+  out.addRest(table);
+  out.triangles = results.triangles;
+  writeCloud(out, file);
 }
 
 }  // namespace segorient::program

@@ -11,22 +11,18 @@
 
 namespace segorient::program {
 
-/// Appends normal_x, normal_y, normal_z, curvature.
-/// \param normals 4 floats a point
-void addNormalColumns(const std::vector<float>& normals, OutputCloud& cloud);
-
-/// Columns made from a segmentation: colours, labels, kinds.
-class SegmentColumns {
- public:
-  explicit SegmentColumns(const Segmentation& segmentation);
-  void addColors(OutputCloud& cloud) const;  ///< rgb
-  void addLabels(OutputCloud& cloud) const;  ///< label; 4294967295 where there is none
-  void addKinds(OutputCloud& cloud) const;   ///< segment_kind: 0 regular, 1 connected, 2 isolated
-
- private:
-  std::vector<std::uint32_t> colors_;
-  std::vector<std::uint32_t> labels_;
-  std::vector<std::uint8_t> kinds_;
+/// What a command found out about a cloud.
+struct Results {
+  const std::vector<float>* normals = nullptr;  ///< 4 floats a point: normal, curvature
+  const Segmentation* segmentation = nullptr;   ///< null: no segments
+  bool kinds = false;                           ///< whether to write the segments' kinds
+  bool keep_colors = false;  ///< whether colours that the input has come before the segments'
+  const std::vector<Triangle>* triangles = nullptr;  ///< null: no mesh
 };
+
+/// Writes x, y, z, the results as normal_x, normal_y, normal_z, curvature, rgb, label (4294967295
+/// where there is none) and segment_kind (0 regular, 1 connected, 2 isolated), and all other fields
+/// of the input. Does not commit.
+void writeResults(const CloudTable& table, const Results& results, OutputFile& file);
 
 }  // namespace segorient::program

@@ -3,6 +3,7 @@
 #include "support/stage_options.h"
 
 #include <array>
+#include <cstdio>
 
 namespace segorient::program {
 namespace po = boost::program_options;
@@ -51,17 +52,22 @@ void StageOptions::add(CommandLine& line) {
   line.options()("neighbors,k", po::value(&k_),
                  "neighbours of a point; left out: from the cloud's noise")(
       "method", po::value(&method_)->default_value("auto"),
-      "of orientation: auto (the best known), propagation, boundary, combined or extremal")(
+      "of orientation: auto (the best known), propagation, boundary, combined or extremal\n"
+      "(the paper's), hoppe (the classical tree over points)")(
       "normals", po::value(&normals_)->default_value("plane"),
-      "plane, lct, ldt, awas or awas3; orientation by auto has its own")(
+      "plane, lct, ldt, awas or awas3; method auto has its own way and does not look at this")(
       "alpha", po::value(&alpha_),
       "degrees: largest angle between normals of neighbours in a segment; about 20")(
       "beta", po::value(&beta_), "degrees: largest angle between a normal and its segment's; 30")(
       "gamma", po::value(&gamma_),
-      "degrees: angles between segments up to this decide (propagation, combined, extremal); 35")(
+      "degrees: angles between segments up to this decide; 35 (methods propagation, combined, "
+      "extremal)")(
       "delta", po::value(&delta_),
-      "degrees: normals that differ so much across a border make it a sharp one (recomputation)")(
+      "degrees: normals that differ so much across a border make it a sharp one for --recompute, "
+      "which then follows the paper's rule instead of fitting surfaces to one side")(
       "epsilon", po::value(&epsilon_), "degrees: by how much the clean-up may exceed beta; 10")(
+      "recompute", po::value(&recomputations_)->default_value(0),
+      "rounds of finding the normals at sharp edges again; method auto does so in its own way")(
       "seed", po::value(&seed_)->default_value(0),
       "of random choices; no stage makes any, so results do not depend on it");
 }
@@ -73,6 +79,8 @@ void StageOptions::apply(const CommandLine& line, const CommonOptions& common,
     require(k_ > 0 && k_ <= 1000, "-k must be 1 to 1000");
     options.k = k_;
   }
+  require(recomputations_ >= 0 && recomputations_ <= 100, "--recompute must be 0 to 100");
+  options.recomputations = recomputations_;
   bool known = false;
   for (const EstimatorName& e : kEstimators) {
     if (normals_ != e.name) continue;
@@ -87,9 +95,45 @@ void StageOptions::apply(const CommandLine& line, const CommonOptions& common,
   setAngle(line, "epsilon", epsilon_, options.segmentation.epsilon);
   setAngle(line, "epsilon", epsilon_, options.sheets.epsilon);
   setAngle(line, "gamma", gamma_, options.orientation.gamma);
-  setAngle(line, "delta", delta_, delta_given_);
+  setAngle(line, "delta", delta_, options.recomputation.delta);
+  if (line.given("delta")) {
+    options.recomputation.rule = RecomputationRule::ModifiedNeighborhoods;
+  }
   require(fromString(method_, options.orientation.method),
-          "--method is one of auto propagation boundary combined extremal");
+          "--method is one of auto propagation boundary combined extremal hoppe");
+}
+
+void StageOptions::warnOfUnused(const CommandLine& line, const CommonOptions& common,
+                                const PipelineOptions& options) {
+  if (common.quiet) return;
+  if (options.orientation.method == OrientationMethod::AUTO) {
+    for (const char* name : {"normals", "gamma", "delta", "recompute"}) {
+      if (!line.given(name)) continue;
+      warn("--" + std::string(name) +
+           " changes nothing with method auto; the others (--method combined) look at it");
+    }
+  } else if (line.given("delta") && options.recomputations == 0) {
+    warn("--delta changes nothing without --recompute");
+  }
+}
+
+void takeSharedOptions(CommandLine& line, bool with_k) {
+  for (const char* name : {"alpha", "beta", "gamma", "delta", "epsilon"}) {
+    line.unlisted()(name, po::value<double>());
+  }
+  line.unlisted()("seed", po::value<unsigned>());
+  if (with_k) line.unlisted()("neighbors,k", po::value<int>());
+}
+
+std::string timesText(const std::vector<StageTime>& times) {
+  std::string text;
+  for (const StageTime& t : times) {
+    char part[64];
+    std::snprintf(part, sizeof(part), "%s%s %.2f", text.empty() ? "" : "  ", t.stage.c_str(),
+                  t.seconds);
+    text += part;
+  }
+  return text;
 }
 
 }  // namespace segorient::program

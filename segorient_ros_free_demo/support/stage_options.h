@@ -5,6 +5,7 @@
 #include <segorient/orientation/pipeline.h>
 
 #include <string>
+#include <vector>
 
 #include "support/command_line.h"
 
@@ -19,11 +20,13 @@ class StageOptions {
   /// Checks the values and sets those that were given; the others keep the library's defaults.
   void apply(const CommandLine& line, const CommonOptions& common, PipelineOptions& options);
 
-  /// Delta in radians if it was given, else 0.
-  float delta() const { return delta_given_; }
+  /// For commands that orient: names those of the options given that the method does not look at.
+  static void warnOfUnused(const CommandLine& line, const CommonOptions& common,
+                           const PipelineOptions& options);
 
  private:
   int k_ = 0;
+  int recomputations_ = 0;
   std::string normals_;
   std::string method_;
   double alpha_ = 0.0;
@@ -32,11 +35,17 @@ class StageOptions {
   double delta_ = 0.0;
   double epsilon_ = 0.0;
   unsigned seed_ = 0;
-  float delta_given_ = 0.F;
 };
+
+/// For commands that run no stage: takes the options that all commands share, so that a script need
+/// not tell commands apart, and does nothing with them.
+/// \param with_k whether -k is among them
+void takeSharedOptions(CommandLine& line, bool with_k = true);
 
 /// plane, lct, ldt, awas, awas3.
 const char* estimatorName(NormalEstimator estimator);
 const char* kindName(SegmentKind kind);
+/// "search 0.12  normals 0.03": one line of a summary.
+std::string timesText(const std::vector<StageTime>& times);
 
 }  // namespace segorient::program

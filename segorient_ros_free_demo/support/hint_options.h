@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the segorient authors
+#pragma once
+
+#include <segorient/orientation/pipeline.h>
+
+#include <string>
+
+#include "io/cloud_table.h"
+#include "support/command_line.h"
+
+namespace segorient::program {
+
+/// What a user knows about the orientation beforehand, as options of the commands that orient; and
+/// what the file says itself: the place of its sensor, and fields vp_x, vp_y, vp_z.
+class HintOptions {
+ public:
+  void add(CommandLine& line);
+
+  /// Before anything is read: throws UsageError where values make no sense.
+  void check(const CommandLine& line, const CommonOptions& common, const PipelineOptions& options);
+
+  /// \param path names `table` in messages
+  /// \param points of `table`; hints are moved as they are
+  void apply(const CloudTable& table, const std::string& path, const LocalPoints& points,
+             PipelineOptions& options) const;
+
+ private:
+  std::string viewpoint_text_;
+  std::array<double, 3> viewpoint_{0, 0, 0};
+  std::string seeds_;
+  bool closed_ = false;
+  bool open_ = false;
+  bool keep_ = false;
+};
+
+}  // namespace segorient::program
