@@ -136,65 +136,6 @@ TEST(SegmentTriangulation, AllSegments) {
   EXPECT_GT(polygons.size(), 5000U);
 }
 
-TEST(SegmentTriangulation, BadInput) {
-  pcl::console::setVerbosityLevel(pcl::console::L_ALWAYS);
-  Triangulation triangulation;
-  pcl::PolygonMesh mesh;
-  std::vector<pcl::Vertices> polygons(2);
-  triangulation.reconstruct(mesh);
-  triangulation.reconstruct(polygons);
-  EXPECT_TRUE(polygons.empty());
-  triangulation.setInputCloud(Cloud::Ptr(new Cloud));
-  triangulation.reconstruct(mesh);
-  EXPECT_TRUE(mesh.polygons.empty());
-
-  const LabelledCloud in = sample("cube", cube(), 1000, 5);
-  const Segmentation faces = facesOf(in);
-  for (std::size_t n : {1U, 2U, 3U}) {
-    Cloud::Ptr few = toPcl(in);
-    few->resize(n);
-    triangulation.setInputCloud(few);
-    triangulation.setSegmentation({});
-    triangulation.reconstruct(polygons);
-    EXPECT_LE(polygons.size(), 1U);
-    triangulation.setSegmentation(faces);  // of another cloud
-    triangulation.reconstruct(polygons);
-    EXPECT_TRUE(polygons.empty());
-  }
-  triangulation.setInputCloud(toPcl(in));
-  Segmentation broken = faces;
-  broken.members[3] = 5000;
-  triangulation.setSegmentation(broken);
-  triangulation.reconstruct(polygons);
-  EXPECT_TRUE(polygons.empty());
-  broken = faces;
-  broken.segments[0].size = 4000;
-  triangulation.setSegmentation(broken);
-  triangulation.reconstruct(polygons);
-  EXPECT_TRUE(polygons.empty());
-
-  Cloud::Ptr nan = toPcl(in);
-  for (auto& p : *nan) p.x = std::numeric_limits<float>::quiet_NaN();
-  triangulation.setInputCloud(nan);
-  for (const Segmentation& s : {Segmentation{}, faces}) {
-    triangulation.setSegmentation(s);
-    triangulation.reconstruct(polygons);
-    EXPECT_TRUE(polygons.empty());
-  }
-  triangulation.setInputCloud(toPcl(in));
-  triangulation.setSegmentation(faces);
-  const float weird[] = {0.F, -1.F, std::numeric_limits<float>::quiet_NaN(),
-                         std::numeric_limits<float>::infinity()};
-  for (const float value : weird) {
-    triangulation.setKappa1(value);
-    triangulation.setKappa2(value);
-    triangulation.setCriticalFactor(value);
-    triangulation.setNumberOfBins(value == 0.F ? -7 : 1 << 30);
-    triangulation.setNumberOfBins(value == 0.F ? -7 : 1);
-    triangulation.reconstruct(polygons);
-  }
-}
-
 TEST(SegmentTriangulation, SettersHaveGetters) {
   Triangulation t;
   t.setKappa1(0.2F);
