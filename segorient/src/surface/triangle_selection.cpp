@@ -11,6 +11,10 @@ namespace {
 constexpr std::uint32_t kNone = PlanarTriangulation::kNone;
 /// Bins of a quarter of the median: longer edges than this many bins are not looked at.
 constexpr std::size_t kMostBins = 1U << 16U;
+/// What counts as a pocket of the boundary: its mouth in critical lengths, and its depth in median
+/// edges. Notches of the shape itself are deeper, or wider than random gaps.
+constexpr float kPocketLength = 2.F;
+constexpr float kPocketDepth = 1.F;
 
 float medianOf(std::vector<float> values) {
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
@@ -25,6 +29,7 @@ class Selector {
   Selector(const PlanarTriangulation& mesh, const std::vector<float>& lengths, std::size_t points,
            std::vector<std::uint8_t>& kept)
       : mesh_(mesh),
+        lengths_(lengths),
         kept_(kept),
         longest_(mesh.triangles.size()),
         corner_(points, kNone),
@@ -84,7 +89,46 @@ class Selector {
     }
   }
 
+  // Pockets of the boundary: triangles with two edges on it that are flat over the third one.
+  // Random points along a straight side leave many, and with them a part of the area.
+  void fillPockets(float limit, float depth) {
+    std::vector<std::uint32_t> queue;
+    for (std::uint32_t t = 0; t < kept_.size(); ++t) {
+      if (kept_[t] == 0) queue.push_back(t);
+    }
+    for (std::size_t head = 0; head < queue.size(); ++head) {
+      const std::uint32_t t = queue[head];
+      if (kept_[t] != 0 || longest_[t] > limit || heightOf(t) > depth || !isPocket(t)) continue;
+      keep(t);
+      for (const std::uint32_t e : mesh_.triangles[t].edges) {
+        const std::uint32_t other = across(t, e);
+        if (other != kNone && kept_[other] == 0) queue.push_back(other);
+      }
+    }
+  }
+
  private:
+  bool isPocket(std::uint32_t t) const {
+    int kept = 0;
+    for (const std::uint32_t e : mesh_.triangles[t].edges) {
+      const std::uint32_t other = across(t, e);
+      const bool inside = other != kNone && kept_[other] != 0;
+      if (!inside && lengths_[e] < longest_[t]) return false;  // its mouth is the longest edge
+      kept += inside ? 1 : 0;
+    }
+    return kept == 2;
+  }
+
+  // Over the longest edge, by Heron's formula.
+  float heightOf(std::uint32_t t) const {
+    const auto& edges = mesh_.triangles[t].edges;
+    const float a = lengths_[edges[0]];
+    const float b = lengths_[edges[1]];
+    const float c = lengths_[edges[2]];
+    const float square = (a + b + c) * (b + c - a) * (a + c - b) * (a + b - c);
+    return 0.5F * std::sqrt(std::max(square, 0.F)) / longest_[t];
+  }
+
   void keep(std::uint32_t t) {
     kept_[t] = 1;
     for (const std::uint32_t p : mesh_.triangles[t].points) ++uses_[p];
@@ -182,6 +226,7 @@ class Selector {
   }
 
   const PlanarTriangulation& mesh_;
+  const std::vector<float>& lengths_;  ///< of edges
   std::vector<std::uint8_t>& kept_;
   std::vector<float> longest_;         ///< by triangle, its longest edge
   std::vector<std::uint32_t> corner_;  ///< by point, one of its triangles
@@ -230,6 +275,7 @@ Selection selectTriangles(const PlanarTriangulation& mesh, const std::vector<flo
   selector.peel(options.kappa2 * selection.critical_length);
   selector.takeInLoosePoints();
   selector.closePinches();
+  selector.fillPockets(kPocketLength * selection.critical_length, kPocketDepth * medianOf(lengths));
   return selection;
 }
 
