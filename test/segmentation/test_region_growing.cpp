@@ -251,6 +251,7 @@ TEST(RegionGrowing, SmallSegmentsThatTouchAreConnected) {
   SegmentationOptions options;
   options.max_gap = 0;
   options.neighbors = 0;
+  options.settle_edges = false;
   const Segmentation s = in.segment(options);
   const SegmentGraph graph = buildSegmentGraph(s, in.table);
   std::size_t borders = 0;

@@ -14,9 +14,9 @@ constexpr std::size_t kWitnesses = 8;
 constexpr std::size_t kLeastWitnesses = 3;
 /// Segments that are compared at one point; three meet at a corner.
 constexpr std::size_t kCandidates = 6;
-/// Neighbours of each row that are looked at: near, but beyond the reach of the edge. Not fewer
-/// where growing uses fewer.
-constexpr int kReach = 12;
+/// Neighbours of each row that are looked at, where the table has as many: the normals were taken
+/// from them, so that twice as far there are normals that an edge has no part in.
+constexpr int kReach = 24;
 /// 80 degrees. The normal of a point right at an edge may lean far over; near a right angle to the
 /// reference normal its sign would be arbitrary.
 constexpr double kMostLean = 1.3962634;
@@ -224,15 +224,9 @@ void move(std::size_t p, std::int32_t into, GrowthState& state) {
   state.labels[p] = into;
 }
 
-}  // namespace
-
-std::size_t settleEdges(const SegmentationOptions& options, GrowthState& state) {
-  std::vector<pcl::index_t> border;
-  for (std::size_t p = 0; p < state.nodes.size(); ++p) {
-    if (state.on_border[p] != 0 && state.labels[p] >= 0)
-      border.push_back(static_cast<pcl::index_t>(p));
-  }
-  // All decide on the old labels; so the order does not matter.
+// All decide on the old labels; so the order does not matter.
+std::size_t settleOnce(const SegmentationOptions& options, const std::vector<pcl::index_t>& border,
+                       GrowthState& state) {
   std::vector<std::int32_t> wanted(border.size());
   const Settler settler(options, state);
   const auto n = static_cast<std::ptrdiff_t>(border.size());
@@ -252,6 +246,29 @@ std::size_t settleEdges(const SegmentationOptions& options, GrowthState& state) 
       continue;
     move(p, wanted[i], state);
     ++moved;
+  }
+  return moved;
+}
+
+}  // namespace
+
+std::size_t settleEdges(const SegmentationOptions& options, GrowthState& state) {
+  std::vector<pcl::index_t> border;
+  for (std::size_t p = 0; p < state.nodes.size(); ++p) {
+    if (state.on_border[p] != 0 && state.labels[p] >= 0)
+      border.push_back(static_cast<pcl::index_t>(p));
+  }
+  std::size_t moved = settleOnce(options, border, state);
+  // At a corner the points around it may have been in no face, either.
+  for (std::size_t last = moved; last > 0;) {
+    border.erase(std::remove_if(border.begin(), border.end(),
+                                [&](pcl::index_t p) {
+                                  return state.isFace(state.labels[static_cast<std::size_t>(p)],
+                                                      options.small_size);
+                                }),
+                 border.end());
+    last = settleOnce(options, border, state);
+    moved += last;
   }
   return moved;
 }
