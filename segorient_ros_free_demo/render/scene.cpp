@@ -18,6 +18,8 @@ constexpr std::uint32_t kFront = 0xe6e2d8U;     // the side that normals point t
 constexpr std::uint32_t kBack = 0xd03020U;      // the other
 constexpr std::uint32_t kNoNormal = 0x3060c0U;  // has no normal
 constexpr std::uint32_t kPlain = 0xb8c4d0U;     // nothing is known
+constexpr std::uint32_t kHard = 0x8040e0U;      // hard segments, front
+constexpr std::uint32_t kHardBack = 0x401060U;  // and back
 // With eight neighbours within its radius, three in ten thousand spots of a randomly sampled
 // surface stay open.
 constexpr int kCover = 8;
@@ -32,11 +34,25 @@ std::uint32_t readU32(const CloudTable& table, const Field& field, std::size_t r
   return v;
 }
 
+// One part of a colour and three of the front's: segments differ, and none looks like a back.
+std::uint32_t tinted(std::uint32_t color) {
+  std::uint32_t out = 0;
+  for (const unsigned shift : {0U, 8U, 16U}) {
+    const std::uint32_t own = color >> shift & 255U;
+    const std::uint32_t front = kFront >> shift & 255U;
+    out |= (own + 3 * front) / 4 << shift;
+  }
+  return out;
+}
+
 // Colours of both sides of a point's splat.
 class Palette {
  public:
-  Palette(const CloudTable& table, Coloring coloring) : table_(table), coloring_(coloring) {
-    if (coloring == Coloring::Segment) field_ = table.find("label");
+  Palette(const CloudTable& table, Coloring coloring, const std::vector<std::uint32_t>& hard)
+      : table_(table), coloring_(coloring), hard_(hard) {
+    if (coloring == Coloring::Segment || coloring == Coloring::Orientation) {
+      field_ = table.find("label");
+    }
     if (coloring == Coloring::Rgb) field_ = table.find("rgb");
   }
   void set(std::size_t row, bool has_normal, std::uint32_t& front, std::uint32_t& back) const {
@@ -45,20 +61,32 @@ class Palette {
       back = has_normal ? kBack : kNoNormal;
       return;
     }
+    if (coloring_ == Coloring::Orientation) {
+      const bool hard = std::binary_search(hard_.begin(), hard_.end(), label(row));
+      front = hard ? kHard : tinted(segmentColor(label(row)));
+      back = hard ? kHardBack : kBack;
+      if (!has_normal) front = back = kNoNormal;
+      return;
+    }
     front = kPlain;
     if (field_ != nullptr && coloring_ == Coloring::Rgb) {
       front = readU32(table_, *field_, row) & 0xffffffU;
     } else if (field_ != nullptr) {
-      const double label = table_.value(*field_, row);
-      const bool none = !(label >= 0.0) || label >= kNoSegment;
-      front = segmentColor(none ? kNoSegment : static_cast<std::uint32_t>(label));
+      front = segmentColor(label(row));
     }
     back = front;
   }
 
  private:
+  std::uint32_t label(std::size_t row) const {
+    const double value = table_.value(*field_, row);
+    const bool none = !(value >= 0.0) || value >= kNoSegment;
+    return none ? kNoSegment : static_cast<std::uint32_t>(value);
+  }
+
   const CloudTable& table_;
   Coloring coloring_;
+  const std::vector<std::uint32_t>& hard_;
   const Field* field_ = nullptr;
 };
 
@@ -89,8 +117,8 @@ std::array<float, 3> positionOf(const PointView& points, std::size_t i) {
   return {points[i][0], points[i][1], points[i][2]};
 }
 
-void addMesh(const CloudTable& table, const PointView& points, Coloring coloring, Scene& scene) {
-  const Palette palette(table, coloring);
+void addMesh(const CloudTable& table, const PointView& points, const Palette& palette,
+             Scene& scene) {
   for (std::size_t i = 0; i < points.size; ++i) scene.vertices.push_back(positionOf(points, i));
   for (const Triangle& t : table.triangles) {
     const bool whole =
@@ -152,8 +180,8 @@ void addCuts(const std::vector<std::int32_t>& splat_of, const pcl::index_t* neig
   }
 }
 
-void addSplats(const CloudTable& table, const PointView& points, const NormalSource& normals,
-               Coloring coloring, int threads, Scene& scene) {
+void addSplats(const PointView& points, const NormalSource& normals, const Palette& palette,
+               int threads, Scene& scene) {
   search::MedianHashIndex index;
   search::MedianHashIndex::Options options;
   options.threads = threads;
@@ -161,7 +189,6 @@ void addSplats(const CloudTable& table, const PointView& points, const NormalSou
   Neighborhoods neighborhoods;
   index.nearestKAll(kCover + 1, neighborhoods);
 
-  const Palette palette(table, coloring);
   const std::vector<float> radii = splatRadii(neighborhoods);
   std::vector<std::int32_t> splat_of(points.size, -1);
   for (std::size_t i = 0; i < points.size; ++i) {
@@ -195,23 +222,29 @@ Coloring parseColoring(const std::string& name, const CloudTable& table, const s
     if (!labels) throw FileError(path, "has no field label");
     return Coloring::Segment;
   }
+  if (name == "orientation") {
+    if (!normals) throw FileError(path, "has no normals");
+    if (!labels) throw FileError(path, "has no field label");
+    return Coloring::Orientation;
+  }
   if (name == "rgb") {
     if (!rgb) throw FileError(path, "has no field rgb");
     return Coloring::Rgb;
   }
-  if (name != "auto") throw UsageError("--color is one of auto normal segment rgb");
+  if (name != "auto") throw UsageError("--color is one of auto normal segment orientation rgb");
   if (table.hasNormals()) return Coloring::Normal;
   if (labels) return Coloring::Segment;
   return normals && !rgb ? Coloring::Normal : Coloring::Rgb;
 }
 
 Scene makeScene(const CloudTable& table, const LocalPoints& points, const float* normals,
-                Coloring coloring, int threads) {
+                Coloring coloring, int threads, const std::vector<std::uint32_t>& hard) {
   Scene scene;
+  const Palette palette(table, coloring, hard);
   if (!table.triangles.empty()) {
-    addMesh(table, points.view(), coloring, scene);
+    addMesh(table, points.view(), palette, scene);
   } else {
-    addSplats(table, points.view(), NormalSource(table, normals), coloring, threads, scene);
+    addSplats(points.view(), NormalSource(table, normals), palette, threads, scene);
   }
   return scene;
 }

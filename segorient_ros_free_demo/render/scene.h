@@ -2,6 +2,7 @@
 // Copyright (c) 2026, the segorient authors
 #pragma once
 
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -14,7 +15,9 @@ namespace segorient::program {
 enum class Coloring {
   Normal,   ///< light grey where the normal points to the viewer, red where it points away
   Segment,  ///< by the field `label`
-  Rgb       ///< by the field `rgb`
+  /// As Normal, with a tint of each segment's own, hard segments in a colour of their own
+  Orientation,
+  Rgb  ///< by the field `rgb`
 };
 
 /// Reads a name of --color; "auto" takes Normal if the cloud has normals, else Segment or Rgb.
@@ -25,8 +28,9 @@ Coloring parseColoring(const std::string& name, const CloudTable& table, const s
 /// apart, so that surfaces look closed, and cut where a sharp edge is, so that they do not stick
 /// out.
 /// \param normals 4 floats a point to draw instead of the table's own, or null
+/// \param hard labels of hard segments, ascending; only Coloring::Orientation shows them
 Scene makeScene(const CloudTable& table, const LocalPoints& points, const float* normals,
-                Coloring coloring, int threads);
+                Coloring coloring, int threads, const std::vector<std::uint32_t>& hard = {});
 
 /// The scene from one direction and, if `both`, beside it from the opposite one.
 Picture drawViews(const Scene& scene, const View& view, bool both);

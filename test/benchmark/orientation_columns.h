@@ -43,10 +43,9 @@ inline std::vector<Column> peers() {
 inline std::vector<Column> paperMethods() {
   std::vector<Column> out;
   OrientationOptions o;
+  o.method = OrientationMethod::HOPPE;
+  out.push_back(own("hoppe", o));
   o.method = OrientationMethod::PROPAGATION;
-  o.point_tree = true;
-  out.push_back(own("point tree", o));
-  o.point_tree = false;
   out.push_back(own("propagation", o));
   o.angle = SegmentAngle::REFERENCE_NORMALS;
   out.push_back(own("propagation (reference)", o));

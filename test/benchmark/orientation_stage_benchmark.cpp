@@ -52,7 +52,7 @@ std::vector<Method> methods() {
     return out.back().options;
   };
   add("propagation", OrientationMethod::PROPAGATION);
-  add("point tree", OrientationMethod::PROPAGATION).point_tree = true;
+  add("hoppe", OrientationMethod::HOPPE);
   add("boundary", OrientationMethod::BOUNDARY);
   add("boundary, triangulated", OrientationMethod::BOUNDARY).boundary =
       segorient::BoundaryTest::TRIANGULATED;

@@ -29,6 +29,19 @@ PipelineOptions withMethod(OrientationMethod method) {
   return options;
 }
 
+// Every method, and the boundaries by triangulations.
+std::vector<PipelineOptions> allMethods() {
+  std::vector<PipelineOptions> out;
+  for (const auto method :
+       {OrientationMethod::AUTO, OrientationMethod::PROPAGATION, OrientationMethod::BOUNDARY,
+        OrientationMethod::COMBINED, OrientationMethod::EXTREMAL, OrientationMethod::HOPPE}) {
+    out.push_back(withMethod(method));
+  }
+  out.push_back(withMethod(OrientationMethod::COMBINED));
+  out.back().orientation.boundary = BoundaryTest::TRIANGULATED;
+  return out;
+}
+
 std::vector<LabelledCloud> closedSolids() {
   std::vector<LabelledCloud> out;
   out.push_back(test::sample("sphere", {test::sphere({0, 0, 0}, 1)}, 6000, 41));
@@ -86,11 +99,9 @@ TEST(Pipeline, DoesNotDependOnTheOrderOfRows) {
   for (const std::size_t i : order) {
     shuffled.insert(shuffled.end(), &cloud.xyz[4 * i], &cloud.xyz[4 * i] + 4);
   }
-  for (const auto method : {OrientationMethod::AUTO, OrientationMethod::PROPAGATION,
-                            OrientationMethod::BOUNDARY, OrientationMethod::EXTREMAL}) {
-    const OrientedCloud a = orientCloud(test::pointsOf(cloud), nullptr, withMethod(method));
-    const OrientedCloud b =
-        orientCloud({shuffled.data(), 4, cloud.size()}, nullptr, withMethod(method));
+  for (const PipelineOptions& options : allMethods()) {
+    const OrientedCloud a = orientCloud(test::pointsOf(cloud), nullptr, options);
+    const OrientedCloud b = orientCloud({shuffled.data(), 4, cloud.size()}, nullptr, options);
     for (std::size_t i = 0; i < cloud.size(); ++i) {
       ASSERT_EQ(std::memcmp(&b.normals[4 * i], &a.normals[4 * order[i]], 16), 0);
       ASSERT_EQ(b.segmentation.labels[i], a.segmentation.labels[order[i]]);
@@ -100,15 +111,16 @@ TEST(Pipeline, DoesNotDependOnTheOrderOfRows) {
 
 TEST(Pipeline, DoesNotDependOnThreads) {
   const LabelledCloud cloud = test::sample("stairs", test::steppedSolid(), 6000, 54, 0.1);
-  PipelineOptions options = withMethod(OrientationMethod::COMBINED);
-  options.threads = 1;
-  const OrientedCloud one = orientCloud(test::pointsOf(cloud), nullptr, options);
-  for (const int threads : {2, 4}) {
-    options.threads = threads;
-    const OrientedCloud many = orientCloud(test::pointsOf(cloud), nullptr, options);
-    EXPECT_EQ(one.normals, many.normals);
-    EXPECT_EQ(one.confidences, many.confidences);
-    EXPECT_EQ(one.segmentation.labels, many.segmentation.labels);
+  for (PipelineOptions options : allMethods()) {
+    options.threads = 1;
+    const OrientedCloud one = orientCloud(test::pointsOf(cloud), nullptr, options);
+    for (const int threads : {2, 3}) {
+      options.threads = threads;
+      const OrientedCloud many = orientCloud(test::pointsOf(cloud), nullptr, options);
+      EXPECT_EQ(one.normals, many.normals);
+      EXPECT_EQ(one.confidences, many.confidences);
+      EXPECT_EQ(one.segmentation.labels, many.segmentation.labels);
+    }
   }
 }
 
@@ -275,7 +287,7 @@ TEST(Pipeline, DegenerateClouds) {
 TEST(Method, NamesGoBothWays) {
   for (const auto method :
        {OrientationMethod::AUTO, OrientationMethod::PROPAGATION, OrientationMethod::BOUNDARY,
-        OrientationMethod::COMBINED, OrientationMethod::EXTREMAL}) {
+        OrientationMethod::COMBINED, OrientationMethod::EXTREMAL, OrientationMethod::HOPPE}) {
     OrientationMethod read = OrientationMethod::AUTO;
     EXPECT_TRUE(fromString(toString(method), read));
     EXPECT_EQ(read, method);

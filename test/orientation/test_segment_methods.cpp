@@ -196,6 +196,7 @@ TEST_F(HandMade, ExtremalPointsAreSeenRelativeToTheRest) {
 TEST_F(HandMade, HardSegmentsAreTriedAgain) {
   // 0 - 1 unclear, 0 - 2 clear, 1 - 2 clear.
   segmentation.segments.resize(3);
+  for (Segment& segment : segmentation.segments) segment.size = 100;
   links.links = {{0, 1, 0, 0, false}, {0, 2, 0, 0, false}, {1, 2, 0, 0, false}};
   links.offsets = {0, 2, 4, 6};
   links.incident = {0, 1, 0, 2, 1, 2};
@@ -207,6 +208,30 @@ TEST_F(HandMade, HardSegmentsAreTriedAgain) {
   EXPECT_EQ(results[1].by, DecidedBy::BOUNDARY);
   EXPECT_EQ(results[2].sign, -1);
   EXPECT_EQ(countHard(results), 0U);
+}
+
+// Labels of a user's own segments need not be in order of their sizes.
+TEST_F(HandMade, TheLargestSegmentIsTheStart) {
+  chain(3);
+  segmentation.segments[2].size = 500;
+  cosines = {0.95F, 0.95F};
+  for (const Results& results :
+       {combined(),
+        propagateOrientation({segmentation, links, cosines, boundary, extremal}, options)}) {
+    EXPECT_EQ(results[2].by, DecidedBy::SEED);
+    EXPECT_EQ(results[0].by, DecidedBy::PROPAGATION);
+  }
+}
+
+TEST_F(HandMade, AngleAndBoundaryAreComparedIfAsked) {
+  chain(2);
+  cosines[0] = 0.95F;
+  boundary[0] = {-0.9F, 10};
+  options.compare_borders = false;
+  const Results results = combined();
+  EXPECT_EQ(results[1].sign, 1);  // the paper's: the tree goes first
+  EXPECT_EQ(results[1].by, DecidedBy::PROPAGATION);
+  EXPECT_FALSE(results[1].hard);
 }
 
 TEST_F(HandMade, OtherKindsAreLeftOutAndComponentsCounted) {

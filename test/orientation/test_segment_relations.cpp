@@ -124,6 +124,20 @@ TEST(SegmentCosines, PairsAcrossAGapSayNothing) {
   EXPECT_GT(std::acos(std::abs(across[0])), 0.61F);  // undecided
 }
 
+TEST(SegmentLinks, NameTheLargestNeighbourFirst) {
+  // A small face between a medium and a large one, labels not in order of size.
+  const FaceSegments strips(test::sample("strips",
+                                         {test::parallelogram({1, 0, 0}, {0.3, 0, 0}, {0, 1, 0}),
+                                          test::parallelogram({0, 0, 0}, {1, 0, 0}, {0, 1, 0}),
+                                          test::parallelogram({1.3, 0, 0}, {2, 0, 0}, {0, 1, 0})},
+                                         3000, 9),
+                            {false, false, false});
+  const std::uint32_t first = strips.links.offsets[0];
+  ASSERT_EQ(strips.links.offsets[1] - first, 2U);
+  EXPECT_EQ(strips.links.links[strips.links.incident[first]].other(0), 2);
+  EXPECT_EQ(strips.links.links[strips.links.incident[first + 1]].other(0), 1);
+}
+
 TEST(SegmentLinks, BridgeAStripOfSmallSegments) {
   // Three strips side by side; the middle one is a connected segment.
   FaceSegments strips(test::sample("strips",

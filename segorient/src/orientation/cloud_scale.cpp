@@ -2,12 +2,15 @@
 // Copyright (c) 2026, the segorient authors
 #include "cloud_scale.h"
 
+#include <segorient/common/median.h>
+
 #include <Eigen/Core>
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <utility>
 #include <vector>
 
 namespace segorient {
@@ -16,13 +19,6 @@ namespace {
 constexpr std::size_t kSample = 4000;  // medians of so many are sure to some percent
 constexpr int kNear = 6;               // the first ring of neighbours on a surface
 constexpr int kFit = 18;               // the first two rings
-
-float median(std::vector<float>& values) {
-  if (values.empty()) return 0.F;
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
 
 // Root of the smallest eigenvalue of the covariance.
 double planeResidual(const PointView& points, const float* origin, const pcl::index_t* rows,
@@ -64,8 +60,8 @@ CloudScale measureScale(const PointView& points, const search::MedianHashIndex& 
     residuals.push_back(static_cast<float>(planeResidual(points, p, rows.data(), found) / spacing));
   }
   CloudScale scale;
-  scale.spacing = median(spacings);
-  scale.noise = median(residuals);
+  scale.spacing = median(std::move(spacings));
+  scale.noise = median(std::move(residuals));
   return scale;
 }
 

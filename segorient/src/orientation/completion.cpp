@@ -80,33 +80,33 @@ class Completion {
   // Rows that name an open point which does not name them: neighbourhood is made symmetric.
   void collectReverse() {
     reverse_offsets_.assign(open_.size() + 1, 0);
-    forReverse([&](std::size_t target, std::size_t) { ++reverse_offsets_[target + 1]; });
+    if (open_.empty()) return;
+    struct Naming {
+      pcl::index_t target;  // position in open_
+      pcl::index_t row;
+    };
+    std::vector<Naming> namings;
+    for (std::size_t row = 0; row < neighborhoods_.size(); ++row) {
+      const pcl::index_t* neighbors = neighborhoods_.indices(row);
+      for (int j = 1; j < neighborhoods_.count(row); ++j) {
+        const auto q = static_cast<std::size_t>(neighbors[j]);
+        if (open_row_[q] == 0 || names(q, row)) continue;
+        namings.push_back({open_row_[q] - 1, static_cast<pcl::index_t>(row)});
+        ++reverse_offsets_[static_cast<std::size_t>(open_row_[q])];
+      }
+    }
     for (std::size_t i = 0; i < open_.size(); ++i) reverse_offsets_[i + 1] += reverse_offsets_[i];
-    reverse_.resize(reverse_offsets_.back());
+    reverse_.resize(namings.size());
     std::vector<std::size_t> cursor(reverse_offsets_.begin(), reverse_offsets_.end() - 1);
-    forReverse([&](std::size_t target, std::size_t row) {
-      reverse_[cursor[target]++] = static_cast<pcl::index_t>(row);
-    });
+    for (const Naming& naming : namings) {
+      reverse_[cursor[static_cast<std::size_t>(naming.target)]++] = naming.row;
+    }
   }
 
   bool names(std::size_t row, std::size_t other) const {
     const pcl::index_t* begin = neighborhoods_.indices(row);
     const pcl::index_t* end = begin + neighborhoods_.count(row);
     return std::find(begin, end, static_cast<pcl::index_t>(other)) != end;
-  }
-
-  template <typename Visitor>
-  void forReverse(Visitor&& visit) const {
-    if (open_.empty()) return;
-    for (std::size_t row = 0; row < neighborhoods_.size(); ++row) {
-      const pcl::index_t* neighbors = neighborhoods_.indices(row);
-      for (int j = 1; j < neighborhoods_.count(row); ++j) {
-        const auto q = static_cast<std::size_t>(neighbors[j]);
-        if (open_row_[q] != 0 && !names(q, row)) {
-          visit(static_cast<std::size_t>(open_row_[q] - 1), row);
-        }
-      }
-    }
   }
 
   template <typename Visitor>

@@ -69,7 +69,7 @@ void turnOutward(const PointView& points, const PointView& normals,
   float balance = 0.F;
   float total = 0.F;
   for (const ExtremalPoint& found :
-       findExtremalPoints(points, normals, rows, options.max_box_points)) {
+       findExtremalPoints(points, normals, rows, options.max_box_points, options.threads)) {
     if (!(found.angle < options.gamma)) continue;
     const int sign = found.sign * signs[static_cast<std::size_t>(found.point)];
     balance += static_cast<float>(sign) * std::cos(found.angle);
@@ -226,8 +226,9 @@ void orientComponents(const PointView& points, const PointView& normals,
   }
   for (SegmentOrientationResult& segment : result.segments) {
     if (segment.component < 0) continue;
-    segment.sign =
-        static_cast<std::int8_t>(segment.sign * result.components[at(segment.component)].sign);
+    const std::int8_t sign = result.components[at(segment.component)].sign;
+    segment.sign = static_cast<std::int8_t>(segment.sign * sign);
+    segment.extremal_agreement *= sign;
   }
 }
 

@@ -128,8 +128,8 @@ bool isFolded(const PointView& points, const Neighborhoods& neighborhoods,
 
 std::vector<std::int32_t> findFoldedSegments(const PointView& points,
                                              const Neighborhoods& neighborhoods,
-                                             const Segmentation& segmentation, float max_share,
-                                             int threads) {
+                                             const Segmentation& segmentation, int threads,
+                                             float max_share) {
   const auto segments = static_cast<std::ptrdiff_t>(segmentation.segments.size());
   std::vector<std::uint8_t> folded(segmentation.segments.size());
 #pragma omp parallel for schedule(dynamic, 16) num_threads(resolveThreads(threads))

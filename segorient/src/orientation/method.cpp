@@ -7,8 +7,8 @@
 namespace segorient {
 namespace {
 
-constexpr std::array<const char*, 5> kNames{"auto", "propagation", "boundary", "combined",
-                                            "extremal"};
+constexpr std::array<const char*, 6> kNames{"auto",     "propagation", "boundary",
+                                            "combined", "extremal",    "hoppe"};
 
 }  // namespace
 

@@ -2,14 +2,8 @@
 // Copyright (c) 2026, the segorient authors
 #include <segorient/orientation/completion.h>
 #include <segorient/orientation/component_sign.h>
-#include <segorient/orientation/consistency.h>
-#include <segorient/orientation/extremal.h>
-#include <segorient/orientation/folded_segments.h>
 #include <segorient/orientation/orient_segments.h>
 #include <segorient/orientation/point_tree.h>
-#include <segorient/orientation/segment_links.h>
-#include <segorient/orientation/segment_methods.h>
-#include <segorient/orientation/triangulated_boundary.h>
 
 #include <algorithm>
 #include <cmath>
@@ -17,49 +11,10 @@
 #include <vector>
 
 #include "auto_stages.h"
+#include "regular_segments.h"
 
 namespace segorient {
 namespace {
-
-std::vector<pcl::index_t> usableRows(const PointView& points, const PointView& normals) {
-  std::vector<pcl::index_t> rows;
-  for (std::size_t i = 0; i < points.size; ++i) {
-    if (isFinite(points[i]) && isFinite(normals[i])) rows.push_back(static_cast<pcl::index_t>(i));
-  }
-  return rows;
-}
-
-std::vector<SegmentOrientationResult> runMethod(const SegmentEvidence& evidence,
-                                                const OrientationOptions& options) {
-  SegmentMethodOptions method_options;
-  method_options.gamma = options.gamma;
-  method_options.min_margin = options.min_margin;
-  switch (options.method) {
-    case OrientationMethod::PROPAGATION:
-      return propagateOrientation(evidence, method_options);
-    case OrientationMethod::BOUNDARY:
-      return orientByBoundaries(evidence, method_options);
-    case OrientationMethod::EXTREMAL:
-      return orientByExtremalPoints(evidence, method_options);
-    case OrientationMethod::AUTO:  // has its own way, see orientAutomatically()
-    case OrientationMethod::COMBINED:
-      break;
-  }
-  return orientCombined(evidence, method_options);
-}
-
-std::vector<BoundaryVote> boundaryVotes(const PointView& points, const PointView& normals,
-                                        const Neighborhoods& neighborhoods,
-                                        const Segmentation& segmentation, const SegmentLinks& links,
-                                        const OrientationOptions& options) {
-  if (options.boundary == BoundaryTest::LOCAL) {
-    return localBoundaryVotes(points, normals, neighborhoods, segmentation, links, options.threads);
-  }
-  TriangulationOptions triangulation = options.triangulation;
-  triangulation.threads = options.threads;
-  return triangulatedBoundaryVotes(points, segmentation, links,
-                                   triangulateSegments(points, segmentation, triangulation));
-}
 
 // Signs of the points of regular segments; the others stay open.
 void spreadToPoints(const Segmentation& segmentation, OrientationResult& result) {
@@ -103,55 +58,6 @@ void summarizeSegments(const Segmentation& segmentation, DecidedBy by, Orientati
   }
 }
 
-// Segments that run over two sides are not oriented in themselves: they no longer count as regular,
-// and their points are oriented one by one. Enough rounds for segments that only show then.
-constexpr int kMostRounds = 4;
-
-// Oriented regular segments, those of mixed sides left out and marked as hard.
-struct OrientedSegments {
-  std::vector<SegmentOrientationResult> results;
-  std::vector<std::int32_t> mixed;
-  std::vector<BorderBalance> components;
-};
-
-OrientedSegments orientRegularSegments(const PointView& points, const PointView& normals,
-                                       const Neighborhoods& neighborhoods,
-                                       const Segmentation& given, const SegmentGraph& graph,
-                                       const OrientationOptions& options) {
-  const std::vector<ExtremalPoint> extremal_points =
-      findExtremalPoints(points, normals, usableRows(points, normals), options.max_box_points);
-  OrientedSegments out;
-  // Propagation knows no borders to check by.
-  const bool check = options.check_borders && options.method != OrientationMethod::PROPAGATION;
-  Segmentation without_mixed;
-  const Segmentation* segmentation = &given;
-  std::vector<std::int32_t> mixed;
-  if (check) mixed = findFoldedSegments(points, neighborhoods, given);
-  for (int round = 1;; ++round) {
-    if (!mixed.empty()) {
-      if (out.mixed.empty()) without_mixed = given;
-      segmentation = &without_mixed;
-      for (const std::int32_t s : mixed) {
-        without_mixed.segments[static_cast<std::size_t>(s)].kind = SegmentKind::Connected;
-      }
-      out.mixed.insert(out.mixed.end(), mixed.begin(), mixed.end());
-    }
-    const SegmentLinks links = linkRegularSegments(*segmentation, graph, neighborhoods);
-    const std::vector<float> cosines =
-        segmentCosines(points, normals, *segmentation, links, options.angle);
-    const std::vector<BoundaryVote> boundary =
-        boundaryVotes(points, normals, neighborhoods, *segmentation, links, options);
-    const std::vector<ExtremalEvidence> extremal =
-        gatherExtremalEvidence(extremal_points, *segmentation, options.gamma);
-    out.results = runMethod({*segmentation, links, cosines, boundary, extremal}, options);
-    out.components = balanceComponents(links, boundary, out.results);
-    if (!check || round == kMostRounds) break;
-    mixed = findMixedSegments(links, boundary, out.results);
-    if (mixed.empty()) break;
-  }
-  return out;
-}
-
 // The default method brings its own segments: each given point takes the sign that turns its normal
 // to the oriented one there, and each given segment that of most of its points.
 OrientationResult orientAutomatically(const PointView& points, const PointView& normals,
@@ -180,13 +86,17 @@ OrientationResult orientAutomatically(const PointView& points, const PointView& 
   return result;
 }
 
-// Turns each component so that its largest segment keeps its sign (labels are by descending size).
+// Turns each component so that its largest segment keeps its sign.
 void keepLargestSegments(const Segmentation& segmentation, OrientationResult& result) {
   std::vector<std::int8_t> turn(result.components.size(), 0);
-  for (const SegmentOrientationResult& s : result.segments) {
+  std::vector<std::uint32_t> largest(result.components.size(), 0);
+  for (std::size_t i = 0; i < result.segments.size(); ++i) {
+    const SegmentOrientationResult& s = result.segments[i];
     if (s.component < 0) continue;
-    std::int8_t& t = turn[static_cast<std::size_t>(s.component)];
-    if (t == 0) t = s.sign;
+    const auto c = static_cast<std::size_t>(s.component);
+    if (segmentation.segments[i].size <= largest[c]) continue;
+    largest[c] = segmentation.segments[i].size;
+    turn[c] = s.sign;
   }
   for (SegmentOrientationResult& s : result.segments) {
     if (s.component < 0 || turn[static_cast<std::size_t>(s.component)] >= 0) continue;
@@ -213,19 +123,18 @@ OrientationResult orientSegments(const PointView& points, const PointView& norma
     result.point_components.assign(points.size, -1);
     return result;
   }
-  if (options.method == OrientationMethod::PROPAGATION && options.point_tree) {
+  if (options.method == OrientationMethod::HOPPE) {
     result = orientByPointTree(points, normals, neighborhoods);
     summarizeSegments(segmentation, DecidedBy::PROPAGATION, result);
     return result;
   }
-
   if (options.method == OrientationMethod::AUTO) {
     result = orientAutomatically(points, normals, neighborhoods, segmentation, options, hints);
     if (!options.turn_outward) keepLargestSegments(segmentation, result);
     return result;
   }
 
-  const OrientedSegments oriented =
+  const OrientedRegularSegments oriented =
       orientRegularSegments(points, normals, neighborhoods, segmentation, graph, options);
   result.segments = oriented.results;
 
@@ -238,8 +147,8 @@ OrientationResult orientSegments(const PointView& points, const PointView& norma
     result.components[c].contradiction = oriented.components[c].contradictingShare();
   }
   if (options.turn_outward) {
-    orientComponents(points, normals, neighborhoods, {options.gamma, options.max_box_points},
-                     result);
+    orientComponents(points, normals, neighborhoods,
+                     {options.gamma, options.max_box_points, options.threads}, result);
   } else {
     sortComponents(result);
   }

@@ -20,6 +20,26 @@ int defaultNeighbors(const OrientationOptions& options) {
   return options.method == OrientationMethod::AUTO ? kSheetNeighbors : 12;
 }
 
+Neighborhoods findNeighbors(const CompactCloud& cloud, int wanted, const PointSearch& search,
+                            int threads) {
+  // More neighbours cost time and memory and say nothing more about who borders whom.
+  constexpr std::size_t kMostNeighbors = 128;
+  const std::size_t most = std::max<std::size_t>(1, cloud.size()) - 1;
+  const std::size_t neighbors = std::min({kMostNeighbors, most, static_cast<std::size_t>(wanted)});
+  const int k = static_cast<int>(neighbors) + 1;
+  Neighborhoods out;
+  if (search) {
+    searchNeighborhoods(cloud, search, k, out);
+    return out;
+  }
+  search::MedianHashIndex index;
+  search::MedianHashIndex::Options search_options;
+  search_options.threads = threads;
+  index.build(cloud.view(), nullptr, search_options);
+  index.nearestKAll(k, out);
+  return out;
+}
+
 bool labelsInRange(const Segmentation& segmentation, std::size_t rows) {
   if (segmentation.labels.size() != rows || segmentation.signs.size() != rows) return false;
   const auto segments = static_cast<std::int64_t>(segmentation.segments.size());
@@ -104,7 +124,8 @@ Segmentation scatter(const CompactCloud& cloud, const PointView& normals,
 OrientedSegmentation orientSegmentation(const PointView& points, const PointView& normals,
                                         const Segmentation* segmentation, int k,
                                         const SegmentationOptions& segmentation_options,
-                                        const OrientationOptions& options) {
+                                        const OrientationOptions& options,
+                                        const PointSearch& search) {
   OrientedSegmentation out;
   if (normals.size != points.size) return out;
   if (segmentation != nullptr && !labelsInRange(*segmentation, points.size)) return out;
@@ -112,17 +133,8 @@ OrientedSegmentation orientSegmentation(const PointView& points, const PointView
   const CompactCloud cloud = compactCloud(points, nullptr, options.threads);
   const std::vector<float> distinct_normals = compactNormals(cloud, normals);
   const PointView normal_view{distinct_normals.data(), 4, cloud.size()};
-  search::MedianHashIndex index;
-  search::MedianHashIndex::Options search_options;
-  search_options.threads = options.threads;
-  index.build(cloud.view(), nullptr, search_options);
-  const std::size_t most = std::max<std::size_t>(1, cloud.size()) - 1;
-  // More neighbours cost time and memory and say nothing more about who borders whom.
-  constexpr std::size_t kMostNeighbors = 128;
-  const auto neighbors =
-      std::min(kMostNeighbors, static_cast<std::size_t>(k > 0 ? k : defaultNeighbors(options)));
-  Neighborhoods neighborhoods;
-  index.nearestKAll(static_cast<int>(std::min(neighbors, most)) + 1, neighborhoods);
+  const Neighborhoods neighborhoods =
+      findNeighbors(cloud, k > 0 ? k : defaultNeighbors(options), search, options.threads);
 
   const Segmentation distinct =
       segmentation != nullptr

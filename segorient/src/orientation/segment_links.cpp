@@ -8,11 +8,6 @@
 namespace segorient {
 namespace {
 
-bool isRegular(const Segmentation& segmentation, std::int32_t label) {
-  return label >= 0 &&
-         segmentation.segments[static_cast<std::size_t>(label)].kind == SegmentKind::Regular;
-}
-
 int rowEnd(const Neighborhoods& neighborhoods, std::size_t row, int k) {
   const int count = neighborhoods.count(row);
   return k > 0 ? std::min(count, k + 1) : count;
@@ -126,7 +121,8 @@ void appendBridgedLinks(const std::vector<LabelledPair>& pairs, SegmentLinks& ou
   std::sort(out.links.begin(), out.links.end(), before);
 }
 
-void indexBySegment(std::size_t segments, SegmentLinks& out) {
+void indexBySegment(const Segmentation& segmentation, SegmentLinks& out) {
+  const std::size_t segments = segmentation.segments.size();
   out.offsets.assign(segments + 1, 0);
   for (const SegmentLink& link : out.links) {
     ++out.offsets[static_cast<std::size_t>(link.a) + 1];
@@ -141,16 +137,31 @@ void indexBySegment(std::size_t segments, SegmentLinks& out) {
     out.incident[cursor[static_cast<std::size_t>(out.links[i].b)]++] =
         static_cast<std::uint32_t>(i);
   }
+  const auto sizeOf = [&](std::size_t segment, std::uint32_t link) {
+    const std::int32_t other = out.links[link].other(static_cast<std::int32_t>(segment));
+    return segmentation.segments[static_cast<std::size_t>(other)].size;
+  };
+  for (std::size_t s = 0; s < segments; ++s) {
+    std::stable_sort(out.incident.begin() + out.offsets[s],
+                     out.incident.begin() + out.offsets[s + 1],
+                     [&](std::uint32_t l, std::uint32_t r) { return sizeOf(s, l) > sizeOf(s, r); });
+  }
 }
 
 }  // namespace
+
+bool isRegular(const Segmentation& segmentation, std::int32_t label) {
+  if (label < 0) return false;
+  const Segment& segment = segmentation.segments[static_cast<std::size_t>(label)];
+  return segment.kind == SegmentKind::Regular && segment.size > 0;
+}
 
 SegmentLinks linkRegularSegments(const Segmentation& segmentation, const SegmentGraph& graph,
                                  const Neighborhoods& neighborhoods, int k) {
   SegmentLinks out;
   appendDirectLinks(segmentation, graph, out);
   appendBridgedLinks(bridgingPairs(segmentation, neighborhoods, k), out);
-  indexBySegment(segmentation.segments.size(), out);
+  indexBySegment(segmentation, out);
   return out;
 }
 

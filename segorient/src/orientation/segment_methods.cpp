@@ -2,7 +2,7 @@
 // Copyright (c) 2026, the segorient authors
 #include <segorient/orientation/segment_methods.h>
 
-#include <cmath>
+#include <algorithm>
 
 #include "segment_spread.h"
 
@@ -21,8 +21,7 @@ void finish(SegmentSpread& spread) {
 // From the largest segment of each component in turn.
 void finishFromSeeds(SegmentSpread& spread) {
   finish(spread);
-  for (std::size_t s = 0; s < spread.results().size(); ++s) {
-    const auto segment = static_cast<std::int32_t>(s);
+  for (const std::int32_t segment : spread.bySize()) {
     if (!spread.isOpen(segment)) continue;
     spread.orient(segment, 1, DecidedBy::SEED, 1.F);
     finish(spread);
@@ -74,11 +73,11 @@ Results orientByBoundaries(const SegmentEvidence& evidence, const SegmentMethodO
 Results orientCombined(const SegmentEvidence& evidence, const SegmentMethodOptions& options) {
   SegmentSpread spread(evidence, options, SegmentSpread::Rule::ANGLE_THEN_BOUNDARY);
   std::vector<bool> seeded(spread.results().size(), false);
-  for (std::size_t s = 0; s < spread.results().size(); ++s) {
-    const std::int32_t component = spread.results()[s].component;
+  for (const std::int32_t segment : spread.bySize()) {
+    const std::int32_t component = spread.results()[static_cast<std::size_t>(segment)].component;
     if (component < 0 || seeded[static_cast<std::size_t>(component)]) continue;
     seeded[static_cast<std::size_t>(component)] = true;
-    spread.orient(static_cast<std::int32_t>(s), 1, DecidedBy::SEED, 1.F);
+    spread.orient(segment, 1, DecidedBy::SEED, 1.F);
   }
   spread.spread();
   if (options.use_extremal) askExtremalPoints(evidence, options, spread);
@@ -93,7 +92,7 @@ Results orientByExtremalPoints(const SegmentEvidence& evidence,
     const ExtremalEvidence& extremal = evidence.extremal[s];
     if (extremal.sign == 0) continue;
     spread.orient(static_cast<std::int32_t>(s), extremal.sign, DecidedBy::EXTREMAL,
-                  extremal.agreement);
+                  std::max(0.F, extremal.agreement));
   }
   finishFromSeeds(spread);
   return spread.results();

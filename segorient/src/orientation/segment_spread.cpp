@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 namespace segorient {
 namespace {
@@ -30,7 +31,17 @@ SegmentSpread::SegmentSpread(const SegmentEvidence& evidence, const SegmentMetho
                              Rule rule)
     : evidence_(evidence), options_(options), rule_(rule) {
   results_.resize(evidence.segmentation.segments.size());
+  sortBySize();
   labelComponents();
+}
+
+void SegmentSpread::sortBySize() {
+  by_size_.resize(results_.size());
+  std::iota(by_size_.begin(), by_size_.end(), 0);
+  std::stable_sort(by_size_.begin(), by_size_.end(), [&](std::int32_t l, std::int32_t r) {
+    const std::vector<Segment>& segments = evidence_.segmentation.segments;
+    return segments[at(l)].size > segments[at(r)].size;
+  });
 }
 
 void SegmentSpread::labelComponents() {
@@ -38,8 +49,8 @@ void SegmentSpread::labelComponents() {
   std::int32_t components = 0;
   std::vector<std::int32_t> stack;
   for (std::size_t s = 0; s < results_.size(); ++s) {
-    if (evidence_.segmentation.segments[s].kind != SegmentKind::Regular) continue;
     if (results_[s].component >= 0) continue;
+    if (!isRegular(evidence_.segmentation, static_cast<std::int32_t>(s))) continue;
     results_[s].component = components;
     stack.push_back(static_cast<std::int32_t>(s));
     while (!stack.empty()) {
@@ -57,8 +68,7 @@ void SegmentSpread::labelComponents() {
 }
 
 bool SegmentSpread::isOpen(std::int32_t segment) const {
-  return evidence_.segmentation.segments[at(segment)].kind == SegmentKind::Regular &&
-         signOf(segment) == 0;
+  return isRegular(evidence_.segmentation, segment) && signOf(segment) == 0;
 }
 
 float SegmentSpread::cost(std::uint32_t link) const {
@@ -83,6 +93,7 @@ void SegmentSpread::orient(std::int32_t segment, int sign, DecidedBy by, float c
 
 // Whether angle and boundary both decide, and not the same.
 bool SegmentSpread::contradictory(std::uint32_t link) const {
+  if (!options_.compare_borders) return false;
   const float cosine = evidence_.cosines[link];
   const BoundaryVote& vote = evidence_.boundary[link];
   return lineAngle(cosine) <= options_.gamma && vote.decides(options_.min_margin) &&
@@ -100,7 +111,7 @@ bool SegmentSpread::decideByAngle(const Step& step) {
   return true;
 }
 
-// By size: labels are ordered by descending size, and links by label.
+// The largest neighbour first, see SegmentLinks::incident.
 bool SegmentSpread::decideByBoundary(std::int32_t segment) {
   const SegmentLinks& links = evidence_.links;
   for (std::uint32_t i = links.offsets[at(segment)]; i < links.offsets[at(segment) + 1]; ++i) {

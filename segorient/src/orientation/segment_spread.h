@@ -22,6 +22,8 @@ class SegmentSpread {
 
   const std::vector<SegmentOrientationResult>& results() const { return results_; }
   bool isOpen(std::int32_t segment) const;  ///< regular and not oriented yet
+  /// All labels by descending size, equal sizes by label.
+  const std::vector<std::int32_t>& bySize() const { return by_size_; }
   void orient(std::int32_t segment, int sign, DecidedBy by, float confidence, bool hard = false);
 
   /// Orients whatever the rule decides, from what is oriented so far.
@@ -47,6 +49,7 @@ class SegmentSpread {
     }
   };
 
+  void sortBySize();
   void labelComponents();
   float cost(std::uint32_t link) const;
   bool contradictory(std::uint32_t link) const;
@@ -62,6 +65,7 @@ class SegmentSpread {
   const SegmentMethodOptions& options_;
   Rule rule_;
   std::vector<SegmentOrientationResult> results_;
+  std::vector<std::int32_t> by_size_;
   std::priority_queue<Step> front_;
   std::priority_queue<Guess> guesses_;
 };

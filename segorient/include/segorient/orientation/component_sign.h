@@ -14,6 +14,7 @@ namespace segorient {
 struct ComponentSignOptions {
   float gamma = 0.6108652F;          ///< extremal points with a larger angle do not vote, radians
   std::size_t max_box_points = 120;  ///< m of the paper
+  int threads = 0;                   ///< see resolveThreads()
 };
 
 /// Numbers the components by descending number of points and turns each one outward: the extremal

@@ -17,12 +17,12 @@ namespace segorient {
 /// The plane is cut into squares of four spacings; a square is double if the heights of its points
 /// have a gap of more than four spacings, with at least two points on either side. Growing bounds
 /// the slope of a sheet to beta + epsilon, so one sheet has no such gap.
-/// \param max_share segments with more than this part of their points in double squares are folded
 /// \param threads see resolveThreads()
+/// \param max_share segments with more than this part of their points in double squares are folded
 /// \return labels, ascending
 std::vector<std::int32_t> findFoldedSegments(const PointView& points,
                                              const Neighborhoods& neighborhoods,
-                                             const Segmentation& segmentation,
-                                             float max_share = 0.1F, int threads = 0);
+                                             const Segmentation& segmentation, int threads = 0,
+                                             float max_share = 0.1F);
 
 }  // namespace segorient

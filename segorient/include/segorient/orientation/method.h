@@ -14,10 +14,12 @@ enum class OrientationMethod : std::uint8_t {
   BOUNDARY,     ///< directions of the segments' boundaries (paper, 3.2.2)
   COMBINED,     ///< the tree, the boundaries where its angle is unreliable, extremal points for the
                 ///< rest
-  EXTREMAL      ///< extremal points in the boxes of a subdivision of space (paper, 3.3)
+  EXTREMAL,     ///< extremal points in the boxes of a subdivision of space (paper, 3.3)
+  HOPPE         ///< without segments, for comparison: spanning tree over the angles between
+                ///< neighbouring points (Hoppe et al. 1992, as the paper describes it in 3.1)
 };
 
-/// auto, propagation, boundary, combined or extremal.
+/// auto, propagation, boundary, combined, extremal or hoppe.
 const char* toString(OrientationMethod method);
 
 /// \return false, and `method` unchanged, for any other name

@@ -23,18 +23,20 @@ struct OrientationOptions {
   /// near.
   float gamma = 0.6108652F;
   SegmentAngle angle = SegmentAngle::ACROSS_BORDER;
-  bool point_tree = false;  ///< PROPAGATION over points instead of segments (Hoppe et al. 1992)
   BoundaryTest boundary = BoundaryTest::LOCAL;
   TriangulationOptions triangulation;  ///< for BoundaryTest::TRIANGULATED; its threads are not used
   float min_margin = 0.5F;  ///< majority that a boundary needs to decide, see BoundaryVote
   std::size_t max_box_points =
       120;  ///< most points in a box of the subdivision for extremal points
-  /// Whether segments that lie over themselves, or contradict a large part of their borders, are
-  /// dissolved: they run from one side over to another where bodies touch. Their points are then
-  /// oriented one by one. Not for PROPAGATION.
+  /// Whether segments and borders are checked (beyond the paper): segments that lie over
+  /// themselves, or contradict a large part of their borders, are dissolved, as they run from one
+  /// side over to another where bodies touch, and their points oriented one by one; a link whose
+  /// angle and whose boundary say opposite things decides nothing in COMBINED and EXTREMAL. Not for
+  /// PROPAGATION.
   bool check_borders = true;
   /// Whether each connected component is turned outward; otherwise its largest segment keeps its
-  /// sign.
+  /// sign, or, by EXTREMAL, what extremal points say about each segment is the last word. HOPPE has
+  /// its own rule, see orientByPointTree().
   bool turn_outward = true;
   /// What is known beforehand, by input row; null = nothing. Only AUTO uses it; a function that is
   /// given PointHints uses those instead.

@@ -31,6 +31,9 @@ struct SegmentOrientationResult {
   float confidence = 0.F;       ///< 0 a guess, 1 all evidence agrees
   std::int32_t component = -1;  ///< into OrientationResult::components
   bool hard = false;            ///< no method decided it: the sign is the best evidence there is
+  /// What its extremal points say about the sign: 1 all agree, -1 all contradict; 0 where there are
+  /// none, or the method does not ask them. Near -1 at the rims of open objects (paper, 3.3).
+  float extremal_agreement = 0.F;
 };
 
 /// The orientation of one connected component: which way is out.

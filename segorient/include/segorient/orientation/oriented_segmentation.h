@@ -3,6 +3,7 @@
 #pragma once
 
 #include <segorient/common/point_view.h>
+#include <segorient/common/searched_neighborhoods.h>
 #include <segorient/orientation/orient_segments.h>
 #include <segorient/orientation/orientation_result.h>
 #include <segorient/segmentation/region_growing.h>
@@ -20,11 +21,13 @@ struct OrientedSegmentation {
 /// points included). A row that repeats a point follows that point.
 /// \param normals one a row, signs arbitrary; NaN = the point has none
 /// \param segmentation of these rows, or null to make one by `segmentation_options`
-/// \param k neighbours of a point, itself not counted; <= 0 = 12
+/// \param k neighbours of a point, itself not counted; <= 0 = 32 for AUTO and 12 for the others
+/// \param search finds neighbours among the rows; empty = a search of our own
 /// \return empty if the sizes do not agree or a label is out of range
 OrientedSegmentation orientSegmentation(const PointView& points, const PointView& normals,
                                         const Segmentation* segmentation, int k,
                                         const SegmentationOptions& segmentation_options,
-                                        const OrientationOptions& options);
+                                        const OrientationOptions& options,
+                                        const PointSearch& search = {});
 
 }  // namespace segorient

@@ -29,8 +29,12 @@ struct SegmentLinks {
   std::vector<SegmentLink> links;      ///< ascending by (a, b)
   std::vector<BorderPair> pairs;       ///< by link
   std::vector<std::uint32_t> offsets;  ///< links of segment s: incident[offsets[s], offsets[s + 1])
-  std::vector<std::uint32_t> incident;  ///< indices into links
+  /// Indices into links; of each segment, the one to the largest neighbour first.
+  std::vector<std::uint32_t> incident;
 };
+
+/// Whether a label is that of a regular segment that has points.
+bool isRegular(const Segmentation& segmentation, std::int32_t label);
 
 /// \param k neighbours of each row to bridge over, the point itself not counted; 0 = all. Linear.
 SegmentLinks linkRegularSegments(const Segmentation& segmentation, const SegmentGraph& graph,

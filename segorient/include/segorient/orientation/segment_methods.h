@@ -28,8 +28,11 @@ struct SegmentMethodOptions {
   float gamma = 0.6108652F;
   /// Part of a border's votes that must be left after subtracting those against: three to one.
   float min_margin = 0.5F;
-  bool use_extremal =
-      true;  ///< hard to orient segments ask their extremal points before they guess
+  /// Hard to orient segments ask their extremal points before they guess.
+  bool use_extremal = true;
+  /// Where angle and boundary of a link both decide, and not the same, neither does (beyond the
+  /// paper: at blades the angle is wrong, at unclear borders the boundary).
+  bool compare_borders = true;
 };
 
 // Each of the following orients the regular segments relative to each other; `component` numbers

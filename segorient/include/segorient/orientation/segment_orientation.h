@@ -5,6 +5,7 @@
 #include <pcl/pcl_base.h>
 #include <pcl/point_cloud.h>
 #include <pcl/point_types.h>
+#include <pcl/search/search.h>
 #include <segorient/orientation/oriented_segmentation.h>
 
 #include <limits>
@@ -24,6 +25,10 @@ namespace segorient {
 /// orientation.compute(*oriented);
 /// @endcode
 ///
+/// With setSegmentAngle (SegmentAngle::REFERENCE_NORMALS), setBoundaryTest (BoundaryTest::
+/// TRIANGULATED) and setCheckBorders (false), the rules are the paper's to the letter; the defaults
+/// are ours.
+///
 /// Segments are those of setSegmentation(), such as NormalSegmentation finds them, or made anew.
 /// Every point that has a normal is oriented; NaN stays NaN. With indices, output i belongs to
 /// index i; the whole cloud is oriented all the same. No cloud, or normals of another size:
@@ -36,6 +41,7 @@ class SegmentOrientation : public pcl::PCLBase<PointT> {
   using ConstPtr = pcl::shared_ptr<const SegmentOrientation<PointT, NormalT>>;
   using PointCloudN = pcl::PointCloud<NormalT>;
   using PointCloudNConstPtr = typename PointCloudN::ConstPtr;
+  using SearcherPtr = typename pcl::search::Search<PointT>::Ptr;
   using SegmentationConstPtr = std::shared_ptr<const Segmentation>;
   using Method = OrientationMethod;
 
@@ -44,6 +50,7 @@ class SegmentOrientation : public pcl::PCLBase<PointT> {
   static constexpr Method BOUNDARY = Method::BOUNDARY;
   static constexpr Method COMBINED = Method::COMBINED;
   static constexpr Method EXTREMAL = Method::EXTREMAL;
+  static constexpr Method HOPPE = Method::HOPPE;
 
   /// One normal a point of the input cloud.
   void setInputNormals(const PointCloudNConstPtr& normals) { normals_ = normals; }
@@ -58,6 +65,11 @@ class SegmentOrientation : public pcl::PCLBase<PointT> {
     segmentation_options_ = options;
   }
   const SegmentationOptions& getSegmentationOptions() const { return segmentation_options_; }
+
+  /// What finds neighbours; null (default) = our own all-points search, which is faster. It is put
+  /// on the whole input cloud.
+  void setSearchMethod(const SearcherPtr& search) { search_ = search; }
+  SearcherPtr getSearchMethod() const { return search_; }
 
   /// Neighbours of a point and the point itself, as in PCL; 0 (default) = 33 for AUTO and 13 for
   /// the others. More than 129 are not used.
@@ -82,9 +94,10 @@ class SegmentOrientation : public pcl::PCLBase<PointT> {
   void setBoundaryTest(BoundaryTest test) { options_.boundary = test; }
   BoundaryTest getBoundaryTest() const { return options_.boundary; }
 
-  /// PROPAGATION over the points themselves instead of segments; default false.
-  void setPointTree(bool value) { options_.point_tree = value; }
-  bool getPointTree() const { return options_.point_tree; }
+  /// Beyond the paper: segments that are not one-sided are dissolved, and angle and boundary of a
+  /// border must not contradict each other, see OrientationOptions; default true.
+  void setCheckBorders(bool value) { options_.check_borders = value; }
+  bool getCheckBorders() const { return options_.check_borders; }
 
   /// Majority of a boundary's votes that decides, 0 to 1; default 0.5 (three to one).
   void setMinMargin(float margin) { options_.min_margin = margin; }
@@ -152,8 +165,10 @@ class SegmentOrientation : public pcl::PCLBase<PointT> {
 
  private:
   bool orient();
+  PointSearch searchFunction();
 
   PointCloudNConstPtr normals_;
+  SearcherPtr search_;
   SegmentationConstPtr segmentation_;
   SegmentationOptions segmentation_options_;
   OrientationOptions options_;

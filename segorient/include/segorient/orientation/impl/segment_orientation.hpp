@@ -11,8 +11,20 @@
 #include <cstddef>
 #include <limits>
 #include <memory>
+#include <vector>
 
 namespace segorient {
+
+template <typename PointT, typename NormalT>
+PointSearch SegmentOrientation<PointT, NormalT>::searchFunction() {
+  if (!search_) return {};
+  if (search_->getInputCloud() != input_ || search_->getIndices()) search_->setInputCloud(input_);
+  return
+      [this](pcl::index_t point, int k, pcl::Indices& indices, std::vector<float>& sqr_distances) {
+        return search_->nearestKSearch((*input_)[static_cast<std::size_t>(point)], k, indices,
+                                       sqr_distances);
+      };
+}
 
 template <typename PointT, typename NormalT>
 bool SegmentOrientation<PointT, NormalT>::orient() {
@@ -37,7 +49,8 @@ bool SegmentOrientation<PointT, NormalT>::orient() {
   OrientationOptions options = options_;
   options.hints = hints;
   result_ = orientSegmentation(points.view(), normalView(*normals_), segmentation_.get(),
-                               k_ > 0 ? std::max(1, k_ - 1) : 0, segmentation_options_, options);
+                               k_ > 0 ? std::max(1, k_ - 1) : 0, segmentation_options_, options,
+                               searchFunction());
   if (result_.orientation.point_signs.empty()) {
     PCL_ERROR(
         "[segorient::SegmentOrientation::compute] The segments are not those of this cloud.\n");
