@@ -284,26 +284,5 @@ TEST(NormalRecomputation, NanDuplicatesAndIndices) {
   EXPECT_FALSE(out.is_dense);
 }
 
-TEST(NormalRecomputation, ErrorsGiveAnEmptyCloud) {
-  Segmented s = segmentedCube(100, 11, 0.F);
-  Normals out(3, 1);
-  Recomputation recomputation;
-  recomputation.compute(out);
-  EXPECT_TRUE(out.empty());
-  recomputation.setInputCloud(s.sample.points.makeShared());
-  recomputation.compute(out);
-  EXPECT_TRUE(out.empty());
-  recomputation.setInputNormals(cloudOf(s.normals).makeShared());
-  recomputation.setLabels({1, 2, 3}, s.regular);
-  recomputation.compute(out);
-  EXPECT_TRUE(out.empty());
-  recomputation.setLabels(s.labels, {});  // no label is regular
-  recomputation.compute(out);
-  EXPECT_EQ(out.size(), 100U);
-  recomputation.setNeighborhoods(pcl::make_shared<Neighborhoods>());
-  recomputation.compute(out);
-  EXPECT_TRUE(out.empty());
-}
-
 }  // namespace
 }  // namespace segorient::test

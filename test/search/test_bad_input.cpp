@@ -3,9 +3,13 @@
 #include <gtest/gtest.h>
 #include <segorient/search/median_hash.h>
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <limits>
+
+#include "bad_clouds.h"
+#include "brute_force.h"
 
 namespace segorient::test {
 namespace {
@@ -116,75 +120,106 @@ TEST(BadInput, TreesWithoutPoints) {
   expectFindsNothing(tree);
 }
 
-TEST(BadInput, OnlyInvalidPoints) {
-  auto cloud = pcl::make_shared<Cloud>();
-  for (int i = 0; i < 100; ++i) cloud->push_back({kNan, 0.0F, kInf});
-  for (const bool dense : {true, false}) {
-    cloud->is_dense = dense;
-    Tree tree;
-    tree.setInputCloud(cloud);
-    expectFindsNothing(tree);
-  }
-}
-
-TEST(BadInput, InvalidPointsAreLeftOutWhateverIsDenseSays) {
-  for (const bool dense : {true, false}) {
-    const auto cloud = smallCloud();
-    (*cloud)[1].y = kNan;
-    (*cloud)[3].z = -kInf;
-    cloud->is_dense = dense;
-    Tree tree;
-    tree.setInputCloud(cloud);
-    pcl::Indices indices;
+// What brute force finds, in the rounding of one distance at a time.
+class EveryCloud : public testing::Test {
+ protected:
+  void ask(const Cloud& cloud, const pcl::PointXYZ* query, const pcl::IndicesPtr& indices) {
+    const PointView view{cloud.empty() ? nullptr : &cloud[0].x, 4, cloud.size()};
+    std::vector<Neighbor> truth;
+    if (query != nullptr) truth = bruteForce(view, &query->x, indices.get());
+    const pcl::PointXYZ point = query != nullptr ? *query : pcl::PointXYZ(kNan, 0.F, 0.F);
+    pcl::Indices found;
     std::vector<float> distances;
-    EXPECT_EQ(tree.nearestKSearch((*cloud)[0], 10, indices, distances), 3);
-    EXPECT_EQ(indices, (pcl::Indices{0, 2, 4}));
-    EXPECT_EQ(tree.nearestKSearch(1, 10, indices, distances), 0);
-    Neighborhoods table;
-    tree.nearestKSearchAll(2, table);
-    ASSERT_EQ(table.size(), 5U);
-    EXPECT_EQ(table.count(0), 2);
-    EXPECT_EQ(table.count(1), 0);
-    EXPECT_EQ(table.count(3), 0);
+    for (const int k : {-5, 0, 1, 7, 1000, std::numeric_limits<int>::max()}) {
+      SCOPED_TRACE("k " + std::to_string(k));
+      const std::size_t most = k < 0 ? 0 : std::min(static_cast<std::size_t>(k), truth.size());
+      EXPECT_EQ(tree_.nearestKSearch(point, k, found, distances), static_cast<int>(most));
+      compare(truth, most, found, distances);
+    }
+    for (const double radius : {kNan + 0.0, -1.0, 0.0, 1e-32, 0.3, 1e20, kInf + 0.0}) {
+      SCOPED_TRACE("radius " + std::to_string(radius));
+      const auto square = static_cast<float>(radius * radius);
+      const auto within = static_cast<std::size_t>(
+          std::count_if(truth.begin(), truth.end(), [&](const Neighbor& n) {
+            return radius > 0.0 && n.distance < square;  // strictly, as FLANN
+          }));
+      EXPECT_EQ(tree_.radiusSearch(point, radius, found, distances), static_cast<int>(within));
+      compare(truth, within, found, distances);
+    }
+  }
+
+  static void compare(const std::vector<Neighbor>& truth, std::size_t count,
+                      const pcl::Indices& found, const std::vector<float>& distances) {
+    ASSERT_EQ(found.size(), count);
+    ASSERT_EQ(distances.size(), count);
+    for (std::size_t i = 0; i < count; ++i) {
+      ASSERT_EQ(found[i], truth[i].index) << i;
+      ASSERT_EQ(distances[i], truth[i].distance) << i;
+    }
+  }
+
+  const QuietPcl quiet_;
+  Tree tree_;  // one for all clouds: what it held before must not matter
+};
+
+TEST_F(EveryCloud, EqualsBruteForceWhateverTheIndicesAndTheQuery) {
+  for (const BadCloud& bad : badClouds()) {
+    SCOPED_TRACE(bad.name);
+    const Cloud& cloud = *bad.cloud;
+    for (const IndexCase& index : indexCases(cloud.size())) {
+      SCOPED_TRACE(index.name);
+      tree_.setInputCloud(bad.cloud, index.indices);
+      ask(cloud, nullptr, index.indices);
+      const pcl::PointXYZ elsewhere(0.3F, -0.2F, 0.1F);
+      ask(cloud, &elsewhere, index.indices);
+      for (std::size_t row = 0; row < cloud.size(); row += 75) {
+        ask(cloud, pointOf(cloud, nullptr, row), index.indices);
+      }
+    }
   }
 }
 
-TEST(BadInput, RepeatedIndicesAreFoundRepeatedly) {
-  auto indices = pcl::make_shared<pcl::Indices>();
-  *indices = {3, 1, 3, 1, 3};
-  Tree tree;
-  tree.setInputCloud(smallCloud(), indices);
-  pcl::Indices found;
-  std::vector<float> distances;
-  EXPECT_EQ(tree.nearestKSearch(0, 10, found, distances), 5);
-  EXPECT_EQ(found, (pcl::Indices{3, 3, 3, 1, 1}));
+TEST_F(EveryCloud, RowsOfAllPointsAreThoseOfBruteForce) {
+  for (const BadCloud& bad : badClouds()) {
+    SCOPED_TRACE(bad.name);
+    const Cloud& cloud = *bad.cloud;
+    const PointView view{cloud.empty() ? nullptr : &cloud[0].x, 4, cloud.size()};
+    for (const IndexCase& index : indexCases(cloud.size())) {
+      SCOPED_TRACE(index.name);
+      tree_.setInputCloud(bad.cloud, index.indices);
+      const std::size_t rows = index.indices ? index.indices->size() : cloud.size();
+      Neighborhoods table;
+      for (const int k : {-5, 0, 1, 7, 1000}) {
+        tree_.nearestKSearchAll(k, table);
+        if (cloud.empty()) continue;  // an error; there are no rows to speak of
+        ASSERT_EQ(table.size(), rows);
+        for (std::size_t row = 0; row < rows; row += 11) {
+          std::vector<Neighbor> truth;
+          if (pointOf(cloud, index.indices, row) != nullptr && k > 0) {
+            const auto self =
+                index.indices ? (*index.indices)[row] : static_cast<pcl::index_t>(row);
+            truth = bruteForceRow(view, self, static_cast<std::size_t>(k), index.indices.get());
+          }
+          ASSERT_EQ(table.count(row), static_cast<int>(truth.size())) << "k " << k;
+          for (std::size_t i = 0; i < truth.size(); ++i) {
+            ASSERT_EQ(table.indices(row)[i], truth[i].index) << "k " << k << " row " << row;
+            ASSERT_EQ(table.sqrDistances(row)[i], truth[i].distance);
+          }
+        }
+      }
+    }
+  }
 }
 
-TEST(BadInput, WideRadii) {
+TEST(BadInput, ClosestWithinWideRadii) {
   Tree tree;
   tree.setInputCloud(smallCloud());
   pcl::Indices indices;
   std::vector<float> distances;
-  for (const double radius : {1e19, 1e20, 1e200, std::numeric_limits<double>::infinity()}) {
-    EXPECT_EQ(tree.radiusSearch(0, radius, indices, distances), 5) << radius;
+  for (const double radius : {1e19, 1e200, std::numeric_limits<double>::infinity()}) {
     EXPECT_EQ(tree.radiusSearch(0, radius, indices, distances, 2), 2) << radius;
     EXPECT_EQ(indices, (pcl::Indices{0, 1}));
   }
-}
-
-TEST(BadInput, KBeyondTheCloud) {
-  Tree tree;
-  tree.setInputCloud(smallCloud());
-  pcl::Indices indices;
-  std::vector<float> distances;
-  EXPECT_EQ(tree.nearestKSearch(0, std::numeric_limits<int>::max(), indices, distances), 5);
-  Neighborhoods table;
-  tree.nearestKSearchAll(0, table);
-  EXPECT_EQ(table.count(4), 0);
-  tree.nearestKSearchAll(-5, table);
-  EXPECT_EQ(table.count(4), 0);
-  tree.nearestKSearchAll(1000, table);
-  EXPECT_EQ(table.count(4), 5);
 }
 
 TEST(BadInput, OddSettings) {
