@@ -131,60 +131,6 @@ TEST_F(OrientedNormalEstimationTest, KeepsTheShapeOfAnOrganizedCloudWithHoles) {
   }
 }
 
-TEST_F(OrientedNormalEstimationTest, BadInputIsAnEmptyOutput) {
-  pcl::PointCloud<pcl::Normal> normals(3, 1);
-  Estimation none;
-  none.compute(normals);
-  EXPECT_TRUE(normals.empty());
-
-  Estimation null;
-  null.setInputCloud(nullptr);
-  normals.resize(3);
-  null.compute(normals);
-  EXPECT_TRUE(normals.empty());
-
-  Estimation empty;
-  empty.setInputCloud(pcl::make_shared<pcl::PointCloud<pcl::PointXYZ>>());
-  normals.resize(3);
-  empty.compute(normals);
-  EXPECT_TRUE(normals.empty());
-
-  const auto cloud = test::toPcl(sphere(500));
-  Estimation negative;
-  negative.setInputCloud(cloud);
-  negative.setKSearch(-5);
-  normals.resize(3);
-  negative.compute(normals);
-  EXPECT_TRUE(normals.empty());
-
-  Estimation radius;
-  radius.setInputCloud(cloud);
-  radius.setRadiusSearch(0.1);
-  normals.resize(3);
-  radius.compute(normals);
-  EXPECT_EQ(normals.size(), cloud->size()) << "a radius is not used";
-  EXPECT_EQ(radius.getLabels().size(), cloud->size());
-
-  Estimation no_indices;
-  no_indices.setInputCloud(cloud);
-  no_indices.setIndices(pcl::make_shared<pcl::Indices>());
-  no_indices.compute(normals);
-  EXPECT_TRUE(normals.empty());
-}
-
-TEST_F(OrientedNormalEstimationTest, FewPointsGetNoNormal) {
-  for (const std::size_t n : {1U, 2U}) {
-    Estimation estimation;
-    estimation.setInputCloud(test::toPcl(sphere(n)));
-    pcl::PointCloud<pcl::Normal> normals;
-    estimation.compute(normals);
-    ASSERT_EQ(normals.size(), n);
-    EXPECT_FALSE(normals.is_dense);
-    for (const pcl::Normal& normal : normals) EXPECT_TRUE(std::isnan(normal.normal_x));
-    EXPECT_EQ(estimation.getReport().without_normal, n);
-  }
-}
-
 TEST_F(OrientedNormalEstimationTest, CanBeUsedAgain) {
   Estimation estimation;
   for (const unsigned seed : {1U, 2U}) {

@@ -48,8 +48,10 @@ bool SegmentOrientation<PointT, NormalT>::orient() {
   if (seeds_) detail::addSeeds(*seeds_, *hints);
   OrientationOptions options = options_;
   options.hints = hints;
+  SegmentationOptions segmentation_options = segmentation_options_;
+  segmentation_options.threads = options.threads;
   result_ = orientSegmentation(points.view(), normalView(*normals_), segmentation_.get(),
-                               k_ > 0 ? std::max(1, k_ - 1) : 0, segmentation_options_, options,
+                               k_ > 0 ? std::max(1, k_ - 1) : 0, segmentation_options, options,
                                searchFunction());
   if (result_.orientation.point_signs.empty()) {
     PCL_ERROR(

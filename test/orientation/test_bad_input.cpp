@@ -1,0 +1,190 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the segorient authors
+// Both classes of the module on everything that may be wrong with a cloud, its normals, its indices
+// and the settings: an error and an empty result, or NaN where there is nothing to go by.
+#include <gtest/gtest.h>
+#include <segorient/orientation/oriented_normal_estimation.h>
+#include <segorient/orientation/segment_orientation.h>
+
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "bad_clouds.h"
+
+namespace segorient::test {
+namespace {
+
+using Cloud = pcl::PointCloud<pcl::PointXYZ>;
+using Normals = pcl::PointCloud<pcl::Normal>;
+
+constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
+constexpr float kInfinity = std::numeric_limits<float>::infinity();
+
+constexpr OrientationMethod kMethods[] = {OrientationMethod::AUTO, OrientationMethod::PROPAGATION,
+                                          OrientationMethod::BOUNDARY, OrientationMethod::COMBINED,
+                                          OrientationMethod::EXTREMAL};
+
+class BadInput : public testing::TestWithParam<OrientationMethod> {
+ protected:
+  const QuietPcl quiet_;
+};
+INSTANTIATE_TEST_SUITE_P(Methods, BadInput, testing::ValuesIn(kMethods),
+                         [](const testing::TestParamInfo<OrientationMethod>& method) {
+                           return std::string(toString(method.param));
+                         });
+
+void checkNormals(const BadCloud& bad, const IndexCase& index, const Normals& out) {
+  const std::size_t all = index.indices ? index.indices->size() : bad.cloud->size();
+  const std::size_t rows = bad.cloud->empty() ? 0 : all;
+  ASSERT_EQ(out.size(), rows);
+  std::size_t found = 0;
+  std::size_t valid = 0;
+  for (std::size_t i = 0; i < rows; ++i) {
+    ASSERT_TRUE(isUnitOrNan(out[i])) << i << ": " << out[i];
+    const bool is_point = pointOf(*bad.cloud, index.indices, i) != nullptr;
+    ASSERT_TRUE(is_point || std::isnan(out[i].normal_x)) << i;
+    found += std::isnan(out[i].normal_x) ? 0 : 1;
+    valid += is_point ? 1 : 0;
+  }
+  EXPECT_EQ(out.is_dense, found == rows);
+  if (bad.planes == Planes::NONE) {
+    EXPECT_EQ(found, 0U);
+  }
+  if (bad.planes == Planes::NEARLY_ALL) {
+    EXPECT_GE(10 * found, 9 * valid);
+  }
+}
+
+// One object for all of them: what it was used for before must not matter.
+TEST_P(BadInput, EstimationOfCloudsAndIndices) {
+  OrientedNormalEstimation<pcl::PointXYZ, pcl::Normal> estimation;
+  estimation.setMethod(GetParam());
+  estimation.setNumberOfThreads(1);
+  for (const BadCloud& bad : badClouds()) {
+    SCOPED_TRACE(bad.name);
+    for (const IndexCase& index : indexCases(bad.cloud->size())) {
+      SCOPED_TRACE(index.name);
+      estimation.setInputCloud(bad.cloud);
+      estimation.setIndices(index.indices);
+      Normals out(3, 1);
+      for (const int k : {-1, std::numeric_limits<int>::min()}) {
+        estimation.setKSearch(k);
+        estimation.compute(out);
+        EXPECT_TRUE(out.empty());
+        EXPECT_TRUE(estimation.getLabels().empty());
+      }
+      for (const int k : {0, 1, std::numeric_limits<int>::max()}) {
+        SCOPED_TRACE("k " + std::to_string(k));
+        estimation.setKSearch(k);
+        estimation.compute(out);
+        if (k == 1) continue;  // one neighbour makes no plane but where the method has its own
+        checkNormals(bad, index, out);
+        EXPECT_EQ(estimation.getLabels().size(), out.size());
+      }
+    }
+  }
+}
+
+TEST_P(BadInput, EstimationWithoutACloud) {
+  OrientedNormalEstimation<pcl::PointXYZ, pcl::Normal> estimation;
+  estimation.setMethod(GetParam());
+  Normals out(3, 1);
+  estimation.compute(out);
+  EXPECT_TRUE(out.empty());
+  estimation.setInputCloud(curvedPatch(50).makeShared());
+  for (const double radius : {0.1, -1.0, 1e20, kInfinity + 0.0, kNaN + 0.0}) {
+    estimation.setRadiusSearch(radius);
+    estimation.compute(out);
+    EXPECT_EQ(out.size(), 50U) << "a radius is not used: " << radius;
+  }
+  estimation.setInputCloud(nullptr);
+  estimation.compute(out);
+  EXPECT_TRUE(out.empty());
+  EXPECT_TRUE(estimation.getLabels().empty());
+}
+
+TEST_P(BadInput, EstimationOnSurfacesOfAllKinds) {
+  for (const BadCloud& bad : badClouds()) {
+    SCOPED_TRACE(bad.name);
+    OrientedNormalEstimation<pcl::PointXYZ, pcl::Normal> estimation;
+    estimation.setMethod(GetParam());
+    estimation.setNumberOfThreads(1);
+    estimation.setInputCloud(curvedPatch(20).makeShared());
+    estimation.setSearchSurface(bad.cloud);
+    Normals out;
+    estimation.compute(out);
+    ASSERT_EQ(out.size(), 20U);
+    for (const auto& n : out) EXPECT_TRUE(isUnitOrNan(n));
+  }
+}
+
+TEST_P(BadInput, OrientationOfCloudsNormalsAndIndices) {
+  SegmentOrientation<pcl::PointXYZ, pcl::Normal> orientation;
+  orientation.setMethod(GetParam());
+  orientation.setNumberOfThreads(1);
+  for (const BadCloud& bad : badClouds()) {
+    SCOPED_TRACE(bad.name);
+    const std::size_t size = bad.cloud->size();
+    for (const IndexCase& index : indexCases(size)) {
+      SCOPED_TRACE(index.name);
+      const std::size_t rows = index.indices ? index.indices->size() : size;
+      orientation.setInputCloud(bad.cloud);
+      orientation.setIndices(index.indices);
+      for (const float z : {1.F, 0.F, kNaN, kInfinity, 1e30F}) {
+        SCOPED_TRACE("normal " + std::to_string(z));
+        orientation.setInputNormals(pcl::make_shared<Normals>(size, 1, pcl::Normal(0.F, 0.F, z)));
+        // More neighbours than points are no matter of the normals.
+        const std::vector<int> ks = z == 1.F
+                                        ? std::vector<int>{0, 1, std::numeric_limits<int>::max()}
+                                        : std::vector<int>{0};
+        for (const int k : ks) {
+          orientation.setKSearch(k);
+          Normals out(3, 1);
+          orientation.compute(out);
+          ASSERT_EQ(out.size(), size == 0 ? 0U : rows) << "k " << k;
+          for (std::size_t i = 0; i < out.size(); ++i) {
+            ASSERT_TRUE(z != 1.F || isUnitOrNan(out[i])) << out[i];
+            if (pointOf(*bad.cloud, index.indices, i) == nullptr) {
+              ASSERT_TRUE(std::isnan(out[i].normal_z)) << i;
+            }
+          }
+        }
+      }
+    }
+  }
+}
+
+TEST_P(BadInput, OrientationOfMismatchedInput) {
+  SegmentOrientation<pcl::PointXYZ, pcl::Normal> orientation;
+  orientation.setMethod(GetParam());
+  const auto expectEmpty = [&](const char* what) {
+    Normals out(3, 1);
+    orientation.compute(out);
+    EXPECT_TRUE(out.empty()) << what;
+    EXPECT_TRUE(orientation.getLabels().empty()) << what;
+  };
+  const auto normals = [](std::uint32_t count) {
+    return pcl::make_shared<Normals>(count, 1, pcl::Normal(0.F, 0.F, 1.F));
+  };
+  expectEmpty("nothing set");
+  orientation.setInputCloud(curvedPatch(50).makeShared());
+  expectEmpty("no normals");
+  orientation.setInputNormals(normals(49));
+  expectEmpty("too few normals");
+  orientation.setInputNormals(normals(51));
+  expectEmpty("too many normals");
+  orientation.setInputNormals(normals(50));
+  orientation.setKSearch(-1);
+  expectEmpty("negative k");
+  orientation.setKSearch(0);
+  orientation.setInputCloud(nullptr);
+  expectEmpty("no cloud");
+  orientation.setInputCloud(curvedPatch(50).makeShared());
+  Normals out;
+  orientation.compute(out);
+  EXPECT_EQ(out.size(), 50U);
+}
+
+}  // namespace
+}  // namespace segorient::test
