@@ -178,9 +178,11 @@ TEST(Auto, HugeAndTinyCoordinatesGiveTheSame) {
 
 TEST(Auto, FilterIsWorthItsTime) {
   const LabelledCloud cloud = sample("cube", cube(), 6000, 50, 0.7);
-  PipelineOptions unfiltered;
+  PipelineOptions filtered;
+  filtered.automatic.infer_viewpoint = false;  // which mends the same points by other means
+  PipelineOptions unfiltered = filtered;
   unfiltered.filter_rounds = 0;
-  EXPECT_GT(shareOutward(orient(cloud.xyz).normals, cloud.normals),
+  EXPECT_GT(shareOutward(orient(cloud.xyz, filtered).normals, cloud.normals),
             shareOutward(orient(cloud.xyz, unfiltered).normals, cloud.normals) + 0.005);
 }
 

@@ -3,15 +3,14 @@
 #include <segorient/orientation/auto_orientation.h>
 #include <segorient/orientation/auto_viewpoint.h>
 #include <segorient/orientation/border_votes.h>
-#include <segorient/orientation/cluster_graph.h>
 #include <segorient/orientation/winding_components.h>
 
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <numeric>
 
 #include "hint_votes.h"
+#include "segment_clusters.h"
 
 namespace segorient {
 namespace {
@@ -23,6 +22,7 @@ using detail::HintVotes;
 // spacing up to .08.
 constexpr float kClosedResidual = 0.03F;
 constexpr float kOpenResidual = 0.1F;
+constexpr float kClearly = 0.6F;  // four of five votes
 
 std::size_t at(std::int32_t i) {
   return static_cast<std::size_t>(i);
@@ -30,9 +30,9 @@ std::size_t at(std::int32_t i) {
 
 // The hint that decides a component, if any: three votes of four at least.
 const Ballot* decisive(const HintVotes& hints, bool open) {
-  constexpr float kClearly = 0.5F;
+  constexpr float kMost = 0.5F;
   for (const Ballot* ballot : {&hints.seeds, &hints.directions}) {
-    if (ballot->total > 0.F && std::fabs(ballot->share()) >= kClearly) return ballot;
+    if (ballot->total > 0.F && std::fabs(ballot->share()) >= kMost) return ballot;
   }
   return open && hints.view.balance != 0.F ? &hints.view : nullptr;
 }
@@ -47,11 +47,11 @@ class Orienter {
         segmentation_(segmentation),
         options_(options),
         hints_(hints),
-        votes_(borderVotes(points, nb, field, segmentation, options.threads)) {}
+        votes_(borderVotes(points, nb, field, segmentation, options.threads)),
+        clusters_(segmentation, votes_,
+                  {options.contract_certain, options.flip_clusters, points.size}) {}
 
   AutoOrientation run() {
-    formClusters();
-    if (options_.flip_clusters) flipClusters();
     numberComponents();
     turnComponentsOut();
     followHints();
@@ -61,17 +61,16 @@ class Orienter {
   }
 
  private:
-  void formClusters();
-  void flipClusters();
   void numberComponents();
   void turnComponentsOut();
   std::vector<std::int8_t> conventionalSigns() const;
   bool isClosed(std::size_t component, float residual) const;
-  std::vector<float> clusterAgreement() const;
   void turnClusters(const std::vector<Ballot>& ballots, float sure_borders);
   void followHints();
   void followViewpoint();
+  void turnVisibleSegments(const ViewpointFit& fit);
   void judge();
+  void listClusters();
   void findContradictions();
 
   float pointSign(std::size_t i) const {
@@ -86,11 +85,7 @@ class Orienter {
   const AutoOrientationOptions& options_;
   const PointHints& hints_;
   std::vector<BorderVote> votes_;
-  std::vector<ClusterGraph::Edge> edges_;  // between clusters, signs relative to the clusters
-  std::vector<std::int32_t> cluster_;      // of each segment
-  std::vector<std::int8_t> in_cluster_;    // sign of each segment within its cluster
-  std::vector<std::int8_t> cluster_sign_;  // by the segment that stands for the cluster
-  std::vector<std::int32_t> root_;         // of each cluster: its component
+  detail::SegmentClusters clusters_;
   std::vector<std::int8_t> signs_;         // of each segment
   std::vector<std::int32_t> component_;    // of each segment, 0.. by descending size
   std::vector<ComponentWinding> winding_;  // of each component
@@ -98,82 +93,13 @@ class Orienter {
   AutoOrientation out_;
 };
 
-void Orienter::formClusters() {
-  const std::size_t n = segmentation_.segments.size();
-  std::vector<std::uint32_t> sizes(n);
-  for (std::size_t s = 0; s < n; ++s) sizes[s] = segmentation_.segments[s].size;
-  ClusterGraph graph(sizes, votes_);
-  if (options_.contract_certain) {
-    ClusterGraph::Rule certain;
-    certain.unanimity = 0.9F;
-    certain.weight = 4.F;  // a border of a few points
-    certain.reliable = 0.5F;
-    graph.contract(certain);
-    // Two large clusters are joined only with all evidence on the table.
-    ClusterGraph::Rule likely;
-    likely.unanimity = 0.6F;
-    likely.both_larger = static_cast<std::uint32_t>(points_.size / 50);
-    graph.contract(likely);
-  }
-  cluster_.resize(n);
-  in_cluster_.resize(n);
-  for (std::size_t s = 0; s < n; ++s) {
-    int sign = 1;
-    cluster_[s] = graph.find(static_cast<std::int32_t>(s), sign);
-    in_cluster_[s] = static_cast<std::int8_t>(sign);
-  }
-  edges_ = graph.edges();
-  graph.contract(ClusterGraph::Rule{});
-  cluster_sign_.assign(n, 1);
-  root_.assign(n, -1);
-  for (std::size_t s = 0; s < n; ++s) {
-    int sign = 1;
-    root_[at(cluster_[s])] = graph.find(cluster_[s], sign);
-    cluster_sign_[at(cluster_[s])] = static_cast<std::int8_t>(sign);
-  }
-}
-
-// Greedy contraction leaves single clusters that all their borders together would rather see turned
-// over.
-void Orienter::flipClusters() {
-  const std::size_t n = cluster_.size();
-  std::vector<std::uint32_t> offset(n + 1, 0);
-  for (const auto& e : edges_) {
-    ++offset[at(e.a) + 1];
-    ++offset[at(e.b) + 1];
-  }
-  std::partial_sum(offset.begin(), offset.end(), offset.begin());
-  std::vector<std::uint32_t> incident(offset.back());
-  std::vector<std::uint32_t> next(offset.begin(), offset.end() - 1);
-  for (std::uint32_t e = 0; e < edges_.size(); ++e) {
-    incident[next[at(edges_[e].a)]++] = e;
-    incident[next[at(edges_[e].b)]++] = e;
-  }
-  constexpr int kRounds = 50;  // each flip lowers the energy; a few rounds are the rule
-  for (int round = 0; round < kRounds; ++round) {
-    bool moved = false;
-    for (std::size_t c = 0; c < n; ++c) {
-      float against = 0.F;
-      for (std::uint32_t k = offset[c]; k < offset[c + 1]; ++k) {
-        const auto& e = edges_[incident[k]];
-        against -= e.weight * static_cast<float>(cluster_sign_[at(e.a)] * cluster_sign_[at(e.b)]);
-      }
-      if (against > 1e-3F) {
-        cluster_sign_[c] = static_cast<std::int8_t>(-cluster_sign_[c]);
-        moved = true;
-      }
-    }
-    if (!moved) break;
-  }
-}
-
 void Orienter::numberComponents() {
-  const std::size_t n = cluster_.size();
+  const std::size_t n = clusters_.size();
   std::vector<std::uint32_t> size(n, 0);
   signs_.resize(n);
   for (std::size_t s = 0; s < n; ++s) {
-    size[at(root_[at(cluster_[s])])] += segmentation_.segments[s].size;
-    signs_[s] = static_cast<std::int8_t>(in_cluster_[s] * cluster_sign_[at(cluster_[s])]);
+    size[at(clusters_.root(clusters_.of(s)))] += segmentation_.segments[s].size;
+    signs_[s] = clusters_.sign(s);
   }
   std::vector<std::int32_t> order;
   for (std::size_t s = 0; s < n; ++s) {
@@ -184,7 +110,7 @@ void Orienter::numberComponents() {
   std::vector<std::int32_t> rank(n, -1);
   for (std::size_t c = 0; c < order.size(); ++c) rank[at(order[c])] = static_cast<std::int32_t>(c);
   component_.resize(n);
-  for (std::size_t s = 0; s < n; ++s) component_[s] = rank[at(root_[at(cluster_[s])])];
+  for (std::size_t s = 0; s < n; ++s) component_[s] = rank[at(clusters_.root(clusters_.of(s)))];
   winding_.assign(order.size(), ComponentWinding{});
   out_.result.components.resize(order.size());
   for (std::size_t c = 0; c < order.size(); ++c) {
@@ -281,29 +207,11 @@ bool Orienter::isClosed(std::size_t component, float residual) const {
   return winding_[component].residual <= residual;
 }
 
-// How far each cluster's borders agree with the signs found, -1 to 1.
-std::vector<float> Orienter::clusterAgreement() const {
-  std::vector<float> agreed(cluster_.size(), 0.F);
-  std::vector<float> absolute(cluster_.size(), 0.F);
-  for (const ClusterGraph::Edge& e : edges_) {
-    const float w = e.weight * static_cast<float>(cluster_sign_[at(e.a)] * cluster_sign_[at(e.b)]);
-    for (const std::int32_t c : {e.a, e.b}) {
-      agreed[at(c)] += w;
-      absolute[at(c)] += e.absolute;
-    }
-  }
-  for (std::size_t c = 0; c < agreed.size(); ++c) {
-    if (absolute[c] > 0.F) agreed[c] /= absolute[c];
-  }
-  return agreed;
-}
-
 // Turns over clusters that nearly all of the ballot is against, unless their borders know better.
 void Orienter::turnClusters(const std::vector<Ballot>& ballots, float sure_borders) {
-  constexpr float kClearly = 0.6F;  // four of five votes
-  const std::vector<float> agreement = clusterAgreement();
+  const std::vector<float> agreement = clusters_.agreement(0.F);
   for (std::size_t s = 0; s < signs_.size(); ++s) {
-    const std::size_t c = at(cluster_[s]);
+    const std::size_t c = at(clusters_.of(s));
     if (agreement[c] > sure_borders || ballots[c].share() >= -kClearly) continue;
     signs_[s] = static_cast<std::int8_t>(-signs_[s]);
   }
@@ -313,16 +221,16 @@ void Orienter::followHints() {
   constexpr float kFirmBorders = 0.9F;  // what is known of single points
   constexpr float kSureBorders = 0.5F;  // what could have been seen
   const std::vector<HintVotes> votes = detail::hintVotes(points_, field_, segmentation_, hints_);
-  std::vector<HintVotes> by_cluster(cluster_.size());
-  std::vector<std::int32_t> component_of(cluster_.size(), -1);
-  for (std::size_t s = 0; s < cluster_.size(); ++s) {
-    by_cluster[at(cluster_[s])].add(votes[s], signs_[s]);
-    component_of[at(cluster_[s])] = component_[s];
+  std::vector<HintVotes> by_cluster(clusters_.size());
+  std::vector<std::int32_t> component_of(clusters_.size(), -1);
+  for (std::size_t s = 0; s < clusters_.size(); ++s) {
+    by_cluster[at(clusters_.of(s))].add(votes[s], signs_[s]);
+    component_of[at(clusters_.of(s))] = component_[s];
   }
-  hinted_.assign(cluster_.size(), false);
-  std::vector<Ballot> seen(cluster_.size());
-  std::vector<Ballot> known(cluster_.size());
-  for (std::size_t c = 0; c < cluster_.size(); ++c) {
+  hinted_.assign(clusters_.size(), false);
+  std::vector<Ballot> seen(clusters_.size());
+  std::vector<Ballot> known(clusters_.size());
+  for (std::size_t c = 0; c < clusters_.size(); ++c) {
     if (component_of[c] < 0) continue;
     const HintVotes& v = by_cluster[c];
     if (v.seeds.total > 0.F || v.directions.total > 0.F) {
@@ -337,15 +245,16 @@ void Orienter::followHints() {
 }
 
 // If all that the largest cluster knows was seen from one place, so was the rest: other clusters
-// that turn their backs to it are turned over. Closed surfaces are never seen from one place, and
-// have the winding number.
+// that turn their backs to it are turned over, and where that is nearly sure, so are single
+// segments. Closed surfaces are never seen from one place, and have the winding number.
 void Orienter::followViewpoint() {
   constexpr float kOnePlace = 0.97F;
+  constexpr float kNearlySure = 0.98F;
   constexpr float kSureBorders = 0.5F;  // then the borders know better
   if (winding_.empty() || hints_.has_viewpoint || isClosed(0, kClosedResidual)) return;
-  std::vector<std::uint32_t> size(cluster_.size(), 0);
-  for (std::size_t s = 0; s < cluster_.size(); ++s) {
-    size[at(cluster_[s])] += segmentation_.segments[s].size;
+  std::vector<std::uint32_t> size(clusters_.size(), 0);
+  for (std::size_t s = 0; s < clusters_.size(); ++s) {
+    size[at(clusters_.of(s))] += segmentation_.segments[s].size;
   }
   const auto largest =
       static_cast<std::int32_t>(std::max_element(size.begin(), size.end()) - size.begin());
@@ -354,7 +263,7 @@ void Orienter::followViewpoint() {
   std::vector<std::uint32_t> rows;
   for (std::size_t i = 0; i < points_.size; ++i) {
     const std::int32_t s = segmentation_.labels[i];
-    if (s >= 0 && cluster_[at(s)] == largest && field_.reliable[i] != 0) {
+    if (s >= 0 && clusters_.of(at(s)) == largest && field_.reliable[i] != 0) {
       rows.push_back(static_cast<std::uint32_t>(i));
     }
   }
@@ -365,12 +274,36 @@ void Orienter::followViewpoint() {
   inferred.has_viewpoint = true;
   inferred.viewpoint = fit.position;
   const std::vector<HintVotes> votes = detail::hintVotes(points_, field_, segmentation_, inferred);
-  std::vector<Ballot> facing(cluster_.size());
-  for (std::size_t s = 0; s < cluster_.size(); ++s) {
-    const std::size_t c = at(cluster_[s]);
+  std::vector<Ballot> facing(clusters_.size());
+  for (std::size_t s = 0; s < clusters_.size(); ++s) {
+    const std::size_t c = at(clusters_.of(s));
     if (!hinted_[c]) facing[c].add(votes[s].view, signs_[s] * fit.facing);
   }
   turnClusters(facing, kSureBorders);
+  if (fit.agreement >= kNearlySure) turnVisibleSegments(fit);
+}
+
+// What nothing hides from where all was seen from was seen: segments that turn their backs to it
+// are turned over whatever their borders say.
+void Orienter::turnVisibleSegments(const ViewpointFit& fit) {
+  const std::vector<std::uint8_t> visible = visibleFrom(points_, field_.spacing, fit.position);
+  std::vector<Ballot> facing(signs_.size());
+  for (std::size_t i = 0; i < points_.size; ++i) {
+    const std::int32_t s = segmentation_.labels[i];
+    if (s < 0 || visible[i] == 0) continue;
+    float d = 0.F;
+    for (std::size_t a = 0; a < 3; ++a) {
+      d += field_.normals[4 * i + a] * (fit.position[a] - points_[i][a]);
+    }
+    const float sign = pointSign(i) * static_cast<float>(fit.facing);
+    facing[at(s)].add({sign * d > 0.F ? 1.F : -1.F, 1.F}, 1);
+  }
+  for (std::size_t s = 0; s < signs_.size(); ++s) {
+    const float size = static_cast<float>(segmentation_.segments[s].size);
+    const bool seen = facing[s].total > 0.5F * size;
+    if (!seen || hinted_[at(clusters_.of(s))] || facing[s].share() >= -kClearly) continue;
+    signs_[s] = static_cast<std::int8_t>(-signs_[s]);
+  }
 }
 
 void Orienter::findContradictions() {
@@ -387,6 +320,31 @@ void Orienter::findContradictions() {
   std::stable_sort(
       out_.contradictions.begin(), out_.contradictions.end(),
       [](const Contradiction& x, const Contradiction& y) { return x.weight > y.weight; });
+}
+
+void Orienter::listClusters() {
+  std::vector<ClusterOrientationResult> all(clusters_.size());
+  const std::vector<float> agreement = clusters_.agreement(1.F);
+  for (std::size_t s = 0; s < clusters_.size(); ++s) {
+    ClusterOrientationResult& cluster = all[at(clusters_.of(s))];
+    cluster.points += segmentation_.segments[s].size;
+    cluster.component = component_[s];
+    cluster.confidence = std::clamp(agreement[at(clusters_.of(s))], 0.F, 1.F);
+  }
+  std::vector<std::int32_t> order;
+  for (std::size_t c = 0; c < all.size(); ++c) {
+    if (all[c].points > 0) order.push_back(static_cast<std::int32_t>(c));
+  }
+  std::stable_sort(order.begin(), order.end(), [&](std::int32_t a, std::int32_t b) {
+    return all[at(a)].points > all[at(b)].points;
+  });
+  std::vector<std::int32_t> rank(all.size(), -1);
+  for (std::size_t k = 0; k < order.size(); ++k) {
+    rank[at(order[k])] = static_cast<std::int32_t>(k);
+    out_.clusters.push_back(all[at(order[k])]);
+  }
+  out_.cluster_of.resize(clusters_.size());
+  for (std::size_t s = 0; s < clusters_.size(); ++s) out_.cluster_of[s] = rank[at(clusters_.of(s))];
 }
 
 // A segment's confidence: how far its borders agree with the signs that were found.
@@ -413,7 +371,7 @@ void Orienter::judge() {
     r.hard = absolute[s] > 0.F ? agreed[s] <= 0.F : component_confidence <= 0.F;
   }
   findContradictions();
-  out_.clusters = cluster_;
+  listClusters();
   out_.result.point_signs.assign(points_.size, 0);
   out_.result.point_confidences.assign(points_.size, 0.F);
   out_.result.point_components.assign(points_.size, -1);

@@ -158,4 +158,50 @@ ViewpointFit fitViewpoint(const PointView& points, const std::vector<float>& nor
   return fit;
 }
 
+namespace {
+
+// Cell of a cube's surface, `side` cells along each of its edges, that a direction meets.
+std::size_t cubeCell(const std::array<float, 3>& d, std::size_t side) {
+  std::size_t axis = 0;
+  for (std::size_t a = 1; a < 3; ++a) {
+    if (std::fabs(d[a]) > std::fabs(d[axis])) axis = a;
+  }
+  const auto place = [&](float v) {
+    const float u = 0.5F + 0.5F * v / std::fabs(d[axis]);
+    return std::min(side - 1, static_cast<std::size_t>(u * static_cast<float>(side)));
+  };
+  const std::size_t face = 2 * axis + (d[axis] < 0.F ? 1U : 0U);
+  return (face * side + place(d[(axis + 1) % 3])) * side + place(d[(axis + 2) % 3]);
+}
+
+}  // namespace
+
+std::vector<std::uint8_t> visibleFrom(const PointView& points, const float* spacing,
+                                      const std::array<float, 3>& position) {
+  constexpr float kPerCell = 4.F;
+  const float cells = static_cast<float>(points.size) / (6.F * kPerCell);
+  const std::size_t side = std::max<std::size_t>(1, static_cast<std::size_t>(std::sqrt(cells)));
+  std::vector<std::uint32_t> cell(points.size);
+  std::vector<float> distance(points.size);
+  std::vector<float> nearest(6 * side * side, std::numeric_limits<float>::max());
+  for (std::size_t i = 0; i < points.size; ++i) {
+    std::array<float, 3> d{};
+    float square = 0.F;
+    for (std::size_t a = 0; a < 3; ++a) {
+      d[a] = points[i][a] - position[a];
+      square += d[a] * d[a];
+    }
+    distance[i] = std::sqrt(square);
+    cell[i] = square > 0.F ? static_cast<std::uint32_t>(cubeCell(d, side)) : 0;
+    nearest[cell[i]] = std::min(nearest[cell[i]], distance[i]);
+  }
+  // Two widths of a cell: a surface seen at 60 degrees.
+  const float slope = 1.F + 4.F / static_cast<float>(side);
+  std::vector<std::uint8_t> visible(points.size);
+  for (std::size_t i = 0; i < points.size; ++i) {
+    visible[i] = distance[i] <= slope * nearest[cell[i]] + 2.F * spacing[i] ? 1 : 0;
+  }
+  return visible;
+}
+
 }  // namespace segorient

@@ -156,6 +156,7 @@ void runAutomatic(const PipelineOptions& options, const PointHints& hints, Stage
   report.noise = result.noise;
   report.denoised = result.denoised;
   report.contradictions = std::move(result.orientation.contradictions);
+  report.clusters = std::move(result.orientation.clusters);
   work.normals = std::move(result.normals);
   work.segmentation = std::move(result.segmentation);
   work.orientation.segments = std::move(result.segments);

@@ -10,6 +10,7 @@
 #include <segorient/segmentation/sheet_segmentation.h>
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
@@ -32,10 +33,18 @@ struct Contradiction {
   std::array<float, 3> where{0.F, 0.F, 0.F};  ///< a point of the border
 };
 
+/// Segments that certain borders hold together: their relative orientation was never in doubt.
+struct ClusterOrientationResult {
+  std::size_t points = 0;
+  std::int32_t component = -1;  ///< into OrientationResult::components
+  float confidence = 0.F;       ///< how far its borders to other clusters agree; 1 without any
+};
+
 /// What orientSheets() found beside the result itself.
 struct AutoOrientation {
   OrientationResult result;
-  std::vector<std::int32_t> clusters;         ///< per segment
+  std::vector<std::int32_t> cluster_of;            ///< per segment, into `clusters`
+  std::vector<ClusterOrientationResult> clusters;  ///< by descending number of points
   std::vector<Contradiction> contradictions;  ///< by descending weight
   float viewpoint_agreement = 0.F;            ///< see ViewpointFit
 };

@@ -71,6 +71,7 @@ struct PipelineReport {
   /// Borders where sure evidence had to be overruled, in input coordinates; a surface without two
   /// sides has some.
   std::vector<Contradiction> contradictions;
+  std::vector<ClusterOrientationResult> clusters;  ///< of AUTO
   std::vector<StageTime> stages;
   double seconds = 0.0;                                ///< all stages
   std::size_t peak_memory = 0;                         ///< of the process so far, bytes
