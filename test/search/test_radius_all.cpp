@@ -94,8 +94,8 @@ TEST_P(RadiusAll, SubsetOfIndices) {
   for (std::size_t i = 0; i < indices.size(); i += i < 10 ? 1 : 13) {
     const bool valid = indices[i] >= 0 && static_cast<std::size_t>(indices[i]) < cloud.size() &&
                        isFinite(cloud.view()[static_cast<std::size_t>(indices[i])]);
-    const auto expected =
-        valid ? expectedRow(cloud.view(), indices[i], radius, 0, &indices) : std::vector<Neighbor>{};
+    const auto expected = valid ? expectedRow(cloud.view(), indices[i], radius, 0, &indices)
+                                : std::vector<Neighbor>{};
     ASSERT_EQ(row(table, i), expected) << "row " << i;
   }
 }
@@ -157,8 +157,8 @@ TEST(RadiusAllOfMedianHash, EqualsQueriesByIndex) {
     for (std::size_t i = 0; i < table.size(); ++i) {
       tree.radiusSearch(static_cast<pcl::index_t>(i), 0.06, found, distances, 30);
       ASSERT_EQ(found, pcl::Indices(table.indices(i), table.indices(i) + table.count(i)));
-      ASSERT_EQ(distances, std::vector<float>(table.sqrDistances(i),
-                                              table.sqrDistances(i) + table.count(i)));
+      ASSERT_EQ(distances,
+                std::vector<float>(table.sqrDistances(i), table.sqrDistances(i) + table.count(i)));
     }
   }
 }

@@ -12,7 +12,6 @@
 #include <cstdlib>
 #include <cstring>
 #include <limits>
-#include <utility>
 #include <vector>
 
 #if defined(__x86_64__) && (defined(__GNUC__) || defined(__clang__))
@@ -116,15 +115,42 @@ const Kernels& chooseKernels() {
 #endif
 }
 
-void sortPairs(const float* distance, const std::uint32_t* id, std::size_t count,
-               float* out_distance, std::uint32_t* out_id) {
-  std::vector<std::pair<float, std::uint32_t>> pairs(count);
-  for (std::size_t i = 0; i < count; ++i) pairs[i] = {distance[i], id[i]};
-  std::sort(pairs.begin(), pairs.end());
+namespace {
+
+// Distances are not negative, so that their bits are in their order.
+std::vector<std::uint64_t> keysOf(const float* distance, const std::uint32_t* id,
+                                  std::size_t count) {
+  std::vector<std::uint64_t> keys(count);
   for (std::size_t i = 0; i < count; ++i) {
-    out_distance[i] = pairs[i].first;
-    out_id[i] = pairs[i].second;
+    std::uint32_t bits = 0;
+    std::memcpy(&bits, distance + i, sizeof(bits));
+    keys[i] = std::uint64_t{bits} << 32U | id[i];
   }
+  return keys;
+}
+
+void fromKeys(const std::vector<std::uint64_t>& keys, std::size_t count, float* distance,
+              std::uint32_t* id) {
+  for (std::size_t i = 0; i < count; ++i) {
+    const auto bits = static_cast<std::uint32_t>(keys[i] >> 32U);
+    std::memcpy(distance + i, &bits, sizeof(bits));
+    id[i] = static_cast<std::uint32_t>(keys[i]);
+  }
+}
+
+}  // namespace
+
+void sortMany(const float* distance, const std::uint32_t* id, std::size_t count,
+              float* out_distance, std::uint32_t* out_id) {
+  std::vector<std::uint64_t> keys = keysOf(distance, id, count);
+  std::sort(keys.begin(), keys.end());
+  fromKeys(keys, count, out_distance, out_id);
+}
+
+void keepNearest(float* distance, std::uint32_t* id, std::size_t count, std::size_t k) {
+  std::vector<std::uint64_t> keys = keysOf(distance, id, count);
+  std::nth_element(keys.begin(), keys.begin() + static_cast<std::ptrdiff_t>(k), keys.end());
+  fromKeys(keys, k, distance, id);
 }
 
 }  // namespace segorient::search

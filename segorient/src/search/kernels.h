@@ -174,7 +174,10 @@ inline void padCandidates(float* distance, std::uint32_t* id, std::size_t count)
 }
 
 /// Sorts candidates by distance, ties by id; in place, too.
-void sortPairs(const float* distance, const std::uint32_t* id, std::size_t count,
-               float* out_distance, std::uint32_t* out_id);
+void sortMany(const float* distance, const std::uint32_t* id, std::size_t count,
+              float* out_distance, std::uint32_t* out_id);
+
+/// Moves the k nearest of more candidates, ties by id, to the front, in any order.
+void keepNearest(float* distance, std::uint32_t* id, std::size_t count, std::size_t k);
 
 }  // namespace segorient::search

@@ -92,18 +92,16 @@ struct Group {
 
 inline void startGroup(const LayoutView& view, std::uint32_t begin, std::uint32_t end,
                        Group& group) {
-  const float* coordinates[3] = {view.x, view.y, view.z};
-  for (int a = 0; a < 3; ++a) {
-    const float* c = coordinates[a];
-    float lo = c[begin];
-    float hi = lo;
-    for (std::uint32_t i = begin + 1; i < end; ++i) {
-      lo = smallest(lo, c[i]);
-      hi = largest(hi, c[i]);
+  Box box{{view.x[begin], view.y[begin], view.z[begin]},
+          {view.x[begin], view.y[begin], view.z[begin]}};
+  for (std::uint32_t i = begin + 1; i < end; ++i) {
+    const float p[3] = {view.x[i], view.y[i], view.z[i]};
+    for (int a = 0; a < 3; ++a) {
+      box.lo[a] = smallest(box.lo[a], p[a]);
+      box.hi[a] = largest(box.hi[a], p[a]);
     }
-    group.box.lo[a] = lo;
-    group.box.hi[a] = hi;
   }
+  group.box = box;
   group.waiting_count = end - begin;
   for (std::uint32_t i = begin; i < end; ++i) group.waiting[i - begin] = i;
 }
@@ -223,10 +221,9 @@ inline void sortMembers(Group& group, std::size_t k, GroupTask& task) {
 // Candidates of one point from a block that holds everything nearer than the square root of
 // `reach`. Starting from a guess, looks for a limit that lets through k candidates and not many
 // more.
-enum class Found { kEnough, kTooFew, kTooMany };
-
-inline Found takeNearest(const float* q, float reach, std::size_t first, RegionState& state,
-                         GroupTask& task, Group::Member& member) {
+// \return false if there are fewer in reach
+inline bool takeNearest(const float* q, float reach, std::size_t first, RegionState& state,
+                        GroupTask& task, Group::Member& member) {
   const std::size_t k = task.k;
   const std::size_t enough = k + k / 2 + 8;
   float* const distance = task.candidate_distance + first;
@@ -237,7 +234,7 @@ inline Found takeNearest(const float* q, float reach, std::size_t first, RegionS
   for (int attempt = 0; count < k || (count > enough && attempt < 3); ++attempt) {
     const float factor = 1.25F * static_cast<float>(k) / static_cast<float>(count + 1);
     if (count < k) {
-      if (limit == reach) return Found::kTooFew;
+      if (limit == reach) return false;
       too_low = limit;
       limit = attempt > 4 ? reach : smallest(largest(factor, 1.2F) * limit, reach);
     } else {
@@ -245,13 +242,16 @@ inline Found takeNearest(const float* q, float reach, std::size_t first, RegionS
     }
     count = takeNear(task, q, limit, distance, id);
   }
-  if (count > 2 * enough + 64) return Found::kTooMany;
+  if (count > 2 * enough + 64) {  // many are equally far
+    keepNearest(distance, id, count, k);
+    count = k;
+  }
   padCandidates(distance, id, count);
   member.first = first;
   member.count = static_cast<std::uint32_t>(count);
   member.limit = limit;
   state.typical = largest(limit * static_cast<float>(k) / static_cast<float>(count), 1e-44F);
-  return Found::kEnough;
+  return true;
 }
 
 inline void writeNearest(const LayoutView& view, Group& group, RegionState& state,
@@ -279,18 +279,12 @@ inline bool nearestWithin(const LayoutView& view, float reach, Group& group, Reg
     const std::uint32_t point = group.waiting[i];
     const float q[3] = {view.x[point], view.y[point], view.z[point]};
     Group::Member& member = group.found[group.found_count];
-    switch (takeNearest(q, reach, used, state, task, member)) {
-      case Found::kEnough:
-        member.point = point;
-        ++group.found_count;
-        used += member.count + kSortRoom;
-        break;
-      case Found::kTooFew:
-        group.waiting[left++] = point;
-        break;
-      case Found::kTooMany:
-        task.failed[task.failed_count++] = point;
-        break;
+    if (takeNearest(q, reach, used, state, task, member)) {
+      member.point = point;
+      ++group.found_count;
+      used += member.count + kSortRoom;
+    } else {
+      group.waiting[left++] = point;
     }
   }
   group.waiting_count = left;

@@ -218,7 +218,7 @@ void sortNearest(const float* distance, const std::uint32_t* id, std::size_t cou
       padCandidates(scratch.part_distance, scratch.part_id, selected);
       sortAtOnce(scratch.part_distance, scratch.part_id, selected, out_distance, out_id);
     } else {
-      sortPairs(scratch.part_distance, scratch.part_id, selected, out_distance, out_id);
+      sortMany(scratch.part_distance, scratch.part_id, selected, out_distance, out_id);
     }
     done += selected;
     from = to;

@@ -42,6 +42,7 @@ class Workspace {
 namespace {
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
+constexpr float kLeast = std::numeric_limits<float>::denorm_min();
 constexpr std::uint32_t kAll = std::numeric_limits<std::uint32_t>::max();
 
 float squaredGap(const Box& box, const float* q) {
@@ -90,7 +91,7 @@ float pruneFactor(float epsilon) {
 
 // Leaves the k nearest of what was found. \return what a point must be nearer than to be one of
 // them
-float keepNearest(std::vector<std::pair<float, std::uint32_t>>& best, std::size_t k) {
+float keepBest(std::vector<std::pair<float, std::uint32_t>>& best, std::size_t k) {
   if (best.size() < k) return kInfinity;
   const auto last = best.begin() + static_cast<std::ptrdiff_t>(k - 1);
   std::nth_element(best.begin(), last, best.end());
@@ -110,7 +111,8 @@ Candidates* MedianHashIndex::Impl::guess(const LayoutView& view, const float* q,
   const float outside = squaredGap(view.boxes[view.region_count + path.region], q);
   const LastQuery& last = lastQuery();
   const float prune = pruneFactor(epsilon);
-  float step = 1.3F * region.spacing16 * static_cast<float>(k) / 16.0F;
+  // Not 0, where many points are in one place.
+  float step = std::max(1.3F * region.spacing16 * static_cast<float>(k) / 16.0F, kLeast);
   limit = outside + step;
   // Not where results are approximate: they must not depend on what was asked before.
   if (last.index == number && last.k == static_cast<int>(k) && prune == 1.0F) {
@@ -120,19 +122,24 @@ Candidates* MedianHashIndex::Impl::guess(const LayoutView& view, const float* q,
     if (dx * dx + dy * dy + dz * dz < last.limit) limit = 1.3F * last.limit;
   }
   const std::size_t capacity = 4 * k + 4096;
-  for (int attempt = 0; attempt < 4; ++attempt) {
+  for (int attempt = 0; attempt < 8; ++attempt) {
     if (!(limit > 0.0F && limit < kInfinity)) return nullptr;
     Candidates& found = work.candidates(capacity);
     const Sphere sphere{{q[0], q[1], q[2]}, limit, limit * prune, static_cast<std::uint32_t>(k)};
     if (!kernels->collect(view, path, sphere, found)) return nullptr;
     if (found.count >= k) {
+      if (found.count > 4 * k + 64) {  // many are equally far, or the place is much denser
+        keepNearest(found.distance, found.id, found.count, k);
+        found.count = k;
+      }
       if (found.count > kMostToSort) return nullptr;
       padCandidates(found.distance, found.id, found.count);
       return &found;
     }
     // Added, not multiplied: the part that leads to the surface does not grow.
     const float missing = 1.4F * static_cast<float>(k) / static_cast<float>(found.count + 1);
-    step = std::max(step, 1e-3F * limit) * std::min(std::max(missing, 1.3F), 4.0F);
+    const float most = attempt < 2 ? 4.0F : 64.0F;  // the spacing may be that of a denser place
+    step = std::max(step, 1e-3F * limit) * std::min(std::max(missing, 1.3F), most);
     limit += step;
   }
   return nullptr;
@@ -155,7 +162,7 @@ void MedianHashIndex::Impl::nearestFirst(const LayoutView& view, const float* q,
         distance == squaredSpan(view.boxes[node], q) && nodeSize(view, node) > k) {
       const std::uint32_t* const id = view.flat_id + firstPoint(view, node);
       for (std::size_t i = 0; i < k; ++i) best.emplace_back(distance, id[i]);
-      limit = keepNearest(best, k);
+      limit = keepBest(best, k);
       continue;
     }
     if (node < view.region_count) {
@@ -175,7 +182,7 @@ void MedianHashIndex::Impl::nearestFirst(const LayoutView& view, const float* q,
     for (std::size_t i = 0; i < found.count; ++i) {
       best.emplace_back(found.distance[i], found.id[i]);
     }
-    limit = keepNearest(best, k);
+    limit = keepBest(best, k);
   }
   if (best.size() < k) addUnreachable(k, work);
   std::sort(best.begin(), best.end());
@@ -268,7 +275,7 @@ int MedianHashIndex::Impl::searchRadius(const float* query, double radius,
       distances = sort.distance;
       found_ids = sort.id;
     } else {
-      sortPairs(found->distance, found->id, found->count, found->distance, found->id);
+      sortMany(found->distance, found->id, found->count, found->distance, found->id);
     }
   }
   std::copy(distances, distances + count, sqr_distances.begin());
