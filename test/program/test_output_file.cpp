@@ -53,7 +53,9 @@ TEST(OutputFile, SaysAtOnceWhatCannotBeWritten) {
   const ScratchDirectory directory;
   EXPECT_THROW(OutputFile(directory.file("no/such/out.pcd")), FileError);
   EXPECT_THROW(OutputFile(directory.file("")), FileError);
-  EXPECT_THROW(OutputFile("/dev/null"), FileError);
+  for (const char* device : {"/dev/null", "/dev/full"}) {
+    EXPECT_THROW(OutputFile{device}, FileError) << device;
+  }
   EXPECT_THROW(OutputFile(""), FileError);
 }
 
