@@ -1,0 +1,26 @@
+#!/bin/bash
+# SPDX-License-Identifier: BSD-3-Clause
+# Copyright (c) 2026, the segorient authors
+#
+# Line coverage of the library by the tests: builds with gcov's counters into build/coverage, runs all
+# tests, and reports. Fails below the share that is asked for.
+#
+#   ./test/coverage.sh [PERCENT]
+set -euo pipefail
+cd "$(dirname "$(realpath "$0")")/.."
+. segorient_ros_free_demo/setup.sh
+
+install_packages "${BUILD_PACKAGES[@]}" "${TEST_PACKAGES[@]}" gcovr
+if command -v ninja >/dev/null; then export CMAKE_GENERATOR=Ninja; fi
+(
+  cd test/sanitizers
+  cmake --preset coverage
+  cmake --build --preset coverage -j "$(build_jobs)"
+  find ../../build/coverage -name '*.gcda' -delete
+  ctest --preset coverage -j "$(build_jobs)"
+)
+# Exception paths that the compiler adds are no lines of ours.
+gcovr --root . --filter 'segorient/' --exclude-throw-branches --exclude-unreachable-branches \
+  --object-directory build/coverage --html-details build/coverage/report.html \
+  --print-summary --fail-under-line "${1:-95}" build/coverage
+say "details: build/coverage/report.html"
