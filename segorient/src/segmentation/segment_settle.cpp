@@ -67,12 +67,13 @@ class Settler {
 
   /// Label that a point should have.
   std::int32_t settle(std::size_t p) const {
-    std::array<Candidate, kCandidates> candidates;
-    const std::size_t count = listCandidates(p, candidates);
     const std::int32_t own = state_.labels[p];
     const bool own_regular = isRegular(own);
-    if (count == 0 || (own_regular && (count == 1 || !meetsOther(p)))) return own;
-    gatherWitnesses(p, candidates, count);
+    if (own_regular && !meetsOther(p)) return own;
+    std::array<Candidate, kCandidates> candidates;
+    const std::size_t count = listCandidates(p, candidates);
+    if (count == 0 || (own_regular && count == 1)) return own;
+    gatherWitnesses(p, candidates, count, own_regular);
     const Candidate* best = nullptr;
     const Candidate* found = nullptr;
     for (std::size_t i = 0; i < count; ++i) {
@@ -126,27 +127,36 @@ class Settler {
   }
 
   // From the neighbours and their neighbours: those nearest to an edge have its bad normals
-  // themselves.
+  // themselves. For most points the far half of the neighbours will do, whose own ones reach
+  // farthest; the few that are in no face yet, at corners first of all, take what they can get.
   void gatherWitnesses(std::size_t p, std::array<Candidate, kCandidates>& candidates,
-                       std::size_t count) const {
+                       std::size_t count, bool far_half) const {
     const pcl::index_t* row = state_.neighborhoods->indices(p);
     const int size = reach(p);
-    for (int j = 1; j < size; ++j) {
+    offerRow(p, p, candidates, count);
+    for (int j = far_half ? std::max(1, size / 2) : 1; j < size; ++j) {
       const auto middle = static_cast<std::size_t>(row[j]);
-      if (!state_.limits.near(state_.nodes[p], state_.nodes[middle])) continue;
-      const pcl::index_t* next = state_.neighborhoods->indices(middle);
-      const int next_size = reach(middle);
-      for (int i = 0; i < next_size; ++i) {
-        const auto q = static_cast<std::size_t>(next[i]);
-        if (q == p) continue;
-        for (std::size_t c = 0; c < count; ++c) {
-          if (candidates[c].label != state_.labels[q]) continue;
-          candidates[c].offer(static_cast<std::int32_t>(q), state_.nodes[q].curvature);
-          break;
-        }
+      if (state_.limits.near(state_.nodes[p], state_.nodes[middle])) {
+        offerRow(p, middle, candidates, count);
       }
     }
     for (std::size_t c = 0; c < count; ++c) setPlane(candidates[c]);
+  }
+
+  // The neighbours of `middle` as witnesses.
+  void offerRow(std::size_t p, std::size_t middle, std::array<Candidate, kCandidates>& candidates,
+                std::size_t count) const {
+    const pcl::index_t* row = state_.neighborhoods->indices(middle);
+    const int size = reach(middle);
+    for (int i = 0; i < size; ++i) {
+      const auto q = static_cast<std::size_t>(row[i]);
+      if (q == p) continue;
+      for (std::size_t c = 0; c < count; ++c) {
+        if (candidates[c].label != state_.labels[q]) continue;
+        candidates[c].offer(static_cast<std::int32_t>(q), state_.nodes[q].curvature);
+        break;
+      }
+    }
   }
 
   // Flat points count more: on exact planes those that an edge has no part in decide alone, under

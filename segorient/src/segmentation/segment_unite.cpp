@@ -200,7 +200,7 @@ std::vector<Pair> collectPairs(const SegmentationOptions& options, const GrowthS
   std::vector<Pair> pairs;
   for (std::size_t p = 0; p < state.nodes.size(); ++p) {
     const std::int32_t own = state.labels[p];
-    if (own < 0 || !state.isFace(own, options.small_size)) continue;
+    if (state.on_border[p] == 0 || own < 0 || !state.isFace(own, options.small_size)) continue;
     const pcl::index_t* row = state.neighborhoods->indices(p);
     const int count = std::min(state.rowSize(p), kRing + 1);
     for (int j = 1; j < count; ++j) {
