@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026, the segorient authors
 #include <segorient/orientation/component_sign.h>
-#include <segorient/orientation/extremal.h>
 
 #include <algorithm>
 #include <array>
@@ -62,15 +61,13 @@ Rows sample(const Rows& rows, std::size_t count) {
   return out;
 }
 
-// Turns a component by the votes of its own extremal points.
-void turnOutward(const PointView& points, const PointView& normals,
-                 const ComponentSignOptions& options, const Rows& rows,
+// Turns a component by the votes of its extremal points.
+void turnOutward(const std::vector<ExtremalPoint>& extremal, float gamma,
                  const std::vector<std::int8_t>& signs, ComponentOrientationResult& component) {
   float balance = 0.F;
   float total = 0.F;
-  for (const ExtremalPoint& found :
-       findExtremalPoints(points, normals, rows, options.max_box_points, options.threads)) {
-    if (!(found.angle < options.gamma)) continue;
+  for (const ExtremalPoint& found : extremal) {
+    if (!(found.angle < gamma)) continue;
     const int sign = found.sign * signs[static_cast<std::size_t>(found.point)];
     balance += static_cast<float>(sign) * std::cos(found.angle);
     total += std::cos(found.angle);
@@ -210,11 +207,15 @@ void sortComponents(OrientationResult& result) {
 
 void orientComponents(const PointView& points, const PointView& normals,
                       const Neighborhoods& neighborhoods, const ComponentSignOptions& options,
-                      OrientationResult& result) {
+                      OrientationResult& result, const std::vector<ExtremalPoint>& of_all) {
   sortComponents(result);
   const std::vector<Rows> rows = rowsByComponent(result);
+  const bool known = rows.size() == 1 && !of_all.empty();
   for (std::size_t c = 0; c < rows.size(); ++c) {
-    turnOutward(points, normals, options, rows[c], result.point_signs, result.components[c]);
+    turnOutward(known ? of_all
+                      : findExtremalPoints(points, normals, rows[c], options.max_box_points,
+                                           options.threads),
+                options.gamma, result.point_signs, result.components[c]);
   }
   turnCavities(points, SolidAngle(points, normals, neighborhoods, result), rows, result.components);
 

@@ -134,9 +134,9 @@ OrientationResult orientSegments(const PointView& points, const PointView& norma
     return result;
   }
 
-  const OrientedRegularSegments oriented =
+  OrientedRegularSegments oriented =
       orientRegularSegments(points, normals, neighborhoods, segmentation, graph, options);
-  result.segments = oriented.results;
+  result.segments = std::move(oriented.results);
 
   spreadToPoints(segmentation, result);
   completeOrientation(points, normals, neighborhoods, result);
@@ -148,7 +148,8 @@ OrientationResult orientSegments(const PointView& points, const PointView& norma
   }
   if (options.turn_outward) {
     orientComponents(points, normals, neighborhoods,
-                     {options.gamma, options.max_box_points, options.threads}, result);
+                     {options.gamma, options.max_box_points, options.threads}, result,
+                     oriented.extremal);
   } else {
     sortComponents(result);
   }

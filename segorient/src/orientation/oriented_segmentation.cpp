@@ -119,6 +119,21 @@ Segmentation scatter(const CompactCloud& cloud, const PointView& normals,
   return out;
 }
 
+// Inverts everything in segments that were turned over: their reference normals and, with these,
+// what their points' signs refer to. Triangulations made from them then have their fronts outward.
+void invertTurned(const std::vector<SegmentOrientationResult>& results,
+                  Segmentation& segmentation) {
+  for (std::size_t s = 0; s < results.size(); ++s) {
+    if (results[s].sign >= 0) continue;
+    for (float& c : segmentation.segments[s].reference_normal) c = -c;
+  }
+  for (std::size_t i = 0; i < segmentation.labels.size(); ++i) {
+    const std::int32_t label = segmentation.labels[i];
+    if (label < 0 || results[static_cast<std::size_t>(label)].sign >= 0) continue;
+    segmentation.signs[i] = static_cast<std::int8_t>(-segmentation.signs[i]);
+  }
+}
+
 }  // namespace
 
 OrientedSegmentation orientSegmentation(const PointView& points, const PointView& normals,
@@ -148,6 +163,7 @@ OrientedSegmentation orientSegmentation(const PointView& points, const PointView
       cloud, normals,
       orientSegments(cloud.view(), normal_view, neighborhoods, distinct, graph, options, hints));
   out.segmentation = segmentation != nullptr ? *segmentation : scatter(cloud, normals, distinct);
+  invertTurned(out.orientation.segments, out.segmentation);
   return out;
 }
 

@@ -2,7 +2,6 @@
 // Copyright (c) 2026, the segorient authors
 #include "regular_segments.h"
 
-#include <segorient/orientation/extremal.h>
 #include <segorient/orientation/folded_segments.h>
 #include <segorient/orientation/segment_links.h>
 #include <segorient/orientation/segment_methods.h>
@@ -155,14 +154,13 @@ OrientedRegularSegments orientRegularSegments(const PointView& points, const Poi
                                               const OrientationOptions& options) {
   const bool asks_extremal = options.method == OrientationMethod::COMBINED ||
                              options.method == OrientationMethod::EXTREMAL;
-  std::vector<ExtremalPoint> extremal_points;
+  OrientedRegularSegments out;
   if (asks_extremal) {
-    extremal_points = findExtremalPoints(points, normals, usableRows(points, normals),
-                                         options.max_box_points, options.threads);
+    out.extremal = findExtremalPoints(points, normals, usableRows(points, normals),
+                                      options.max_box_points, options.threads);
   }
   // Propagation knows no borders to check by.
   const bool check = options.check_borders && options.method != OrientationMethod::PROPAGATION;
-  OrientedRegularSegments out;
   Segmentation current = segmentation;  // mixed segments become connected ones here
   std::vector<std::int32_t> mixed;
   if (check) {
@@ -176,7 +174,7 @@ OrientedRegularSegments orientRegularSegments(const PointView& points, const Poi
     out.mixed.insert(out.mixed.end(), mixed.begin(), mixed.end());
     relations.update(linkRegularSegments(current, graph, neighborhoods));
     const std::vector<ExtremalEvidence> extremal =
-        gatherExtremalEvidence(extremal_points, current, options.gamma);
+        gatherExtremalEvidence(out.extremal, current, options.gamma);
     out.results = runMethod(
         {current, relations.links(), relations.cosines(), relations.boundary(), extremal}, options);
     checkByExtremalPoints(extremal, out.results);

@@ -5,6 +5,7 @@
 #include <segorient/common/neighborhoods.h>
 #include <segorient/common/point_view.h>
 #include <segorient/orientation/consistency.h>
+#include <segorient/orientation/extremal.h>
 #include <segorient/orientation/orient_segments.h>
 #include <segorient/orientation/orientation_result.h>
 #include <segorient/segmentation/segmentation.h>
@@ -20,6 +21,7 @@ struct OrientedRegularSegments {
   /// Labels of those that run over two sides, and so have no sign of their own.
   std::vector<std::int32_t> mixed;
   std::vector<BorderBalance> components;  ///< by component of `results`
+  std::vector<ExtremalPoint> extremal;    ///< of the whole cloud, if the method asks them
 };
 
 /// Runs one of the paper's methods. With options.check_borders, segments that turn out to be mixed

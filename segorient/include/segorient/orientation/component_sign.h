@@ -4,9 +4,11 @@
 
 #include <segorient/common/neighborhoods.h>
 #include <segorient/common/point_view.h>
+#include <segorient/orientation/extremal.h>
 #include <segorient/orientation/orientation_result.h>
 
 #include <cstddef>
+#include <vector>
 
 namespace segorient {
 
@@ -23,9 +25,11 @@ struct ComponentSignOptions {
 /// does is told by the solid angle that the larger ones, already turned, fill around it. Holds for
 /// closed components; the confidences tell how sure that is.
 /// \param result all points oriented relative to each other within their components
+/// \param of_all extremal points of the whole cloud with the same m, where they are known: a cloud
+///        that is one component needs no others
 void orientComponents(const PointView& points, const PointView& normals,
                       const Neighborhoods& neighborhoods, const ComponentSignOptions& options,
-                      OrientationResult& result);
+                      OrientationResult& result, const std::vector<ExtremalPoint>& of_all = {});
 
 /// Numbers the components by descending number of points and counts them.
 void sortComponents(OrientationResult& result);

@@ -13,8 +13,9 @@ namespace segorient {
 
 /// A cloud with normals and segments, whoever made them, and the orientation of both.
 struct OrientedSegmentation {
-  Segmentation segmentation;      ///< the given one, or one of its own
-  OrientationResult orientation;  ///< by row
+  /// The given one, or one of its own, with reference normals and signs as they were oriented.
+  Segmentation segmentation;
+  OrientationResult orientation;  ///< by row; signs relative to what was given
 };
 
 /// Orients a cloud that has normals: the stage after segmentation, on any rows (NaN and repeated

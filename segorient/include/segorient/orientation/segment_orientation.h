@@ -152,7 +152,8 @@ class SegmentOrientation : public pcl::PCLBase<PointT> {
 
   /// Signs, deciding methods and confidences of segments, components and points.
   const OrientationResult& getResult() const { return result_.orientation; }
-  /// The segments in use: labels, members.
+  /// The segments in use: labels, members, reference normals and signs as they were oriented, so
+  /// that triangulations made from them have their fronts outward.
   const Segmentation& getUsedSegmentation() const { return result_.segmentation; }
   /// Segment of each point, -1 = none.
   const std::vector<std::int32_t>& getLabels() const { return result_.segmentation.labels; }
