@@ -49,7 +49,10 @@ build_jobs() {
 configure() {
   local generator=()
   if [ ! -f build/CMakeCache.txt ] && command -v ninja >/dev/null; then generator=(-G Ninja); fi
-  cmake -S . -B build "${generator[@]}" -DCMAKE_BUILD_TYPE=Release "$@" >build.log 2>&1 ||
+  # The system's Python, which the packages are for; another one may come first in PATH.
+  local python=()
+  if [ -x /usr/bin/python3 ]; then python=(-DPython_EXECUTABLE=/usr/bin/python3); fi
+  cmake -S . -B build "${generator[@]}" "${python[@]}" -DCMAKE_BUILD_TYPE=Release "$@" >build.log 2>&1 ||
     { cat build.log; rm -f build.log; return 1; }
   rm -f build.log
 }
@@ -61,5 +64,7 @@ build() {
   cmake --build build -j "$(build_jobs)" "${targets[@]}"
 }
 
+# python3-dev and pybind11-dev are for the Python package, which is left out without them.
 BUILD_PACKAGES=(g++ cmake ninja-build libpcl-dev libeigen3-dev libflann-dev libboost-dev
-  libboost-program-options-dev)
+  libboost-program-options-dev python3-dev pybind11-dev)
+TEST_PACKAGES=(libgtest-dev python3-numpy doxygen dpkg-dev pkg-config)

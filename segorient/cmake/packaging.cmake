@@ -40,4 +40,11 @@ set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
 # Our own libraries are where the build put them.
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS_PRIVATE_DIRS ${CMAKE_LIBRARY_OUTPUT_DIRECTORY})
 set(CPACK_DEBIAN_PACKAGE_RECOMMENDS libpcl-dev)
+if(TARGET segorient_python)
+  # Extensions are for one version of Python.
+  string(REGEX MATCH "^([0-9]+)\\.([0-9]+)" version "${SEGORIENT_PYTHON_VERSION}")
+  math(EXPR next "${CMAKE_MATCH_2} + 1")
+  set(CPACK_DEBIAN_PACKAGE_DEPENDS
+    "python3 (>= ${version}), python3 (<< ${CMAKE_MATCH_1}.${next}), python3-numpy")
+endif()
 include(CPack)

@@ -1,0 +1,315 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the segorient authors
+// The part of the Python package that is compiled: takes float arrays that segorient/__init__.py
+// has checked, runs the library without the interpreter's lock, and hands its results over without
+// copies.
+#include <pybind11/functional.h>
+#include <pybind11/numpy.h>
+#include <pybind11/pybind11.h>
+#include <pybind11/stl.h>
+#include <segorient/orientation/first_stages.h>
+#include <segorient/orientation/pipeline.h>
+#include <segorient/search/median_hash_index.h>
+
+#include <cmath>
+#include <memory>
+#include <stdexcept>
+#include <utility>
+
+namespace py = pybind11;
+
+namespace segorient {
+namespace {
+
+using FloatArray = py::array_t<float>;
+
+constexpr float kDegree = 0.017453292519943295F;
+
+// Rows of three floats where they are; __init__.py has seen to it that they can be viewed.
+PointView viewOf(const FloatArray& array) {
+  PointView view;
+  if (array.ndim() == 2 && array.shape(0) == 0) return view;  // strides then mean nothing
+  constexpr py::ssize_t kFloat = sizeof(float);
+  if (array.ndim() != 2 || array.shape(1) != 3 || array.strides(1) != kFloat ||
+      array.strides(0) < 0 || array.strides(0) % kFloat != 0) {
+    throw std::invalid_argument("points must be rows of three consecutive floats");
+  }
+  view.data = array.data();
+  view.stride = static_cast<std::size_t>(array.strides(0) / kFloat);
+  view.size = static_cast<std::size_t>(array.shape(0));
+  return view;
+}
+
+// An array that views memory of `owner`, which it keeps alive.
+template <typename T, typename Owner>
+py::array_t<T> view(std::vector<py::ssize_t> shape, std::vector<py::ssize_t> strides, const T* data,
+                    const std::shared_ptr<Owner>& owner) {
+  auto* kept = new std::shared_ptr<Owner>(owner);
+  const py::capsule base(kept, [](void* p) { delete static_cast<std::shared_ptr<Owner>*>(p); });
+  return py::array_t<T>(std::move(shape), std::move(strides), data, base);
+}
+
+template <typename T>
+py::array_t<T> column(std::vector<T> values) {
+  auto owner = std::make_shared<std::vector<T>>(std::move(values));
+  const auto size = static_cast<py::ssize_t>(owner->size());
+  return view({size}, {sizeof(T)}, owner->data(), owner);
+}
+
+// (normals, curvatures) from 4 floats a row.
+py::tuple normalArrays(std::vector<float> normals) {
+  auto owner = std::make_shared<std::vector<float>>(std::move(normals));
+  const auto rows = static_cast<py::ssize_t>(owner->size() / 4);
+  constexpr py::ssize_t kFloat = sizeof(float);
+  return py::make_tuple(view({rows, 3}, {4 * kFloat, kFloat}, owner->data(), owner),
+                        view({rows}, {4 * kFloat}, owner->data() + 3, owner));
+}
+
+NormalEstimator estimatorNamed(const std::string& name) {
+  if (name == "plane") return NormalEstimator::Plane;
+  if (name == "lct") return NormalEstimator::LCT;
+  if (name == "ldt") return NormalEstimator::LDT;
+  if (name == "awas") return NormalEstimator::AwASQuadratic;
+  if (name == "awas3") return NormalEstimator::AwASCubic;
+  throw std::invalid_argument("normals must be 'plane', 'lct', 'ldt', 'awas' or 'awas3', not '" +
+                              name + "'");
+}
+
+void setAngle(const py::dict& given, const char* name, float& out) {
+  if (given.contains(name)) out = kDegree * given[name].cast<float>();
+}
+
+// Settings by their names on the command line, angles in degrees; those not given stay.
+PipelineOptions optionsFrom(const py::dict& given) {
+  PipelineOptions options;
+  if (given.contains("k")) options.k = given["k"].cast<int>();
+  if (given.contains("threads")) options.threads = given["threads"].cast<int>();
+  if (given.contains("recompute")) options.recomputations = given["recompute"].cast<int>();
+  if (given.contains("normals")) {
+    options.normals.estimator = estimatorNamed(given["normals"].cast<std::string>());
+  }
+  if (given.contains("method") &&
+      !fromString(given["method"].cast<std::string>(), options.orientation.method)) {
+    throw std::invalid_argument(
+        "method must be 'auto', 'propagation', 'boundary', 'combined' or 'extremal', not '" +
+        given["method"].cast<std::string>() + "'");
+  }
+  setAngle(given, "alpha", options.segmentation.alpha);
+  setAngle(given, "alpha", options.sheets.alpha);
+  setAngle(given, "beta", options.segmentation.beta);
+  setAngle(given, "beta", options.sheets.beta);
+  setAngle(given, "epsilon", options.segmentation.epsilon);
+  setAngle(given, "epsilon", options.sheets.epsilon);
+  setAngle(given, "gamma", options.orientation.gamma);
+  setAngle(given, "delta", options.recomputation.delta);
+  if (given.contains("delta")) {
+    options.recomputation.rule = RecomputationRule::ModifiedNeighborhoods;
+  }
+  return options;
+}
+
+std::vector<float> rowsOf(const py::handle& array) {
+  const auto rows = array.cast<py::array_t<float, py::array::c_style | py::array::forcecast>>();
+  return {rows.data(), rows.data() + rows.size()};
+}
+
+std::shared_ptr<const OrientationHints> hintsFrom(const py::dict& given) {
+  auto hints = std::make_shared<OrientationHints>();
+  if (given.contains("closed")) {
+    hints->surface = given["closed"].cast<bool>() ? SurfaceKind::CLOSED : SurfaceKind::OPEN;
+  }
+  if (given.contains("viewpoint")) {
+    hints->has_viewpoint = true;
+    const std::vector<float> v = rowsOf(given["viewpoint"]);
+    std::copy_n(v.begin(), 3, hints->viewpoint.begin());
+  }
+  if (given.contains("viewpoints")) hints->viewpoints = rowsOf(given["viewpoints"]);
+  if (given.contains("keep")) hints->normals = rowsOf(given["keep"]);
+  if (given.contains("seeds")) {
+    const std::vector<float> v = rowsOf(given["seeds"]);
+    for (std::size_t i = 0; i + 6 <= v.size(); i += 6) {
+      hints->seeds.push_back({{v[i], v[i + 1], v[i + 2]}, {v[i + 3], v[i + 4], v[i + 5]}});
+    }
+  }
+  return hints;
+}
+
+// Between stages the interpreter may end the work (Ctrl-C), and the caller hears how far it is.
+PipelineProgress progressTo(const py::object& callback) {
+  return [callback](const char* stage, double fraction) {
+    const py::gil_scoped_acquire lock;
+    if (PyErr_CheckSignals() != 0) throw py::error_already_set();
+    if (!callback.is_none()) callback(stage, fraction);
+  };
+}
+
+// The same names and values as --report.
+py::dict reportOf(const PipelineReport& report) {
+  py::dict out;
+  out["points"] = report.points;
+  out["non_finite"] = report.non_finite;
+  out["duplicates"] = report.duplicates;
+  out["without_normal"] = report.without_normal;
+  out["k"] = report.k;
+  out["method"] = toString(report.method);
+  out["spacing"] = report.spacing;
+  out["noise_in_spacings"] = report.noise;
+  out["denoised"] = report.denoised;
+  py::dict kinds;
+  kinds["regular"] = report.regular_segments;
+  kinds["connected"] = report.connected_segments;
+  kinds["isolated"] = report.isolated_segments;
+  kinds["hard"] = report.hard_segments;
+  out["segments_by_kind"] = kinds;
+  py::dict seconds;
+  for (const StageTime& s : report.stages) seconds[s.stage.c_str()] = s.seconds;
+  seconds["total"] = report.seconds;
+  out["seconds"] = seconds;
+  out["peak_memory_bytes"] = report.peak_memory;
+  py::list components;
+  for (const ComponentOrientationResult& c : report.components) {
+    py::dict component;
+    component["points"] = c.points;
+    component["oriented_by"] = toString(c.by);
+    component["sign"] = static_cast<int>(c.sign);
+    component["evidence"] = c.evidence;
+    component["confidence"] = c.confidence;
+    component["contradiction"] = c.contradiction;
+    components.append(component);
+  }
+  out["components"] = components;
+  py::list contradictions;
+  for (const Contradiction& c : report.contradictions) {
+    py::dict contradiction;
+    contradiction["x"] = c.where[0];
+    contradiction["y"] = c.where[1];
+    contradiction["z"] = c.where[2];
+    contradiction["weight"] = c.weight;
+    contradictions.append(contradiction);
+  }
+  out["contradictions"] = contradictions;
+  return out;
+}
+
+py::tuple orient(const FloatArray& points, const py::dict& given, const py::object& progress) {
+  const PointView rows = viewOf(points);
+  PipelineOptions options = optionsFrom(given);
+  options.orientation.hints = hintsFrom(given);
+  const PipelineProgress callback = progressTo(progress);
+  OrientedCloud cloud;
+  {
+    const py::gil_scoped_release unlocked;
+    cloud = orientCloud(rows, nullptr, options, callback);
+  }
+  const py::tuple normals = normalArrays(std::move(cloud.normals));
+  return py::make_tuple(normals[0], normals[1], column(std::move(cloud.segmentation.labels)),
+                        column(std::move(cloud.confidences)), column(std::move(cloud.components)),
+                        reportOf(cloud.report));
+}
+
+py::tuple normals(const FloatArray& points, const py::dict& given, const py::object& progress) {
+  const PointView rows = viewOf(points);
+  const PipelineOptions options = optionsFrom(given);
+  const PipelineProgress callback = progressTo(progress);
+  std::vector<float> result;
+  {
+    const py::gil_scoped_release unlocked;
+    FirstStages stages(rows, options, callback);
+    stages.findNormals();
+    if (options.recomputations > 0) {
+      stages.findSegments();
+      stages.recomputeNormals();
+    }
+    result = stages.normals();
+  }
+  return normalArrays(std::move(result));
+}
+
+py::tuple segment(const FloatArray& points, const py::dict& given, const py::object& progress) {
+  const PointView rows = viewOf(points);
+  const PipelineOptions options = optionsFrom(given);
+  const PipelineProgress callback = progressTo(progress);
+  Segmentation segmentation;
+  std::vector<float> normals_by_segment;
+  {
+    const py::gil_scoped_release unlocked;
+    FirstStages stages(rows, options, callback);
+    stages.findNormals();
+    stages.findSegments();
+    if (options.recomputations > 0) {
+      stages.recomputeNormals();
+      stages.findSegments();
+    }
+    segmentation = stages.segmentation();
+    normals_by_segment = stages.normalsBySegment();
+  }
+  std::vector<std::uint8_t> kinds;
+  for (const Segment& s : segmentation.segments) kinds.push_back(static_cast<std::uint8_t>(s.kind));
+  const py::tuple normals = normalArrays(std::move(normals_by_segment));
+  return py::make_tuple(column(std::move(segmentation.labels)), column(std::move(kinds)),
+                        normals[0], normals[1]);
+}
+
+// Distances in place of squared ones; what a row lacks is -1 and infinitely far.
+void finishTable(Neighborhoods& table) {
+  for (std::size_t row = 0; row < table.size(); ++row) {
+    pcl::index_t* indices = table.mutableIndices(row);
+    float* distances = table.mutableSqrDistances(row);
+    for (int j = 0; j < table.k(); ++j) {
+      const bool there = j < table.count(row);
+      if (!there) indices[j] = -1;
+      distances[j] = there ? std::sqrt(distances[j]) : INFINITY;
+    }
+  }
+}
+
+void searchQueries(const search::MedianHashIndex& index, const PointView& queries, int k,
+                   Neighborhoods& table) {
+  std::vector<std::vector<pcl::index_t>> indices;
+  std::vector<std::vector<float>> distances;
+  index.nearestKBatch(queries, k, indices, distances, index.epsilon());
+  table.reset(queries.size, k);
+  for (std::size_t i = 0; i < queries.size; ++i) {
+    std::copy(indices[i].begin(), indices[i].end(), table.mutableIndices(i));
+    std::copy(distances[i].begin(), distances[i].end(), table.mutableSqrDistances(i));
+    table.setCount(i, static_cast<int>(indices[i].size()));
+  }
+}
+
+py::tuple knn(const FloatArray& points, int k, const py::object& queries, int threads) {
+  const PointView rows = viewOf(points);
+  const FloatArray query_array = queries.is_none() ? FloatArray() : queries.cast<FloatArray>();
+  const PointView query_rows = queries.is_none() ? PointView{} : viewOf(query_array);
+  auto table = std::make_shared<Neighborhoods>();
+  {
+    const py::gil_scoped_release unlocked;
+    search::MedianHashIndex index;
+    search::MedianHashIndex::Options options;
+    options.threads = threads;
+    index.build(rows, nullptr, options);
+    if (queries.is_none()) {
+      index.nearestKAll(k, *table);
+    } else {
+      searchQueries(index, query_rows, k, *table);
+    }
+    finishTable(*table);
+  }
+  const auto size = static_cast<py::ssize_t>(table->size());
+  const auto width = static_cast<py::ssize_t>(table->k());
+  constexpr auto kIndex = static_cast<py::ssize_t>(sizeof(pcl::index_t));
+  constexpr auto kFloat = static_cast<py::ssize_t>(sizeof(float));
+  return py::make_tuple(
+      view({size, width}, {width * kIndex, kIndex}, table->indices(0), table),
+      view({size, width}, {width * kFloat, kFloat}, table->sqrDistances(0), table));
+}
+
+}  // namespace
+}  // namespace segorient
+
+PYBIND11_MODULE(_core, module) {
+  module.doc() = "What segorient/__init__.py calls; not meant to be used directly.";
+  module.def("orient", &segorient::orient);
+  module.def("normals", &segorient::normals);
+  module.def("segment", &segorient::segment);
+  module.def("knn", &segorient::knn);
+}

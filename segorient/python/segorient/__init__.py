@@ -1,0 +1,346 @@
+# SPDX-License-Identifier: BSD-3-Clause
+# Copyright (c) 2026, the segorient authors
+"""Segmented, consistently oriented point clouds, on numpy arrays.
+
+    >>> import segorient
+    >>> cloud = segorient.orient(points)      # points: an (n, 3) array
+    >>> cloud.normals                         # (n, 3), outward where there is an outside
+    >>> cloud.labels                          # (n,), the segment of each point
+
+Keywords are named as the options of the program ``segorient``, angles are in degrees, and what is
+left out is chosen from the cloud. Row i of every result belongs to row i of the points. Points with
+NaN or infinite coordinates get NaN normals and label -1.
+
+Arrays of float32 whose rows are consecutive (an (n, 3) array, or the first three columns of a wider
+one) are used where they are. Others are copied; float64 ones that lie far from the origin, such as
+map coordinates, are moved there in double first, so that no precision is lost. Results are arrays
+that own their memory; the interpreter's lock is released while the library works, so other Python
+threads go on. Ctrl-C ends the work at the next stage.
+"""
+
+from typing import Any, Callable, Dict, NamedTuple, Optional, Sequence, Tuple, Union
+
+import numpy as np
+import numpy.typing as npt
+
+from . import _core
+
+__version__ = "1.0.0"
+__all__ = [
+    "Neighbors",
+    "Normals",
+    "Orientation",
+    "Segments",
+    "knn",
+    "normals",
+    "orient",
+    "segment",
+]
+
+Floats = npt.NDArray[np.float32]
+Progress = Callable[[str, float], object]
+_Origin = npt.NDArray[np.float64]
+
+
+class Orientation(NamedTuple):
+    """What :func:`orient` found."""
+
+    normals: Floats  #: (n, 3) oriented unit normals; NaN where there is none
+    curvatures: Floats  #: (n,) smallest variance in the sum of all three, as in PCL
+    labels: npt.NDArray[np.int32]  #: (n,) segment, the largest first; -1 without a normal
+    confidences: Floats  #: (n,) of the orientation: 0 a guess, 1 all evidence agrees
+    components: npt.NDArray[np.int32]  #: (n,) connected component, the largest first; -1 as above
+    report: Dict[str, Any]  #: what was done, as the program's ``--report`` has it
+
+
+class Normals(NamedTuple):
+    """What :func:`normals` found."""
+
+    normals: Floats  #: (n, 3) unit normals of arbitrary sign; NaN where there is none
+    curvatures: Floats  #: (n,) smallest variance in the sum of all three, as in PCL
+
+
+class Segments(NamedTuple):
+    """What :func:`segment` found."""
+
+    labels: npt.NDArray[np.int32]  #: (n,) segment, the largest first; -1 without a normal
+    kinds: npt.NDArray[np.uint8]  #: (segments,) 0 regular, 1 connected, 2 isolated
+    normals: Floats  #: (n, 3) unit normals that agree within each segment
+    curvatures: Floats  #: (n,) smallest variance in the sum of all three, as in PCL
+
+
+class Neighbors(NamedTuple):
+    """What :func:`knn` found."""
+
+    indices: npt.NDArray[np.int32]  #: (n, k) rows of the points, nearest first; -1 where none is left
+    distances: Floats  #: (n, k) ascending; infinite where none is left
+
+
+def _rows(name: str, value: npt.ArrayLike) -> npt.NDArray[Any]:
+    """Checks that this is an (n, 3) array of real numbers."""
+    array = np.asarray(value)
+    if array.dtype.kind not in "fiu":
+        raise TypeError(f"{name} must be real numbers, not {array.dtype}")
+    if array.ndim != 2 or array.shape[1] != 3:
+        raise ValueError(f"{name} must be an (n, 3) array, not one of shape {array.shape}")
+    return array
+
+
+def _is_viewable(array: npt.NDArray[Any]) -> bool:
+    """Whether the library can read these rows where they are."""
+    return bool(
+        array.dtype == np.float32
+        and array.dtype.isnative
+        and array.flags.aligned
+        and array.strides[1] == 4
+        and array.strides[0] >= 12
+        and array.strides[0] % 4 == 0
+    )
+
+
+def _moved(array: npt.NDArray[Any], origin: _Origin) -> Floats:
+    """The same less `origin`, subtracted in double, as float32 in memory of its own."""
+    out = np.empty(array.shape, np.float32)
+    with np.errstate(over="ignore", invalid="ignore"):
+        np.subtract(array, origin, out=out, casting="unsafe", dtype=np.float64)
+    return out
+
+
+def _local(points: npt.ArrayLike) -> Tuple[Floats, _Origin]:
+    """Points as float32 near the origin, and what they were moved by."""
+    array = _rows("points", points)
+    origin = np.zeros(3)
+    if _is_viewable(array):
+        return array, origin
+    if array.dtype != np.float32 and len(array) > 0:
+        finite = array[np.isfinite(array).all(axis=1)]
+        if len(finite) > 0:
+            low = finite.min(axis=0).astype(np.float64)
+            high = finite.max(axis=0).astype(np.float64)
+            # Floats resolve 1e-7 of the extent only near the origin.
+            if max(np.abs(low).max(), np.abs(high).max()) > 2.0 * (high - low).max():
+                origin = low + 0.5 * (high - low)
+    return _moved(array, origin), origin
+
+
+def _angle(name: str, value: Optional[float]) -> Optional[float]:
+    if value is None:
+        return None
+    if isinstance(value, (str, bytes)) or not np.isscalar(value):
+        raise TypeError(f"{name} must be a number of degrees, not {value!r}")
+    if not 0.0 < float(value) <= 180.0:  # type: ignore[arg-type]
+        raise ValueError(f"{name} must be above 0 and at most 180 degrees, not {value!r}")
+    return float(value)  # type: ignore[arg-type]
+
+
+def _whole(name: str, value: Optional[int], least: int, most: int) -> Optional[int]:
+    if value is None:
+        return None
+    if isinstance(value, bool) or not isinstance(value, (int, np.integer)):
+        raise TypeError(f"{name} must be a whole number, not {value!r}")
+    if not least <= value <= most:
+        raise ValueError(f"{name} must be {least} to {most}, not {value!r}")
+    return int(value)
+
+
+def _word(name: str, value: str) -> str:
+    if not isinstance(value, str):
+        raise TypeError(f"{name} must be a string, not {value!r}")
+    return value
+
+
+def _options(
+    k: Optional[int],
+    normals: str,
+    alpha: Optional[float],
+    beta: Optional[float],
+    delta: Optional[float],
+    epsilon: Optional[float],
+    recompute: int,
+    threads: int,
+) -> Dict[str, Any]:
+    """The options that are given, checked."""
+    options = {
+        "k": _whole("k", k, 1, 1000),
+        "normals": _word("normals", normals),
+        "alpha": _angle("alpha", alpha),
+        "beta": _angle("beta", beta),
+        "delta": _angle("delta", delta),
+        "epsilon": _angle("epsilon", epsilon),
+        "recompute": _whole("recompute", recompute, 0, 100),
+        "threads": _whole("threads", threads, 0, 1 << 16),
+    }
+    return {name: value for name, value in options.items() if value is not None}
+
+
+def orient(
+    points: npt.ArrayLike,
+    *,
+    method: str = "auto",
+    k: Optional[int] = None,
+    normals: str = "plane",
+    alpha: Optional[float] = None,
+    beta: Optional[float] = None,
+    gamma: Optional[float] = None,
+    delta: Optional[float] = None,
+    epsilon: Optional[float] = None,
+    recompute: int = 0,
+    viewpoint: Optional[Union[Sequence[float], npt.NDArray[Any]]] = None,
+    viewpoints: Optional[npt.ArrayLike] = None,
+    closed: Optional[bool] = None,
+    keep: Optional[npt.ArrayLike] = None,
+    seeds: Optional[Tuple[npt.ArrayLike, npt.ArrayLike]] = None,
+    threads: int = 0,
+    progress: Optional[Progress] = None,
+) -> Orientation:
+    """One oriented normal a point: outward where there is an outside, consistent elsewhere.
+
+    >>> cloud = segorient.orient(np.asarray(pcd.points))              # Open3D and back
+    >>> pcd.normals = open3d.utility.Vector3dVector(cloud.normals)
+
+    :param points: (n, 3)
+    :param method: of orientation: ``auto`` (the best known), ``propagation``, ``boundary``,
+        ``combined`` or ``extremal`` (the paper's)
+    :param k: neighbours of a point; None: from the cloud's noise
+    :param normals: estimator for the paper's methods: ``plane``, ``lct``, ``ldt``, ``awas``,
+        ``awas3``; ``auto`` has its own way
+    :param alpha: degrees, largest angle between normals of neighbours in a segment
+    :param beta: degrees, largest angle between a normal and its segment's
+    :param gamma: degrees, angles between segments up to this decide (the paper's methods)
+    :param delta: degrees, what makes a border a sharp one for `recompute` (the paper's methods)
+    :param epsilon: degrees, by how much the clean-up of segments may exceed `beta`
+    :param recompute: rounds of finding normals at sharp edges again (the paper's methods)
+    :param viewpoint: where an open surface was seen from; closed ones know their outside
+    :param viewpoints: (n, 3), where each point was seen from; NaN: unknown
+    :param closed: True: each part has an inside; False: a viewpoint decides; None: as it looks
+    :param keep: (n, 3) normals whose signs say something; NaN or 0: none
+    :param seeds: points and their normals, (m, 3) each, that are known
+    :param threads: 0 = all cores; results do not depend on it
+    :param progress: called with a stage's name and the fraction that is done
+    :raises TypeError, ValueError: for arguments that make no sense
+    """
+    options = _options(k, normals, alpha, beta, delta, epsilon, recompute, threads)
+    options["method"] = _word("method", method)
+    if gamma is not None:
+        options["gamma"] = _angle("gamma", gamma)
+    array, origin = _local(points)
+    if viewpoint is not None:
+        place = np.asarray(viewpoint)
+        if place.dtype.kind not in "fiu":
+            raise TypeError(f"viewpoint must be three numbers, not {viewpoint!r}")
+        if place.shape != (3,):
+            raise ValueError(f"viewpoint must be three numbers, not an array of shape {place.shape}")
+        options["viewpoint"] = _moved(place, origin)
+    for name, value, zero in (("viewpoints", viewpoints, origin), ("keep", keep, np.zeros(3))):
+        if value is None:
+            continue
+        rows = _rows(name, value)
+        if len(rows) != len(array):
+            raise ValueError(f"{name} must have a row for each of the {len(array)} points, not {len(rows)}")
+        options[name] = _moved(rows, zero)
+    if closed is not None:
+        if not isinstance(closed, (bool, np.bool_)):
+            raise TypeError(f"closed must be True, False or None, not {closed!r}")
+        options["closed"] = bool(closed)
+    if seeds is not None:
+        if not isinstance(seeds, (tuple, list)) or len(seeds) != 2:
+            raise TypeError("seeds must be a pair: points and their normals")
+        places = _rows("points of seeds", seeds[0])
+        directions = _rows("normals of seeds", seeds[1])
+        if len(places) != len(directions):
+            raise ValueError(f"seeds have {len(places)} points and {len(directions)} normals")
+        options["seeds"] = np.hstack([_moved(places, origin), _moved(directions, np.zeros(3))])
+    result = Orientation(*_core.orient(array, options, progress))
+    for where in result.report["contradictions"]:
+        for axis, name in enumerate("xyz"):
+            where[name] += origin[axis]
+    return result
+
+
+def normals(
+    points: npt.ArrayLike,
+    *,
+    normals: str = "plane",
+    k: Optional[int] = None,
+    alpha: Optional[float] = None,
+    beta: Optional[float] = None,
+    delta: Optional[float] = None,
+    epsilon: Optional[float] = None,
+    recompute: int = 0,
+    threads: int = 0,
+    progress: Optional[Progress] = None,
+) -> Normals:
+    """One unoriented normal a point.
+
+    :param points: (n, 3)
+    :param normals: estimator: ``plane``, ``lct`` and ``ldt`` (local triangulations), ``awas`` and
+        ``awas3`` (quadratic and cubic surfaces)
+    :param k: neighbours of a point; None: 12
+    :param alpha, beta, epsilon: degrees, of the segments that `recompute` goes by; see :func:`segment`
+    :param delta: degrees, what makes a border a sharp one for `recompute`, which then follows the
+        paper's rule instead of fitting surfaces to one side
+    :param recompute: rounds of finding normals at sharp edges again
+    :param threads: 0 = all cores; results do not depend on it
+    :param progress: called with a stage's name and the fraction that is done
+    :raises TypeError, ValueError: for arguments that make no sense
+    """
+    options = _options(k, normals, alpha, beta, delta, epsilon, recompute, threads)
+    return Normals(*_core.normals(_local(points)[0], options, progress))
+
+
+def segment(
+    points: npt.ArrayLike,
+    *,
+    normals: str = "plane",
+    k: Optional[int] = None,
+    alpha: Optional[float] = None,
+    beta: Optional[float] = None,
+    delta: Optional[float] = None,
+    epsilon: Optional[float] = None,
+    recompute: int = 0,
+    threads: int = 0,
+    progress: Optional[Progress] = None,
+) -> Segments:
+    """Cuts a cloud into segments of similar normals.
+
+    :param points: (n, 3)
+    :param normals: estimator, see :func:`normals`
+    :param k: neighbours of a point; None: 12
+    :param alpha: degrees, largest angle between normals of neighbours in a segment; about 20
+    :param beta: degrees, largest angle between a normal and its segment's; 30
+    :param delta: degrees, see :func:`normals`
+    :param epsilon: degrees, by how much the clean-up may exceed `beta`; 10
+    :param recompute: rounds of finding normals at sharp edges again before the segments are made anew
+    :param threads: 0 = all cores; results do not depend on it
+    :param progress: called with a stage's name and the fraction that is done
+    :raises TypeError, ValueError: for arguments that make no sense
+    """
+    options = _options(k, normals, alpha, beta, delta, epsilon, recompute, threads)
+    return Segments(*_core.segment(_local(points)[0], options, progress))
+
+
+def knn(
+    points: npt.ArrayLike,
+    k: int = 15,
+    *,
+    queries: Optional[npt.ArrayLike] = None,
+    threads: int = 0,
+) -> Neighbors:
+    """The k nearest neighbours of every point, exactly; the point itself is the first.
+
+    :param points: (n, 3)
+    :param k: neighbours, the point included
+    :param queries: (m, 3) places whose nearest points are wanted instead
+    :param threads: 0 = all cores; results do not depend on it
+    :raises TypeError, ValueError: for arguments that make no sense
+    """
+    wanted = _whole("k", k, 1, 1000)
+    cores = _whole("threads", threads, 0, 1 << 16)
+    if wanted is None or cores is None:
+        raise TypeError("k and threads must be whole numbers")
+    array, origin = _local(points)
+    places = None
+    if queries is not None:
+        rows = _rows("queries", queries)
+        places = rows if _is_viewable(rows) and not origin.any() else _moved(rows, origin)
+    return Neighbors(*_core.knn(array, wanted, places, cores))

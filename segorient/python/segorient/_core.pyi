@@ -1,0 +1,19 @@
+# SPDX-License-Identifier: BSD-3-Clause
+from typing import Any, Callable, Dict, Optional, Tuple
+
+import numpy as np
+import numpy.typing as npt
+
+_Floats = npt.NDArray[np.float32]
+_Progress = Optional[Callable[[str, float], object]]
+
+def orient(
+    points: _Floats, options: Dict[str, Any], progress: _Progress
+) -> Tuple[_Floats, _Floats, npt.NDArray[np.int32], _Floats, npt.NDArray[np.int32], Dict[str, Any]]: ...
+def normals(points: _Floats, options: Dict[str, Any], progress: _Progress) -> Tuple[_Floats, _Floats]: ...
+def segment(
+    points: _Floats, options: Dict[str, Any], progress: _Progress
+) -> Tuple[npt.NDArray[np.int32], npt.NDArray[np.uint8], _Floats, _Floats]: ...
+def knn(
+    points: _Floats, k: int, queries: Optional[_Floats], threads: int
+) -> Tuple[npt.NDArray[np.int32], _Floats]: ...

@@ -1,0 +1,104 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: BSD-3-Clause
+# Copyright (c) 2026, the segorient authors
+"""Makes the figures of the README and of the documentation from the shipped Fandisk.
+
+usage: figures.py [BUILD_DIRECTORY [CLOUDS]]
+
+With CLOUDS, a directory of clouds with true normals and their manifest.tsv, the tables of the README
+are printed as well (needs the target orientation_benchmark).
+"""
+
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parent.parent
+FANDISK = ROOT / "test/data/fandisk_16475.pcd"
+PICTURES = ROOT / "segorient/doc/pictures"
+SIZE = ["--width", "1000", "--height", "500"]
+
+
+def run(*words):
+    print(*(Path(w).name if i == 0 else w for i, w in enumerate(words)), flush=True)
+    subprocess.run([str(w) for w in words], check=True)
+
+
+def read_fandisk(np):
+    """Points and true normals: a PCD of floats, compressed by LZF, columns one after another."""
+    data = FANDISK.read_bytes()
+    header, body = data.split(b"DATA binary_compressed\n", 1)
+    packed = body[8 : 8 + int.from_bytes(body[:4], "little")]
+    out = bytearray()
+    at = 0
+    while at < len(packed):
+        control = packed[at]
+        at += 1
+        if control < 32:  # literal bytes
+            out += packed[at : at + control + 1]
+            at += control + 1
+            continue
+        length = (control >> 5) + 2  # a copy of what came before
+        if length == 9:
+            length += packed[at]
+            at += 1
+        start = len(out) - ((control & 31) << 8 | packed[at]) - 1
+        at += 1
+        for i in range(start, start + length):
+            out.append(out[i])
+    columns = np.frombuffer(bytes(out), "<f4").reshape(6, -1)
+    return columns[:3].T.copy(), columns[3:].T.copy()
+
+
+def colored(program, points, normals, value, path, np):
+    """A picture of points coloured by a value between 0 (grey) and 1 (red)."""
+    value = np.clip(np.nan_to_num(value, nan=1.0), 0.0, 1.0)[:, None]
+    color = (200, 198, 190) * (1.0 - value) + (200, 20, 10) * value
+    names = ["float x", "float y", "float z", "float nx", "float ny", "float nz",
+             "uchar red", "uchar green", "uchar blue"]
+    with tempfile.TemporaryDirectory() as directory:
+        cloud = Path(directory) / "cloud.ply"
+        with open(cloud, "w") as file:
+            file.write(f"ply\nformat ascii 1.0\nelement vertex {len(points)}\n")
+            file.writelines(f"property {name}\n" for name in names)
+            file.write("end_header\n")
+            for p, n, c in zip(points, normals, color.astype(int)):
+                file.write(" ".join(f"{v:.7g}" for v in (*p, *n)) + f" {c[0]} {c[1]} {c[2]}\n")
+        run(program, "render", cloud, path, "--color", "rgb", "--single", "--width", 500, "--height", 500)
+
+
+def figures(build):
+    program = build / "bin/segorient"
+    PICTURES.mkdir(exist_ok=True)
+    run(program, "compare", FANDISK, "--picture", ROOT / "segorient_ros_free_demo/fandisk_compare.png")
+    with tempfile.TemporaryDirectory() as directory:
+        for command, picture in (("segment", "segments.png"), ("triangulate", "triangles.png")):
+            result = Path(directory) / "result.ply"
+            run(program, command, FANDISK, result, "--quiet")
+            run(program, "render", result, PICTURES / picture, "--color", "segment", *SIZE)
+
+    sys.path.insert(0, str(build / "python"))
+    import numpy as np
+    import segorient
+
+    points, truth = read_fandisk(np)
+    for picture, rounds in (("normals_plane.png", 0), ("normals_recomputed.png", 1)):
+        normals = segorient.normals(points, recompute=rounds).normals
+        cosine = np.abs((normals * truth).sum(axis=1)).clip(0.0, 1.0)
+        angle = np.degrees(np.arccos(cosine))
+        colored(program, points, truth, angle / 30.0, PICTURES / picture, np)
+    distance = segorient.knn(points, 16).distances[:, 15]
+    low, high = np.percentile(distance, [1, 99])
+    colored(program, points, truth, (distance - low) / (high - low), PICTURES / "knn.png", np)
+
+
+def main():
+    build = Path(sys.argv[1] if len(sys.argv) > 1 else ROOT / "build").resolve()
+    figures(build)
+    if len(sys.argv) > 2:
+        run(build / "bin/orientation_benchmark", sys.argv[2])
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,375 @@
+# SPDX-License-Identifier: BSD-3-Clause
+# Copyright (c) 2026, the segorient authors
+"""The Python package against analytic surfaces, brute force and the program."""
+
+import inspect
+import json
+import os
+import signal
+import subprocess
+import sys
+import tempfile
+import threading
+import time
+import unittest
+
+import numpy as np
+
+import segorient
+
+MAP = np.array([500000.125, 5400000.5, 312.25])  # map coordinates, metres
+
+
+def sphere(n=3000, centre=(0.0, 0.0, 0.0), radius=1.0):
+    """Points and outward normals of a sphere."""
+    i = np.arange(n)
+    z = 1.0 - 2.0 * (i + 0.5) / n
+    r = np.sqrt(1.0 - z * z)
+    angle = 2.399963229728653 * i
+    outward = np.stack([r * np.cos(angle), r * np.sin(angle), z], axis=1)
+    return np.asarray(centre) + radius * outward, outward
+
+
+def cube(n=2000, seed=3):
+    """Points of a cube's faces, outward normals and faces."""
+    random = np.random.default_rng(seed)
+    points = random.uniform(-1.0, 1.0, (n, 3))
+    face = random.integers(0, 6, n)
+    outward = np.zeros((n, 3))
+    outward[np.arange(n), face % 3] = np.where(face < 3, 1.0, -1.0)
+    points[np.arange(n), face % 3] = outward[np.arange(n), face % 3]
+    return points, outward, face
+
+
+def bowl(n=3000):
+    """The lower part of a sphere: open, so that nothing but a viewpoint tells its sides."""
+    points, outward = sphere(2 * n)
+    chosen = points[:, 2] < 0.0
+    return points[chosen], outward[chosen]
+
+
+def share(a, b):
+    return np.mean((a * b).sum(axis=1) > 0.0)
+
+
+class Orient(unittest.TestCase):
+    def test_a_sphere_is_oriented_outward_and_results_are_as_documented(self):
+        points, outward = sphere()
+        result = segorient.orient(points)
+        n = len(points)
+        self.assertEqual(share(result.normals, outward), 1.0)
+        self.assertGreater((result.normals * outward).sum(axis=1).min(), 0.98)
+        for array, shape, kind in (
+            (result.normals, (n, 3), np.float32),
+            (result.curvatures, (n,), np.float32),
+            (result.labels, (n,), np.int32),
+            (result.confidences, (n,), np.float32),
+            (result.components, (n,), np.int32),
+        ):
+            self.assertEqual(array.shape, shape)
+            self.assertEqual(array.dtype, kind)
+        self.assertEqual(result.report["points"], n)
+        self.assertEqual(len(result.report["components"]), 1)
+        self.assertEqual(set(np.unique(result.components)), {0})
+        normals, *_ = result  # a plain tuple as well
+        self.assertIs(normals, result.normals)
+
+    def test_a_cube_far_from_the_origin_loses_nothing_in_float64(self):
+        points, outward, face = cube()
+        near = segorient.orient(points)
+        far = segorient.orient(points + MAP)
+        self.assertGreater(share(near.normals, outward), 0.999)
+        self.assertGreater(share(far.normals, outward), 0.999)
+        self.assertGreater(np.mean((near.normals * far.normals).sum(axis=1) > 0.999), 0.99)
+        self.assertEqual(near.report["segments_by_kind"]["regular"], 6)
+
+    def test_any_layout_gives_the_same(self):
+        points = sphere(1500)[0].astype(np.float32)
+        wide = np.zeros((1500, 7), np.float32)
+        wide[:, 2:5] = points
+        expected = segorient.orient(points).normals
+        for name, array in (
+            ("columns of a wider array", wide[:, 2:5]),
+            ("column-major", np.asfortranarray(points)),
+            ("every other row", np.repeat(points, 2, axis=0)[::2]),
+            ("reversed", points[::-1][::-1]),
+            ("big endian", points.astype(">f4")),
+            ("float64", points.astype(np.float64)),
+            ("list", points.tolist()),
+        ):
+            with self.subTest(name):
+                np.testing.assert_array_equal(segorient.orient(array).normals, expected)
+        flipped = segorient.orient(points[::-1]).normals
+        np.testing.assert_array_equal(flipped[::-1], expected)
+        whole = (1000.0 * points).astype(np.int64)
+        self.assertEqual(share(segorient.orient(whole).normals, points), 1.0)
+
+    def test_hints_decide_what_the_surface_leaves_open(self):
+        points, outward = bowl()
+        points = points + MAP
+        above = MAP + [0.0, 0.0, 50.0]
+        below = MAP - [0.0, 0.0, 50.0]
+        rows = np.tile(below, (len(points), 1))
+        some = slice(0, 5)
+        for name, hints, sign in (
+            ("viewpoint above", {"viewpoint": above, "closed": False}, -1.0),
+            ("viewpoint below", {"viewpoint": below, "closed": False}, 1.0),
+            ("viewpoints", {"viewpoints": rows, "closed": False}, 1.0),
+            ("keep", {"keep": -outward}, -1.0),
+            ("seeds", {"seeds": (points[some], outward[some])}, 1.0),
+            ("other seeds", {"seeds": (points[some], -outward[some])}, -1.0),
+        ):
+            with self.subTest(name):
+                result = segorient.orient(points, **hints)
+                self.assertEqual(share(result.normals, sign * outward), 1.0)
+
+    def test_every_method_and_option_is_taken(self):
+        points, outward, _ = cube()
+        for method in ("auto", "propagation", "boundary", "combined", "extremal"):
+            with self.subTest(method):
+                result = segorient.orient(
+                    points, method=method, k=14, normals="ldt", alpha=20, beta=30.0, gamma=35,
+                    delta=np.float32(30), epsilon=10, recompute=1, threads=1)
+                self.assertEqual(result.report["method"], method)
+                self.assertGreater(share(result.normals, outward), 0.99)
+                np.testing.assert_array_equal(
+                    result.normals,
+                    segorient.orient(
+                        points, method=method, k=14, normals="ldt", alpha=20, beta=30, gamma=35,
+                        delta=30, epsilon=10, recompute=1, threads=2).normals)
+
+
+class OtherStages(unittest.TestCase):
+    def test_normals_of_a_sphere_by_every_estimator(self):
+        points, outward = sphere()
+        for name in ("plane", "lct", "ldt", "awas", "awas3"):
+            with self.subTest(name):
+                result = segorient.normals(points, normals=name)
+                cosine = np.abs((result.normals * outward).sum(axis=1))
+                self.assertGreater(cosine.min(), 0.99)
+                self.assertTrue((result.curvatures >= 0.0).all())
+
+    def test_recomputation_sharpens_the_edges_of_a_cube(self):
+        points, outward, _ = cube(6000)
+
+        def rms(normals):
+            cosine = np.abs((normals * outward).sum(axis=1)).clip(0.0, 1.0)
+            return np.sqrt(np.mean(np.degrees(np.arccos(cosine)) ** 2))
+
+        plain = rms(segorient.normals(points).normals)
+        self.assertLess(rms(segorient.normals(points, recompute=1).normals), 0.6 * plain)
+        self.assertLess(rms(segorient.normals(points, recompute=1, delta=40).normals), 0.9 * plain)
+
+    def test_segments_are_the_faces_of_a_cube(self):
+        points, outward, face = cube(6000)
+        result = segorient.segment(points)
+        self.assertEqual(result.labels.max() + 1, len(result.kinds))
+        for f in range(6):
+            labels = result.labels[face == f]
+            most = np.bincount(labels).argmax()
+            self.assertGreater(np.mean(labels == most), 0.9)
+            own = result.normals[result.labels == most]
+            self.assertGreater((own @ own[0]).min(), 0.0)
+
+    def test_neighbours_are_those_of_brute_force(self):
+        points = np.random.default_rng(5).normal(size=(400, 3)).astype(np.float32)
+        queries = np.random.default_rng(6).normal(size=(50, 3))
+        for places, result in (
+            (points, segorient.knn(points, 7)),
+            (queries, segorient.knn(points, 7, queries=queries)),
+        ):
+            distances = np.linalg.norm(points[None].astype(float) - places[:, None], axis=2)
+            np.testing.assert_allclose(result.distances, np.sort(distances)[:, :7], atol=1e-6)
+            np.testing.assert_allclose(
+                np.take_along_axis(distances, result.indices.astype(int), 1), result.distances, atol=1e-6)
+        np.testing.assert_array_equal(segorient.knn(points, 3).indices[:, 0], np.arange(400))
+        far = segorient.knn(points.astype(float) + MAP, 7, queries=points[:9] + MAP)
+        np.testing.assert_array_equal(far.indices, segorient.knn(points, 7).indices[:9])
+
+    def test_what_is_not_there_is_said(self):
+        points = sphere(500)[0]
+        points[7] = np.nan
+        points[9, 1] = np.inf
+        result = segorient.orient(points)
+        self.assertTrue(np.isnan(result.normals[[7, 9]]).all())
+        self.assertEqual(list(result.labels[[7, 9]]), [-1, -1])
+        self.assertEqual(result.report["non_finite"], 2)
+        few = segorient.knn(points[:3], 5)
+        self.assertEqual(sorted(few.indices[0, :3]), [0, 1, 2])
+        self.assertEqual(list(few.indices[0, 3:]), [-1, -1])
+        self.assertTrue(np.isinf(few.distances[0, 3:]).all())
+        for empty in (np.zeros((0, 3)), np.zeros((0, 3), np.float32)):
+            self.assertEqual(segorient.orient(empty).normals.shape, (0, 3))
+            self.assertEqual(segorient.normals(empty).normals.shape, (0, 3))
+            self.assertEqual(segorient.segment(empty).labels.shape, (0,))
+            self.assertEqual(segorient.knn(empty, 4).indices.shape, (0, 4))
+        for n in (1, 2, 3):
+            self.assertTrue(np.isnan(segorient.orient(np.zeros((n, 3))).normals).all())
+
+
+class BadArguments(unittest.TestCase):
+    def test_are_errors_that_say_why(self):
+        good = sphere(50)[0]
+        for error, text, call in (
+            (ValueError, r"\(n, 3\)", lambda: segorient.orient(np.zeros(3))),
+            (ValueError, r"\(n, 3\)", lambda: segorient.orient(np.zeros((4, 2)))),
+            (ValueError, r"\(n, 3\)", lambda: segorient.knn(np.zeros((2, 3, 3)))),
+            (TypeError, "real numbers", lambda: segorient.orient(np.zeros((4, 3), complex))),
+            (TypeError, "real numbers", lambda: segorient.orient([["a", "b", "c"]])),
+            (TypeError, "real numbers", lambda: segorient.normals(None)),
+            (ValueError, "method must be", lambda: segorient.orient(good, method="best")),
+            (TypeError, "method", lambda: segorient.orient(good, method=1)),
+            (ValueError, "normals must be", lambda: segorient.normals(good, normals="fft")),
+            (ValueError, "k must be", lambda: segorient.normals(good, k=0)),
+            (TypeError, "k must be", lambda: segorient.normals(good, k=2.5)),
+            (TypeError, "k and threads", lambda: segorient.knn(good, None)),
+            (ValueError, "alpha", lambda: segorient.segment(good, alpha=-1)),
+            (ValueError, "beta", lambda: segorient.segment(good, beta=float("nan"))),
+            (TypeError, "gamma", lambda: segorient.orient(good, gamma="35")),
+            (ValueError, "threads", lambda: segorient.orient(good, threads=-1)),
+            (TypeError, "closed", lambda: segorient.orient(good, closed="yes")),
+            (ValueError, "viewpoint", lambda: segorient.orient(good, viewpoint=[1, 2])),
+            (TypeError, "viewpoint", lambda: segorient.orient(good, viewpoint="above")),
+            (ValueError, "viewpoints", lambda: segorient.orient(good, viewpoints=good[1:])),
+            (ValueError, "keep", lambda: segorient.orient(good, keep=good[1:])),
+            (TypeError, "seeds", lambda: segorient.orient(good, seeds=good)),
+            (ValueError, "seeds", lambda: segorient.orient(good, seeds=(good, good[1:]))),
+            (TypeError, "unexpected keyword", lambda: segorient.orient(good, speed=1)),
+            (TypeError, "callable|not supported|incompatible", lambda: segorient.orient(good, progress=3)),
+        ):
+            with self.subTest(text=text):
+                self.assertRaisesRegex(error, text, call)
+
+
+class Memory(unittest.TestCase):
+    def test_float_arrays_are_not_copied_and_results_outlive_their_source(self):
+        import tracemalloc
+
+        points = sphere(200000)[0].astype(np.float32)
+        tracemalloc.start()
+        result = segorient.normals(points, k=4)
+        peak = tracemalloc.get_traced_memory()[1]
+        tracemalloc.stop()
+        self.assertLess(peak, points.nbytes / 4)  # numpy tells tracemalloc of every array it makes
+        expected = result.normals.copy()
+        normals = result.normals
+        del result, points
+        np.testing.assert_array_equal(normals, expected)
+        normals[0] = 0.0  # and they may be written to
+
+    def test_input_is_left_alone(self):
+        points = sphere(500)[0] + MAP
+        before = points.copy()
+        points.flags.writeable = False
+        segorient.orient(points, keep=points)
+        np.testing.assert_array_equal(points, before)
+        readonly = before.astype(np.float32)
+        readonly.flags.writeable = False
+        segorient.orient(readonly)
+
+
+class Running(unittest.TestCase):
+    def test_other_threads_go_on(self):
+        points = sphere(300000)[0].astype(np.float32)
+        ticks = []
+        done = threading.Event()
+
+        def tick():
+            while not done.is_set():
+                ticks.append(time.perf_counter())
+                time.sleep(0.001)
+
+        thread = threading.Thread(target=tick)
+        thread.start()
+        begin = time.perf_counter()
+        segorient.knn(points, 20, threads=1)
+        end = time.perf_counter()
+        done.set()
+        thread.join()
+        inside = [begin] + [t for t in ticks if begin < t < end] + [end]
+        # With the lock held nothing would happen between begin and end.
+        self.assertLess(np.diff(inside).max(), 0.5 * (end - begin))
+
+    def test_progress_is_told_and_may_end_the_work(self):
+        told = []
+        segorient.orient(sphere(1000)[0], progress=lambda stage, fraction: told.append((stage, fraction)))
+        self.assertEqual(told[0], ("search", 0.0))
+        self.assertEqual(told[-1][1], 1.0)
+        self.assertEqual(sorted(f for _, f in told), [f for _, f in told])
+
+        def stop(stage, fraction):
+            raise KeyError(stage)
+
+        for function in (segorient.orient, segorient.normals, segorient.segment):
+            self.assertRaises(KeyError, function, sphere(1000)[0], progress=stop)
+
+    def test_control_c_ends_the_work(self):
+        def interrupt(stage, fraction):
+            os.kill(os.getpid(), signal.SIGINT)
+
+        with self.assertRaises(KeyboardInterrupt):
+            segorient.orient(sphere(1000)[0], progress=interrupt)
+
+
+class Documentation(unittest.TestCase):
+    def test_every_keyword_is_explained(self):
+        for name in ("orient", "normals", "segment", "knn"):
+            function = getattr(segorient, name)
+            for keyword in inspect.signature(function).parameters:
+                with self.subTest(f"{name}: {keyword}"):
+                    self.assertRegex(inspect.getdoc(function), rf":param [\w, ]*\b{keyword}\b")
+
+    def test_types_are_told(self):
+        directory = os.path.dirname(segorient.__file__)
+        for file in ("py.typed", "_core.pyi"):
+            self.assertTrue(os.path.exists(os.path.join(directory, file)), file)
+        for name in segorient.__all__:
+            if inspect.isfunction(getattr(segorient, name)):
+                parameters = inspect.signature(getattr(segorient, name)).parameters.values()
+                self.assertNotIn(inspect.Parameter.empty, [p.annotation for p in parameters])
+
+
+@unittest.skipUnless(os.environ.get("SEGORIENT_PROGRAM"), "without the program")
+class AsTheProgram(unittest.TestCase):
+    def run_program(self, directory, *words):
+        path = os.path.join(directory, "out.ply")
+        subprocess.run([os.environ["SEGORIENT_PROGRAM"], words[0], os.path.join(directory, "in.ply"), path,
+                        *words[1:], "--quiet"], check=True)
+        with open(path, "rb") as file:
+            data = file.read()
+        header, body = data.split(b"end_header\n", 1)
+        types = {"float": "<f4", "uint": "<u4", "uchar": "u1", "double": "<f8"}
+        fields = [line.split()[1:] for line in header.decode().splitlines() if line.startswith("property")]
+        return np.frombuffer(body, [(name, types[kind]) for kind, name in fields])
+
+    def test_results_are_the_same(self):
+        points = np.vstack([cube(3000)[0], sphere(1000, (4, 0, 0))[0]]).astype("<f4")
+        with tempfile.TemporaryDirectory() as directory:
+            with open(os.path.join(directory, "in.ply"), "wb") as file:
+                file.write(f"ply\nformat binary_little_endian 1.0\nelement vertex {len(points)}\n".encode())
+                file.write(b"property float x\nproperty float y\nproperty float z\nend_header\n")
+                file.write(points.tobytes())
+            report_path = os.path.join(directory, "report.json")
+            by_program = self.run_program(directory, "orient", "--report", report_path)
+            by_module = segorient.orient(points)
+            for i, name in enumerate(("nx", "ny", "nz")):
+                np.testing.assert_array_equal(by_module.normals[:, i], by_program[name])
+            np.testing.assert_array_equal(by_module.labels, by_program["label"].astype(np.int32))
+            with open(report_path) as file:
+                report = json.load(file)
+            for key, value in by_module.report.items():
+                self.assertIn(key, report)
+                if key not in ("seconds", "peak_memory_bytes"):
+                    self.assertEqual(json.loads(json.dumps(value), parse_float=lambda t: round(float(t), 4)),
+                                     json.loads(json.dumps(report[key]), parse_float=lambda t: round(float(t), 4)))
+            by_program = self.run_program(directory, "segment", "-k", "14", "--alpha", "15", "--recompute", "1")
+            by_module = segorient.segment(points, k=14, alpha=15, recompute=1)
+            np.testing.assert_array_equal(by_module.labels, by_program["label"].astype(np.int32))
+            np.testing.assert_array_equal(by_module.kinds[by_module.labels], by_program["segment_kind"])
+            by_program = self.run_program(directory, "normals", "--normals", "ldt")
+            by_module = segorient.normals(points, normals="ldt")
+            np.testing.assert_array_equal(by_module.curvatures, by_program["curvature"])
+
+
+if __name__ == "__main__":
+    unittest.main()
