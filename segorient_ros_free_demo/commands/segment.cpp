@@ -3,17 +3,21 @@
 #include <segorient/orientation/first_stages.h>
 
 #include <array>
+#include <boost/program_options.hpp>
 #include <cstdio>
+#include <optional>
 
 #include "commands/commands.h"
 #include "io/output_file.h"
 #include "io/readers.h"
 #include "support/command_line.h"
+#include "support/json.h"
 #include "support/progress_bar.h"
 #include "support/result_columns.h"
 #include "support/stage_options.h"
 
 namespace segorient::program {
+namespace po = boost::program_options;
 namespace {
 
 void printSummary(const FirstStages& stages, const Segmentation& segmentation,
@@ -34,20 +38,59 @@ void printSummary(const FirstStages& stages, const Segmentation& segmentation,
   std::printf("seconds    %s\nwritten    %s\n", timesText(stages.times()).c_str(), path.c_str());
 }
 
+std::string reportText(const FirstStages& stages, const Segmentation& segmentation,
+                       const std::array<double, 3>& origin) {
+  JsonWriter json;
+  json.field("points", segmentation.labels.size());
+  json.field("non_finite", stages.nonFinite());
+  json.field("duplicates", stages.duplicates());
+  json.field("k", stages.k());
+  json.beginObject("seconds");
+  for (const StageTime& s : stages.times()) json.field(s.stage, s.seconds);
+  json.endObject();
+  json.beginArray("segments");
+  for (std::size_t i = 0; i < segmentation.segments.size(); ++i) {
+    const Segment& s = segmentation.segments[i];
+    json.beginItem();
+    json.field("label", i);
+    json.field("kind", kindName(s.kind));
+    json.field("points", s.size);
+    json.field("area", s.area);
+    json.field("rms", s.rms);
+    json.beginArray("reference_normal");
+    for (const float v : s.reference_normal) json.item(v);
+    json.endArray();
+    json.beginArray("centroid");
+    for (std::size_t a = 0; a < 3; ++a) {
+      json.item(origin[a] + static_cast<double>(s.centroid[a]));
+    }
+    json.endArray();
+    json.endObject();
+  }
+  json.endArray();
+  return json.finish();
+}
+
 }  // namespace
 
 int runSegment(const std::vector<std::string>& words) {
   CommandLine line(
       "segment IN OUT [options]",
-      "Cuts IN into segments of similar normals. OUT (.pcd or .ply) has the points of\n"
+      "Cuts IN into faces: segments of similar normals, those united whose common border\n"
+      "is smooth unless --split is given. OUT (.pcd or .ply) has the points of\n"
       "IN in the same order, with normals that agree within each segment, curvature,\n"
       "colours, labels (largest segment first; 4294967295: in none) and segment_kind\n"
       "(0 regular, 1 connected, 2 isolated), and all other fields of IN but its rgb.",
       "segorient segment scan.ply segments.pcd --beta 25");
   CommonOptions common;
   StageOptions stage_options;
+  bool split = false;
+  std::string report_path;
   line.arguments({"IN", "OUT"});
   stage_options.add(line);
+  line.options()("split", po::bool_switch(&split),
+                 "leave round faces cut up by --beta, as triangulate and orient use them")(
+      "report", po::value(&report_path), "a table of the segments, as JSON");
   common.add(line);
   if (!line.parse(words)) return 0;
   common.check();
@@ -55,16 +98,24 @@ int runSegment(const std::vector<std::string>& words) {
   stage_options.apply(line, common, options);
   requireEnding(line.argument("OUT"), {".pcd", ".ply"});
 
+  if (report_path == line.argument("OUT")) throw UsageError("--report and OUT are the same file");
+
   OutputFile file(line.argument("OUT"));
+  std::optional<OutputFile> report;
+  if (!report_path.empty()) report.emplace(report_path);
   const CloudTable table = readUsableCloud(line.argument("IN"));
   const LocalPoints points(table);
   ProgressBar bar(!common.quiet, table.size);
   FirstStages stages(points.view(), options, bar.callback());
   stages.findNormals();
-  stages.findSegments();
   if (options.recomputations > 0) {
-    stages.recomputeNormals();
     stages.findSegments();
+    stages.recomputeNormals();
+  }
+  if (split) {
+    stages.findSegments();
+  } else {
+    stages.findFaces();
   }
   const Segmentation segmentation = stages.segmentation();
   const std::vector<float> normals = stages.normalsBySegment();
@@ -73,7 +124,9 @@ int runSegment(const std::vector<std::string>& words) {
   results.segmentation = &segmentation;
   results.kinds = true;
   writeResults(table, results, file);
+  if (report) report->write(reportText(stages, segmentation, points.origin()));
   file.commit();
+  if (report) report->commit();
   if (!common.quiet) printSummary(stages, segmentation, file.path());
   return 0;
 }

@@ -67,6 +67,16 @@ void FirstStages::findSegments() {
       segmentByNormals(cloud_.view(), {normals_.data(), 4, cloud_.size()}, neighborhoods_, options);
 }
 
+void FirstStages::findFaces() {
+  const Timer timer(*this, "segmentation", 0.6);
+  SegmentationOptions options = options_.segmentation;
+  options.threads = options_.threads;
+  Segmentation faces;
+  segmentByNormals(cloud_.view(), {normals_.data(), 4, cloud_.size()}, neighborhoods_, options,
+                   nullptr, &faces);
+  segmentation_ = std::move(faces);
+}
+
 void FirstStages::recomputeNormals() {
   const Timer timer(*this, "recomputation", 0.8);
   RecomputationOptions options = options_.recomputation;

@@ -28,6 +28,7 @@ class FirstStages {
 
   void findNormals();   ///< unoriented ones, by `options.normals`
   void findSegments();  ///< after findNormals(); once more after recomputeNormals(), if wanted
+  void findFaces();     ///< as findSegments(), then united where only beta parted them
   /// After findSegments(): normals near sharp edges, `options.recomputations` times. The segments
   /// stay.
   void recomputeNormals();
