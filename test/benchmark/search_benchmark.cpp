@@ -81,17 +81,23 @@ Cloud::Ptr makeCloud(const std::string& name, const std::string& order, std::siz
   return coherent ? alongCurve(*random) : random;
 }
 
-/// Mean distance to the 20th neighbour: a radius of about 20 results.
+/// A radius of 20 results on average, by bisection over a sample.
 double radiusOf20(const OurTree& tree, const Cloud& cloud) {
   pcl::Indices indices;
   std::vector<float> distances;
-  double sum = 0.0;
-  int count = 0;
-  for (std::size_t i = 0; i < cloud.size(); i += 1 + cloud.size() / 1000, ++count) {
-    tree.nearestKSearch(cloud[i], 20, indices, distances);
-    sum += std::sqrt(static_cast<double>(distances.back()));
+  double low = 0.0;
+  tree.nearestKSearch(cloud[cloud.size() / 2], 20, indices, distances);
+  double high = 16.0 * std::sqrt(static_cast<double>(distances.back()));
+  for (int step = 0; step < 20; ++step) {
+    const double radius = 0.5 * (low + high);
+    std::size_t results = 0;
+    std::size_t asked = 0;
+    for (std::size_t i = 0; i < cloud.size(); i += 1 + cloud.size() / 1000, ++asked) {
+      results += static_cast<std::size_t>(tree.radiusSearch(cloud[i], radius, indices, distances));
+    }
+    (results < 20 * asked ? low : high) = radius;
   }
-  return sum / count;
+  return high;
 }
 
 /// Each coordinate moved by about a spacing, in random order: queries that are not of the cloud.

@@ -295,9 +295,10 @@ inline bool nearestWithin(const LayoutView& view, float reach, Group& group, Reg
 void nearestOfGroup(const LayoutView& view, std::uint32_t begin, std::uint32_t end,
                     RegionState& state, GroupTask& task) {
   for (std::uint32_t i = begin; i < end; ++i) {
-    const pcl::index_t* row = task.indices + view.row[i] * task.row_length;
-    for (std::size_t j = 0; j < task.k; j += 64 / sizeof(pcl::index_t)) {
-      __builtin_prefetch(row + j, 1);
+    const std::size_t row = view.row[i] * task.row_length;
+    for (std::size_t j = 0; j < task.k; j += 64 / sizeof(float)) {
+      __builtin_prefetch(task.indices + row + j, 1);
+      if (task.distances != nullptr) __builtin_prefetch(task.distances + row + j, 1);
     }
   }
   Group group;

@@ -68,9 +68,7 @@ std::size_t cellOf(const BuildPoint& p, const Box& box, const Region& region) {
   std::size_t c[3];
   for (int a = 0; a < 3; ++a) {
     const float cell = (p.xyz[a] - box.lo[a]) * region.inverse_edge;
-    // The last one also where the difference overflows and a cell has no end: that is no number.
-    const auto last = static_cast<float>(region.counts[a] - 1);
-    c[a] = static_cast<std::size_t>(cell < last ? cell : last);
+    c[a] = static_cast<std::size_t>(std::min(cell, static_cast<float>(region.counts[a] - 1)));
   }
   return c[0] + region.counts[0] * (c[1] + region.counts[1] * c[2]);
 }
