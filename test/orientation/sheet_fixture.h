@@ -25,17 +25,6 @@ inline Neighborhoods neighborsOf(const std::vector<float>& xyz, int k = kSheetNe
   return table;
 }
 
-inline SheetField fieldOf(const SheetNormals& sheets) {
-  SheetField field;
-  field.normals = sheets.normals.data();
-  field.spacing = sheets.spacing.data();
-  field.below = sheets.below.data();
-  field.above = sheets.above.data();
-  field.reliable = sheets.reliable.data();
-  field.residual = sheets.residual;
-  return field;
-}
-
 inline float dot3(const float* a, const float* b) {
   return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }

@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026, the segorient authors
+#include <segorient/common/median.h>
 #include <segorient/common/threads.h>
 #include <segorient/features/sheet_normals.h>
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "sheet_fit.h"
 
@@ -18,13 +20,6 @@ using detail::Moments;
 using detail::Offsets;
 using detail::Plane;
 using detail::WallSplit;
-
-float median(std::vector<float>& values) {
-  if (values.empty()) return 0.F;
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
 
 // Distance from the plane over the k nearest, in spacings; a plane takes three degrees of freedom.
 float residualOver(const Offsets& o, int k) {
@@ -108,7 +103,7 @@ void judgeReliability(const std::vector<float>& lopsided, SheetNormals& out) {
   for (std::size_t i = 0; i < out.spacing.size(); ++i) {
     if (std::isfinite(out.normals[4 * i + 3])) residuals.push_back(out.normals[4 * i + 3]);
   }
-  out.residual = median(residuals);
+  out.residual = median(std::move(residuals));
   for (std::size_t i = 0; i < out.spacing.size(); ++i) {
     const float r = out.normals[4 * i + 3];
     out.reliable[i] = r < 2.5F * out.residual + 0.1F && lopsided[i] < 0.6F ? 1 : 0;
@@ -133,7 +128,7 @@ NoiseLevel measureNoise(const PointView& points, const Neighborhoods& nb, int th
   }
   const auto drop = [](std::vector<float>& v) {
     v.erase(std::remove_if(v.begin(), v.end(), [](float r) { return !std::isfinite(r); }), v.end());
-    return median(v);
+    return median(std::move(v));
   };
   return {drop(fine), drop(coarse)};
 }

@@ -2,6 +2,7 @@
 // Copyright (c) 2026, the segorient authors
 #include "auto_stages.h"
 
+#include <segorient/common/median.h>
 #include <segorient/features/sheet_denoise.h>
 #include <segorient/features/sheet_normals.h>
 #include <segorient/orientation/sheet_filter.h>
@@ -45,24 +46,6 @@ Neighbors findNeighbors(const CompactCloud& cloud, const PipelineOptions& option
   index.build(positions(cloud, neighbors), nullptr, search_options);
   index.nearestKAll(out.k + 1, neighbors.table, false);
   return neighbors;
-}
-
-SheetField fieldOf(const SheetNormals& sheets) {
-  SheetField field;
-  field.normals = sheets.normals.data();
-  field.spacing = sheets.spacing.data();
-  field.below = sheets.below.data();
-  field.above = sheets.above.data();
-  field.reliable = sheets.reliable.data();
-  field.residual = sheets.residual;
-  return field;
-}
-
-float median(std::vector<float> values) {
-  if (values.empty()) return 0.F;
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
 }
 
 // Segments of the final normals, turned as most of their points are.

@@ -10,6 +10,17 @@
 
 namespace segorient {
 
+SheetField fieldOf(const SheetNormals& sheets) {
+  SheetField field;
+  field.normals = sheets.normals.data();
+  field.spacing = sheets.spacing.data();
+  field.below = sheets.below.data();
+  field.above = sheets.above.data();
+  field.reliable = sheets.reliable.data();
+  field.residual = sheets.residual;
+  return field;
+}
+
 std::vector<std::uint32_t> admissibleEdges(const PointView& points, const Neighborhoods& nb,
                                            const SheetField& field, int threads) {
   // Offsets off the tangent plane that curvature and noise explain.

@@ -4,6 +4,7 @@
 
 #include <segorient/common/neighborhoods.h>
 #include <segorient/common/point_view.h>
+#include <segorient/features/sheet_normals.h>
 #include <segorient/segmentation/segmentation.h>
 
 #include <cstdint>
@@ -20,6 +21,9 @@ struct SheetField {
   const std::uint8_t* reliable = nullptr;  ///< 1 where the normal can be trusted
   float residual = 0.F;                    ///< median residual, in spacings
 };
+
+/// What estimateSheetNormals() found; the arrays stay where they are.
+SheetField fieldOf(const SheetNormals& sheets);
 
 /// Neighbours of a point that segmentSheets() and borderVotes() look at.
 constexpr int kSheetDegree = 16;
