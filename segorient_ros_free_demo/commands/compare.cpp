@@ -18,6 +18,7 @@
 #include "render/scene.h"
 #include "support/command_line.h"
 #include "support/hint_options.h"
+#include "support/pcl_limits.h"
 #include "support/poisson.h"
 #include "support/progress_bar.h"
 #include "support/stage_options.h"
@@ -188,6 +189,7 @@ int runCompare(const std::vector<std::string>& words) {
 
   const CloudTable table = readUsableCloud(line.argument("IN"));
   const LocalPoints points(table);
+  requirePclRange(points, line.argument("IN"));
   hints.apply(table, line.argument("IN"), points, options);
   // PCL's viewpoint is 0, 0, 0 unless it is told otherwise.
   std::array<float, 3> viewpoint = options.orientation.hints->viewpoint;

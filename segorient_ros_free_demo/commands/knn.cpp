@@ -14,6 +14,7 @@
 #include "io/output_file.h"
 #include "io/readers.h"
 #include "support/command_line.h"
+#include "support/pcl_limits.h"
 #include "support/progress_bar.h"
 #include "support/stage_options.h"
 #include "support/stopwatch.h"
@@ -135,7 +136,9 @@ int runKnn(const std::vector<std::string>& words) {
 
   const CloudTable table = readUsableCloud(line.argument("IN"));
   std::vector<std::size_t> rows;
-  const Cloud::Ptr cloud = finitePoints(LocalPoints(table).view(), rows);
+  const LocalPoints points(table);
+  requirePclRange(points, line.argument("IN"));
+  const Cloud::Ptr cloud = finitePoints(points.view(), rows);
   const int threads = resolveThreads(common.threads);
   Neighborhoods neighborhoods;
   Timing ours;
