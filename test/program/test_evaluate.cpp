@@ -107,15 +107,6 @@ TEST(Fandisk, IsOrientedOutward) {
                                              "curvature", "rgb", "label"}));
 }
 
-TEST(Fandisk, TheResultDoesNotDependOnTheNumberOfThreads) {
-  const ScratchDirectory directory;
-  const std::string one = directory.file("one.pcd");
-  const std::string three = directory.file("three.pcd");
-  ASSERT_EQ(runProgram({"orient", fandisk(), one, "--threads", "1"}).status, 0);
-  ASSERT_EQ(runProgram({"orient", fandisk(), three, "--threads", "3"}).status, 0);
-  EXPECT_TRUE(readFile(one) == readFile(three));
-}
-
 TEST(Fandisk, IsSegmentedIntoItsFaces) {
   const ScratchDirectory directory;
   const std::string out = directory.file("segments.ply");
