@@ -32,12 +32,14 @@ constexpr std::uint32_t kKeyBias = 0x00100000U;
 
 namespace scalar {
 #include "simd_scalar.inl"
-//
+
 #include "kernels_ranges.inl"
-//
+
 #include "kernels_sort.inl"
-//
+
 #include "kernels_groups.inl"
+
+#include "kernels_all_points.inl"
 constexpr Kernels kKernels{"scalar",    collect,         collectRegion,
                            sortNearest, nearestInRegion, withinInRegion};
 }  // namespace scalar
@@ -46,12 +48,14 @@ constexpr Kernels kKernels{"scalar",    collect,         collectRegion,
 
 namespace sse2 {
 #include "simd_sse2.inl"
-//
+
 #include "kernels_ranges.inl"
-//
+
 #include "kernels_sort.inl"
-//
+
 #include "kernels_groups.inl"
+
+#include "kernels_all_points.inl"
 constexpr Kernels kKernels{"sse2",      collect,         collectRegion,
                            sortNearest, nearestInRegion, withinInRegion};
 }  // namespace sse2
@@ -81,12 +85,14 @@ constexpr LaneTable kLanes;
 
 namespace avx2 {
 #include "simd_avx2.inl"
-//
+
 #include "kernels_ranges.inl"
-//
+
 #include "kernels_sort.inl"
-//
+
 #include "kernels_groups.inl"
+
+#include "kernels_all_points.inl"
 constexpr Kernels kKernels{"avx2",      collect,         collectRegion,
                            sortNearest, nearestInRegion, withinInRegion};
 }  // namespace avx2

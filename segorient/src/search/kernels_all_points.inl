@@ -1,0 +1,181 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the segorient authors
+//
+// The all-points searches of a region, group by group.
+
+// ---------------------------------------------------------------------------------------------------
+// The k nearest
+
+// Candidates of one point from a block that holds everything nearer than the square root of
+// `reach`. Starting from a guess, looks for a limit that lets through k candidates and not many
+// more.
+// \return false if there are fewer in reach
+inline bool takeNearest(const float* q, float reach, std::size_t first, RegionState& state,
+                        GroupTask& task, Group::Member& member) {
+  const std::size_t k = task.k;
+  const std::size_t enough = k + k / 2 + 8;
+  float* const distance = task.candidate_distance + first;
+  std::uint32_t* const id = task.candidate_id + first;
+  float limit = smallest(task.margin * state.typical, reach);
+  float too_low = 0.0F;
+  std::size_t count = takeNear(task, q, limit, distance, id);
+  for (int attempt = 0; count < k || (count > enough && attempt < 3); ++attempt) {
+    const float factor = 1.25F * static_cast<float>(k) / static_cast<float>(count + 1);
+    if (count < k) {
+      if (limit == reach) return false;
+      too_low = limit;
+      limit = attempt > 4 ? reach : smallest(largest(factor, 1.2F) * limit, reach);
+    } else {
+      limit = largest(factor * limit, 0.5F * (too_low + limit));
+    }
+    count = takeNear(task, q, limit, distance, id);
+  }
+  if (count > 2 * enough + 64) {  // many are equally far
+    keepNearest(distance, id, count, k);
+    count = k;
+  }
+  padCandidates(distance, id, count);
+  member.first = first;
+  member.count = static_cast<std::uint32_t>(count);
+  member.limit = limit;
+  state.typical = largest(limit * static_cast<float>(k) / static_cast<float>(count), 1e-44F);
+  return true;
+}
+
+inline void writeNearest(const LayoutView& view, Group& group, RegionState& state,
+                         GroupTask& task) {
+  sortMembers(group, task.k, task);
+  for (std::size_t m = 0; m < group.found_count; ++m) {
+    const Group::Member& member = group.found[m];
+    const float* const distance = task.candidate_distance + member.first;
+    state.most = largest(state.most, distance[task.k - 1]);
+    const std::size_t at = view.row[member.point] * task.row_length;
+    copyRow(task.candidate_id + member.first, distance, view.id[member.point], task.k,
+            task.indices + at, task.distances == nullptr ? nullptr : task.distances + at);
+  }
+}
+
+// Searches within `reach` of the group; the points that this was too little for go on waiting.
+// \return false if there was no room for all that is within reach
+inline bool nearestWithin(const LayoutView& view, float reach, Group& group, RegionState& state,
+                          GroupTask& task) {
+  if (!gather(view, group.box, reach, state, task)) return false;
+  std::size_t left = 0;
+  std::size_t used = 0;
+  group.found_count = 0;
+  for (std::size_t i = 0; i < group.waiting_count; ++i) {
+    const std::uint32_t point = group.waiting[i];
+    const float q[3] = {view.x[point], view.y[point], view.z[point]};
+    Group::Member& member = group.found[group.found_count];
+    if (takeNearest(q, reach, used, state, task, member)) {
+      member.point = point;
+      ++group.found_count;
+      used += member.count + kSortRoom;
+    } else {
+      group.waiting[left++] = point;
+    }
+  }
+  group.waiting_count = left;
+  writeNearest(view, group, state, task);
+  return true;
+}
+
+void nearestOfGroup(const LayoutView& view, std::uint32_t begin, std::uint32_t end,
+                    RegionState& state, GroupTask& task) {
+  for (std::uint32_t i = begin; i < end; ++i) {
+    const std::size_t row = view.row[i] * task.row_length;
+    for (std::size_t j = 0; j < task.k; j += 64 / sizeof(float)) {
+      __builtin_prefetch(task.indices + row + j, 1);
+      if (task.distances != nullptr) __builtin_prefetch(task.distances + row + j, 1);
+    }
+  }
+  Group group;
+  startGroup(view, begin, end, group);
+  float reach = task.margin * state.most;
+  state.most = 0.0F;
+  for (int attempt = 0; attempt < 3 && group.waiting_count > 0; ++attempt) {
+    reach *= nearestWithin(view, reach, group, state, task) ? 1.6F : 0.4F;
+  }
+  for (std::size_t i = 0; i < group.waiting_count; ++i) {
+    task.failed[task.failed_count++] = group.waiting[i];
+  }
+  if (group.waiting_count > 0) state.most = largest(state.most, 0.6F * reach);
+  state.most = largest(state.most, 1e-44F);
+}
+
+// ---------------------------------------------------------------------------------------------------
+// All within a radius
+
+inline void writeWithin(const LayoutView& view, Group& group, RegionState& state, GroupTask& task) {
+  sortMembers(group, task.k, task);
+  const std::uint32_t region_begin = view.regions[state.region].begin;
+  for (std::size_t m = 0; m < group.found_count; ++m) {
+    const Group::Member& member = group.found[m];
+    const std::size_t count = member.count < task.k ? member.count : task.k;
+    RowBuffer& rows = *task.rows;
+    if (rows.used + count > rows.capacity) rows.grow(rows, rows.used + count);
+    copyRow(task.candidate_id + member.first, task.candidate_distance + member.first,
+            view.id[member.point], count, rows.indices + rows.used,
+            rows.distances == nullptr ? nullptr : rows.distances + rows.used);
+    rows.begin[member.point - region_begin] = rows.used;
+    rows.count[member.point - region_begin] = static_cast<std::uint32_t>(count);
+    rows.used += count;
+  }
+}
+
+void withinOfGroup(const LayoutView& view, std::uint32_t begin, std::uint32_t end,
+                   RegionState& state, GroupTask& task) {
+  Group group;
+  startGroup(view, begin, end, group);
+  const bool gathered = gather(view, group.box, task.limit, state, task);
+  group.found_count = 0;
+  std::size_t used = 0;
+  for (std::uint32_t i = begin; i < end; ++i) {
+    if (!gathered || used + task.block_count + kWidth > task.candidate_capacity) {
+      task.failed[task.failed_count++] = i;
+      continue;
+    }
+    const float q[3] = {view.x[i], view.y[i], view.z[i]};
+    const std::size_t count =
+        takeNear(task, q, task.limit, task.candidate_distance + used, task.candidate_id + used);
+    if (count > kMostToSort) {
+      task.failed[task.failed_count++] = i;
+      continue;
+    }
+    padCandidates(task.candidate_distance + used, task.candidate_id + used, count);
+    group.found[group.found_count++] = {i, static_cast<std::uint32_t>(count), used, task.limit};
+    used += count + kSortRoom;
+  }
+  writeWithin(view, group, state, task);
+}
+
+// ---------------------------------------------------------------------------------------------------
+// Regions
+
+inline void failAll(const Region& region, GroupTask& task) {
+  for (std::uint32_t i = region.begin; i < region.end; ++i) task.failed[task.failed_count++] = i;
+}
+
+void nearestInRegion(const LayoutView& view, std::size_t r, GroupTask& task) {
+  const Region& region = view.regions[r];
+  const float bound = 1.0F + task.epsilon;
+  const float relative = static_cast<float>(task.k) / 16.0F;
+  const float spacing = largest(region.spacing16 * relative, 1e-44F);
+  task.failed_count = 0;
+  if (region.flat != 0 || !(spacing < kLargest)) return failAll(region, task);
+  RegionState state{r,     spacing, spacing,
+                    -1.0F, 0,       task.epsilon > 0.0F ? 0.999999F / (bound * bound) : 1.0F};
+  forGroups(view, region, [&](std::uint32_t begin, std::uint32_t end) {
+    nearestOfGroup(view, begin, end, state, task);
+  });
+}
+
+void withinInRegion(const LayoutView& view, std::size_t r, GroupTask& task) {
+  const Region& region = view.regions[r];
+  task.failed_count = 0;
+  if (!(task.limit < kInfinity)) return failAll(region, task);
+  RegionState state{r, 0.0F, 0.0F, -1.0F, 0, 1.0F};
+  forGroups(view, region, [&](std::uint32_t begin, std::uint32_t end) {
+    withinOfGroup(view, begin, end, state, task);
+  });
+}
