@@ -3,6 +3,8 @@
 // triangulate, knn, compare and view on the shipped Fandisk.
 #include <gtest/gtest.h>
 
+#include <boost/property_tree/json_parser.hpp>
+#include <boost/property_tree/ptree.hpp>
 #include <cmath>
 #include <cstdlib>
 #include <sstream>
@@ -40,6 +42,44 @@ TEST(Triangulate, IsOneMeshWithItsFrontsOutward) {
   EXPECT_GT(static_cast<double>(agreeing), 0.99 * static_cast<double>(mesh.triangles.size()));
   EXPECT_EQ(runProgram({"triangulate", fandisk(), directory.file("mesh.vtk"), "-q"}).status, 0);
   EXPECT_EQ(readFile(directory.file("mesh.vtk")).compare(0, 5, "# vtk"), 0);
+}
+
+// Every segment and component says how it was oriented; the shipped Fandisk leaves few questions.
+TEST(Orient, ReportTellsHowEachSegmentWasOriented) {
+  const ScratchDirectory directory;
+  for (const std::string method : {"combined", "hoppe", "auto"}) {
+    const std::string path = directory.file("report.json");
+    const Outcome run = runProgram({"orient", fandisk(), directory.file("out.pcd"), "--method",
+                                    method, "--report", path, "-q"});
+    ASSERT_EQ(run.status, 0) << run.err;
+    boost::property_tree::ptree report;
+    boost::property_tree::read_json(path, report);
+    EXPECT_EQ(report.get<std::string>("method"), method);
+    std::size_t points = 0;
+    std::size_t hard = 0;
+    for (const auto& [key, segment] : report.get_child("segments")) {
+      points += segment.get<std::size_t>("points");
+      EXPECT_EQ(std::abs(segment.get<int>("sign")), 1);
+      EXPECT_GE(segment.get<float>("confidence"), 0.F);
+      EXPECT_LE(segment.get<float>("confidence"), 1.F);
+      EXPECT_NE(segment.get<std::string>("oriented_by"), "");
+      EXPECT_GE(segment.get<int>("component"), 0);
+      EXPECT_LE(std::abs(segment.get<float>("extremal_agreement")), 1.F);
+      hard += segment.get<bool>("hard") ? 1 : 0;
+    }
+    EXPECT_EQ(points, 16475U) << method;
+    EXPECT_EQ(report.get_child("hard_segments").size(), hard);
+    EXPECT_EQ(report.get<std::size_t>("segments_by_kind.hard"), hard);
+    const auto& component = report.get_child("components").front().second;
+    EXPECT_EQ(std::abs(component.get<int>("sign")), 1);
+    EXPECT_GT(component.get<float>("confidence"), 0.8F) << method;
+    EXPECT_LT(component.get<float>("contradiction"), 0.1F) << method;
+    // and a picture takes the report
+    const Outcome picture =
+        runProgram({"render", directory.file("out.pcd"), directory.file("out.png"), "--color",
+                    "orientation", "--report", path, "--width", "64", "--height", "32"});
+    EXPECT_EQ(picture.status, 0) << picture.err;
+  }
 }
 
 TEST(Knn, AgreesWithPclAndWritesEveryNeighbour) {
