@@ -89,9 +89,8 @@ class MedianHashIndex {
   float epsilon() const;                 ///< as given to build()
   void setNumberOfThreads(int threads);  ///< 0 = all cores; results do not depend on it
 
-  struct Impl;  ///< not for users
-
  private:
+  struct Impl;
   std::unique_ptr<Impl> impl_;
 };
 
