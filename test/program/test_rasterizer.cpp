@@ -6,11 +6,15 @@
 #include <cmath>
 #include <random>
 #include <sstream>
+#include <string>
+#include <vector>
 
+#include "io/errors.h"
 #include "io/readers.h"
 #include "render/scene.h"
 #include "scratch_directory.h"
 #include "support/colors.h"
+#include "support/hard_segments.h"
 
 namespace segorient::test {
 namespace {
@@ -81,6 +85,53 @@ TEST(Rasterizer, AWrongPatchIsRedFromItsSideAndHiddenFromTheOther) {
   EXPECT_LT(draw(table, -90.0).red, 0.005);
 }
 
+// A labelled sphere: the upper half is segment 0, of which a cap is turned over; below is
+// segment 1.
+TEST(Rasterizer, OrientationShowsSegmentsWrongPatchesAndHardOnes) {
+  const ScratchDirectory directory;
+  std::mt19937 random(4);
+  std::normal_distribution<double> gauss;
+  std::ostringstream text;
+  text << "ply\nformat ascii 1.0\nelement vertex 8000\nproperty float x\nproperty float y\n"
+          "property float z\nproperty float nx\nproperty float ny\nproperty float nz\n"
+          "property uint label\nend_header\n";
+  for (int i = 0; i < 8000; ++i) {
+    double p[3] = {gauss(random), gauss(random), gauss(random)};
+    const double length = std::hypot(p[0], p[1], p[2]);
+    for (double& v : p) v /= length;
+    const double sign = p[2] > 0.8 ? -1.0 : 1.0;
+    text << p[0] << ' ' << p[1] << ' ' << p[2] << ' ' << sign * p[0] << ' ' << sign * p[1] << ' '
+         << sign * p[2] << ' ' << (p[2] > 0.0 ? 0 : 1) << '\n';
+  }
+  const std::string path = directory.write("sphere.ply", text.str());
+  const CloudTable table = program::readCloud(path);
+  const program::Coloring coloring = program::parseColoring("orientation", table, path);
+  const program::LocalPoints points(table);
+  program::View view;
+  view.width = view.height = 300;
+  const auto violet = [&](const std::vector<std::uint32_t>& hard, double elevation) {
+    view.elevation = elevation;
+    const Picture picture =
+        program::drawScene(program::makeScene(table, points, nullptr, coloring, 1, hard), view);
+    std::size_t count = 0;
+    std::size_t drawn = 0;
+    for (std::size_t i = 0; i < picture.rgb.size(); i += 3) {
+      const std::uint8_t* p = picture.rgb.data() + i;
+      drawn += p[0] == 255 && p[1] == 255 && p[2] == 255 ? 0 : 1;
+      count += 2 * p[1] < p[2] && p[0] < p[2] ? 1 : 0;
+    }
+    if (hard.empty()) {
+      EXPECT_NEAR(shares(picture).red, elevation > 0 ? 0.36 : 0.0, 0.04);
+    }
+    return static_cast<double>(count) / static_cast<double>(drawn);
+  };
+  EXPECT_LT(violet({}, 90.0), 0.01);
+  EXPECT_LT(violet({}, -90.0), 0.01);
+  EXPECT_GT(violet({0}, 90.0), 0.95);
+  EXPECT_LT(violet({0}, -90.0), 0.05);
+  EXPECT_GT(violet({0, 1}, -90.0), 0.95);
+}
+
 TEST(Rasterizer, AMeshShowsItsFrontAndItsBack) {
   const ScratchDirectory directory;
   // In the plane x = 0, its front towards +x.
@@ -114,6 +165,18 @@ TEST(Rasterizer, EveryDegenerateCloudGivesAPicture) {
                            program::View{}, true);
     EXPECT_EQ(picture.width, 800U) << text;
   }
+}
+
+TEST(HardSegments, AreReadFromAReport) {
+  const ScratchDirectory directory;
+  const std::string report =
+      directory.write("a.json", "{\n \"points\": 3,\n \"hard_segments\": [ 17, 4 ]\n}\n");
+  EXPECT_EQ(program::readHardSegments(report), (std::vector<std::uint32_t>{4, 17}));
+  for (const std::string text : {"", "{}", "[1, 2]", "{\"hard_segments\": [\"x\"]}", "{"}) {
+    EXPECT_THROW(program::readHardSegments(directory.write("b.json", text)), program::FileError)
+        << text;
+  }
+  EXPECT_THROW(program::readHardSegments(directory.file("none.json")), program::FileError);
 }
 
 TEST(Colors, SegmentsNextInNumberAreFarApart) {
