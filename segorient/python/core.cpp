@@ -228,6 +228,7 @@ py::tuple normals(const FloatArray& points, const py::dict& given, const py::obj
 py::tuple segment(const FloatArray& points, const py::dict& given, const py::object& progress) {
   const PointView rows = viewOf(points);
   const PipelineOptions options = optionsFrom(given);
+  const bool split = given.contains("split") && given["split"].cast<bool>();
   const PipelineProgress callback = progressTo(progress);
   Segmentation segmentation;
   std::vector<float> normals_by_segment;
@@ -235,10 +236,14 @@ py::tuple segment(const FloatArray& points, const py::dict& given, const py::obj
     const py::gil_scoped_release unlocked;
     FirstStages stages(rows, options, callback);
     stages.findNormals();
-    stages.findSegments();
     if (options.recomputations > 0) {
-      stages.recomputeNormals();
       stages.findSegments();
+      stages.recomputeNormals();
+    }
+    if (split) {
+      stages.findSegments();
+    } else {
+      stages.findFaces();
     }
     segmentation = stages.segmentation();
     normals_by_segment = stages.normalsBySegment();

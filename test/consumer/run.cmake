@@ -41,3 +41,15 @@ endif()
 run(${WORK}/build/consumer)
 run(${WORK}/build/consumer_of_all)
 run(${prefix}/bin/segorient orient ${DATA} ${WORK}/oriented.ply)
+# The Python package, if there is one, finds the libraries where they were installed.
+file(GLOB package ${prefix}/lib/python*/*-packages)
+if(package)
+  run(${CMAKE_COMMAND} -E env PYTHONPATH=${package} PYTHONDONTWRITEBYTECODE=1 ${PYTHON}
+    -c "import segorient, numpy; assert segorient.knn(numpy.eye(3), 3).indices.shape == (3, 3)")
+endif()
+# Nothing but directories stays behind.
+run(${CMAKE_COMMAND} --build ${BUILD_DIRECTORY} --target uninstall)
+file(GLOB_RECURSE left LIST_DIRECTORIES FALSE ${prefix}/*)
+if(left)
+  message(FATAL_ERROR "uninstall left ${left}")
+endif()

@@ -9,6 +9,7 @@
 #include <cmath>
 #include <cstring>
 
+#include "io/errors.h"
 #include "io/readers.h"
 #include "sample_files.h"
 
@@ -116,6 +117,66 @@ TEST(Readers, PlyOfEitherByteOrderWithColoursFacesAndOtherElements) {
   EXPECT_EQ(rgb, 0x102030U);
   ASSERT_EQ(table.triangles.size(), 1U);
   EXPECT_EQ(table.triangles[0], (program::Triangle{2, 1, 0}));
+}
+
+TEST(Readers, ListsOfVerticesAreLeftOut) {
+  const ScratchDirectory directory;
+  const std::string header =
+      "element vertex 2\nproperty float x\nproperty list uchar float weights\nproperty float y\n"
+      "property float z\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n";
+  const std::string ascii =
+      "ply\nformat ascii 1.0\n" + header + "1 2 0.5 0.25 2 3\n4 0 5 6\n3 0 1 0\n";
+  std::string binary = "ply\nformat binary_little_endian 1.0\n" + header;
+  const auto put = [&](auto v) { binary.append(reinterpret_cast<const char*>(&v), sizeof(v)); };
+  put(1.F);
+  binary += '\x02';
+  for (const float v : {0.5F, 0.25F, 2.F, 3.F, 4.F}) put(v);
+  binary += '\x00';
+  for (const float v : {5.F, 6.F}) put(v);
+  binary += '\x03';
+  for (const std::int32_t v : {0, 1, 0}) put(v);
+  for (const std::string& content : {ascii, binary}) {
+    const CloudTable table = readCloud(directory.write("a.ply", content));
+    ASSERT_EQ(table.size, 2U);
+    EXPECT_EQ(table.fields.size(), 3U);
+    EXPECT_EQ(table.dropped, std::vector<std::string>{"weights"});
+    EXPECT_EQ(table.position(0), (std::array<double, 3>{1.0, 2.0, 3.0}));
+    EXPECT_EQ(table.position(1), (std::array<double, 3>{4.0, 5.0, 6.0}));
+    EXPECT_EQ(table.triangles.size(), 1U);
+  }
+  // A list that claims more than the file holds.
+  const std::string cut = binary.substr(0, binary.find("end_header") + 11) + std::string(5, '\xff');
+  EXPECT_THROW(readCloud(directory.write("cut.ply", cut)), program::FileError);
+}
+
+TEST(Readers, WholeNumbersAsCoordinatesBecomeReal) {
+  const ScratchDirectory directory;
+  const std::string pcd = "FIELDS x ring y z\nSIZE 4 2 4 2\nTYPE I U U I\nPOINTS 2\nDATA ascii\n";
+  const CloudTable near = readCloud(directory.write("a.pcd", pcd + "-7 65535 8 9\n1 2 3 -4\n"));
+  EXPECT_EQ(near.position(0), (std::array<double, 3>{-7.0, 8.0, 9.0}));
+  EXPECT_EQ(near.position(1), (std::array<double, 3>{1.0, 3.0, -4.0}));
+  EXPECT_EQ(near.value(*near.find("ring"), 0), 65535.0);
+  for (const Field* f : near.xyz()) EXPECT_EQ(f->type, 'F');
+  EXPECT_EQ(near.find("x")->size, 4U);
+  EXPECT_EQ(near.find("ring")->type, 'U');
+  // Millimetres of a map: a float would lose digits.
+  const CloudTable far = readCloud(
+      directory.write("b.pcd", pcd + "500000001 0 4000000001 1\n500000002 0 4000000002 1\n"));
+  EXPECT_EQ(far.position(0), (std::array<double, 3>{500000001.0, 4000000001.0, 1.0}));
+  const CloudTable ply = readCloud(
+      directory.write("a.ply",
+                      "ply\nformat ascii 1.0\nelement vertex 1\nproperty short x\nproperty int y\n"
+                      "property uchar z\nend_header\n-1 2 3\n"));
+  EXPECT_EQ(ply.position(0), (std::array<double, 3>{-1.0, 2.0, 3.0}));
+}
+
+TEST(Readers, TimesInTextKeepTheirDigits) {
+  const ScratchDirectory directory;
+  const CloudTable table = readCloud(directory.write(
+      "a.txt", "x y z time nx ny nz\n0 0 0 1700000000.125 0 0 1\n1 1 1 1700000001.25 0 0 1\n"));
+  EXPECT_EQ(table.value(*table.find("time"), 0), 1700000000.125);
+  EXPECT_EQ(table.find("x")->size, 4U);
+  EXPECT_EQ(table.find("normal_z")->size, 4U);
 }
 
 TEST(Readers, TextWithNamesCountLineSeparatorsAndComments) {

@@ -227,6 +227,7 @@ class BadArguments(unittest.TestCase):
             (ValueError, "beta", lambda: segorient.segment(good, beta=float("nan"))),
             (TypeError, "gamma", lambda: segorient.orient(good, gamma="35")),
             (ValueError, "threads", lambda: segorient.orient(good, threads=-1)),
+            (TypeError, "split", lambda: segorient.segment(good, split=1.5)),
             (TypeError, "closed", lambda: segorient.orient(good, closed="yes")),
             (ValueError, "viewpoint", lambda: segorient.orient(good, viewpoint=[1, 2])),
             (TypeError, "viewpoint", lambda: segorient.orient(good, viewpoint="above")),
@@ -364,8 +365,13 @@ class AsTheProgram(unittest.TestCase):
                                      json.loads(json.dumps(report[key]), parse_float=lambda t: round(float(t), 4)))
             by_program = self.run_program(directory, "segment", "-k", "14", "--alpha", "15", "--recompute", "1")
             by_module = segorient.segment(points, k=14, alpha=15, recompute=1)
+            whole = len(by_module.kinds)
             np.testing.assert_array_equal(by_module.labels, by_program["label"].astype(np.int32))
             np.testing.assert_array_equal(by_module.kinds[by_module.labels], by_program["segment_kind"])
+            by_program = self.run_program(directory, "segment", "--split")
+            by_module = segorient.segment(points, split=True)
+            np.testing.assert_array_equal(by_module.labels, by_program["label"].astype(np.int32))
+            self.assertGreater(len(by_module.kinds), whole)  # the sphere is one face
             by_program = self.run_program(directory, "normals", "--normals", "ldt")
             by_module = segorient.normals(points, normals="ldt")
             np.testing.assert_array_equal(by_module.curvatures, by_program["curvature"])

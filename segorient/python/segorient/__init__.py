@@ -291,6 +291,7 @@ def normals(
 def segment(
     points: npt.ArrayLike,
     *,
+    split: bool = False,
     normals: str = "plane",
     k: Optional[int] = None,
     alpha: Optional[float] = None,
@@ -301,9 +302,10 @@ def segment(
     threads: int = 0,
     progress: Optional[Progress] = None,
 ) -> Segments:
-    """Cuts a cloud into segments of similar normals.
+    """Cuts a cloud into faces: segments of similar normals, united where their border is smooth.
 
     :param points: (n, 3)
+    :param split: leave round faces cut up by `beta`, as triangulation and orientation use them
     :param normals: estimator, see :func:`normals`
     :param k: neighbours of a point; None: 12
     :param alpha: degrees, largest angle between normals of neighbours in a segment; about 20
@@ -316,6 +318,9 @@ def segment(
     :raises TypeError, ValueError: for arguments that make no sense
     """
     options = _options(k, normals, alpha, beta, delta, epsilon, recompute, threads)
+    if not isinstance(split, (bool, np.bool_)):
+        raise TypeError(f"split must be True or False, not {split!r}")
+    options["split"] = bool(split)
     return Segments(*_core.segment(_local(points)[0], options, progress))
 
 
