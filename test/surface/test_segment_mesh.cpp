@@ -106,6 +106,23 @@ TEST(SegmentMesh, PlanarFacesWithAndWithoutHoles) {
   }
 }
 
+// Pockets between the points along a straight side are filled, a notch of the shape is not.
+TEST(SegmentMesh, StraightSidesKeepTheirAreaAndNotchesStay) {
+  const Points2 notched{{0, 0}, {1, 0}, {1, 1}, {0.65, 1}, {0.5, 0.5}, {0.35, 1}, {0, 1}};
+  for (unsigned seed = 1; seed <= 5; ++seed) {
+    const LabelledCloud square =
+        sample("square", {parallelogram({0, 0, 0}, {1, 0, 0}, {0, 1, 0})}, 900, seed);
+    const SegmentMesh full = meshOf(square.xyz, {0, 0, 1});
+    EXPECT_GE(full.area, 0.955) << seed;
+    EXPECT_LE(full.area, 1.0);
+    const LabelledCloud cut = sample("notched", {lid(notched, {}, 0, 1)}, 3000, seed);
+    const SegmentMesh mesh = meshOf(cut.xyz, {0, 0, 1});
+    EXPECT_NEAR(mesh.area / polygonArea(notched), 1.0, 0.04) << seed;
+    EXPECT_EQ(mesh.loopCount(), 1U);
+    expectSound(mesh, cut.xyz, {0, 0, 1});
+  }
+}
+
 TEST(SegmentMesh, NormalDecidesTheTurn) {
   const LabelledCloud cloud = sample("square", {lid(rectangle(1, 1), {}, 0, 1)}, 500, 3);
   const SegmentMesh up = meshOf(cloud.xyz, {0, 0, 1});
