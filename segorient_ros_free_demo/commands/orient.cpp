@@ -12,6 +12,7 @@
 #include "support/command_line.h"
 #include "support/hint_options.h"
 #include "support/json.h"
+#include "support/memory.h"
 #include "support/progress_bar.h"
 #include "support/result_columns.h"
 #include "support/stage_options.h"
@@ -163,6 +164,7 @@ int runOrient(const std::vector<std::string>& words) {
   std::optional<OutputFile> report;
   if (!report_path.empty()) report.emplace(report_path);
   const CloudTable table = readUsableCloud(line.argument("IN"));
+  requireMemory(line.argument("IN"), expectedMemory(table.size, options), availableMemory());
   OrientedCloud cloud;
   std::array<double, 3> origin{0, 0, 0};
   {

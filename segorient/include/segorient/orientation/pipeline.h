@@ -99,6 +99,9 @@ struct OrientedCloud {
 OrientedCloud orientCloud(const PointView& points, const std::vector<pcl::index_t>* indices,
                           const PipelineOptions& options, const PipelineProgress& progress = {});
 
+/// Bytes that orientCloud() takes beside its input at most, or a little more: linear in the points.
+std::size_t expectedMemory(std::size_t points, const PipelineOptions& options);
+
 /// The result for some rows of a cloud. Segments keep their labels and data; their members are
 /// those among `rows`, so sizes may be 0. Invalid rows get NaN.
 OrientedCloud selectRows(const OrientedCloud& cloud, const std::vector<pcl::index_t>& rows);
