@@ -45,8 +45,8 @@ struct AutoOrientation {
   OrientationResult result;
   std::vector<std::int32_t> cluster_of;            ///< per segment, into `clusters`
   std::vector<ClusterOrientationResult> clusters;  ///< by descending number of points
-  std::vector<Contradiction> contradictions;  ///< by descending weight
-  float viewpoint_agreement = 0.F;            ///< see ViewpointFit
+  std::vector<Contradiction> contradictions;       ///< by descending weight
+  float viewpoint_agreement = 0.F;                 ///< see ViewpointFit
 };
 
 /// Orients segments that do not mix sides, whatever they are part of: closed or open, nested,
