@@ -7,7 +7,7 @@ set -euo pipefail
 cd "$(dirname "$(realpath "$0")")/.."
 . segorient_ros_free_demo/setup.sh
 
-install_packages "${BUILD_PACKAGES[@]}" libgtest-dev
+install_packages "${BUILD_PACKAGES[@]}" "${TEST_PACKAGES[@]}"
 say "building (the first time takes some minutes)"
 configure -DSEGORIENT_BUILD_TESTS=ON
 build
