@@ -13,7 +13,7 @@ constexpr std::uint32_t kNone = PlanarTriangulation::kNone;
 constexpr std::size_t kMostBins = 1U << 16U;
 /// What counts as a pocket of the boundary: its mouth in critical lengths, and its depth in median
 /// edges. Notches of the shape itself are deeper, or wider than random gaps.
-constexpr float kPocketLength = 3.F;
+constexpr float kPocketLength = 2.F;
 constexpr float kPocketDepth = 1.F;
 
 float medianOf(std::vector<float> values) {
