@@ -135,7 +135,7 @@ FilteredNormals filterOrientedNormals(const PointView& points, const Neighborhoo
       n[0] = mean.x / l;
       n[1] = mean.y / l;
       n[2] = mean.z / l;
-      out.confidences[p] = l / mean.total;
+      out.confidences[p] = std::min(l / mean.total, 1.F);  // rounding may exceed 1
     }
     out.normals.swap(next);
   }
