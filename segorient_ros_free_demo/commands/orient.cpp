@@ -117,6 +117,15 @@ std::string reportText(const OrientedCloud& cloud, const std::array<double, 3>& 
     json.endObject();
   }
   json.endArray();
+  json.beginArray("clusters");
+  for (const ClusterOrientationResult& c : report.clusters) {
+    json.beginItem();
+    json.field("points", c.points);
+    json.field("component", c.component);
+    json.field("confidence", c.confidence);
+    json.endObject();
+  }
+  json.endArray();
   json.beginArray("contradictions");
   for (const Contradiction& c : report.contradictions) {
     json.beginItem();

@@ -95,7 +95,7 @@ AutoNormals orientPoints(const PointView& points, const Neighborhoods& neighborh
   normal_options.threads = options.threads;
   SheetNormals sheets = estimateSheetNormals(points, neighborhoods, normal_options);
   out.spacing = median(sheets.spacing);
-  if (begin) begin("orientation", 0.6);
+  if (begin) begin("orientation", 0.48);
   {
     const SheetField field = fieldOf(sheets);
     AutoOrientationOptions settings = options.automatic;
@@ -103,8 +103,10 @@ AutoNormals orientPoints(const PointView& points, const Neighborhoods& neighborh
     const Segmentation segments = segmentSheets(
         points, neighborhoods, field,
         admissibleEdges(points, neighborhoods, field, options.threads), options.sheets);
+    if (begin) begin("orientation", 0.62);
     out.orientation = orientSheets(points, neighborhoods, field, segments, settings, hints);
   }
+  if (begin) begin("orientation", 0.7);
   const OrientationResult& result = out.orientation.result;
   for (std::size_t i = 0; i < points.size; ++i) {
     const auto sign = static_cast<float>(result.point_signs[i]);
@@ -144,7 +146,7 @@ AutoStages runAutoStages(const CompactCloud& cloud, const PipelineOptions& optio
   out.components = std::move(oriented.components);
   out.orientation = std::move(oriented.orientation);
   out.spacing = oriented.spacing;
-  begin("segmentation", 0.85);
+  begin("segmentation", 0.81);
   segmentFinal(points, neighbors.table, options, out);
   return out;
 }

@@ -26,8 +26,12 @@ class Stages {
   Stages(const PipelineProgress& progress, PipelineReport& report)
       : progress_(progress), report_(report) {}
 
+  // Also called as a stage goes on.
   void begin(const char* stage, double fraction) {
-    if (stage_ != nullptr && std::strcmp(stage_, stage) == 0) return;
+    if (stage_ != nullptr && std::strcmp(stage_, stage) == 0) {
+      if (progress_) progress_(stage, fraction);
+      return;
+    }
     end();
     stage_ = stage;
     start_ = Clock::now();
@@ -94,6 +98,8 @@ void findSegments(const PipelineOptions& options, Working& work) {
   SegmentationOptions segmentation_options = options.segmentation;
   segmentation_options.neighbors = 0;
   segmentation_options.threads = options.threads;
+  // A point of a thin part that is given to the other side's segment is turned over with it.
+  segmentation_options.settle_edges = false;
   work.segmentation = segmentByNormals(work.cloud.view(), work.normalView(), work.neighborhoods,
                                        segmentation_options);
 }

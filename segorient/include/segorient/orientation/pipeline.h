@@ -24,8 +24,9 @@ namespace segorient {
 /// Settings of orientCloud(). The defaults need no tuning.
 struct PipelineOptions {
   int k = 0;  ///< neighbours of a point, itself not counted; <= 0 = from the cloud's noise
-  LocalNormalOptions normals;        ///< its k and threads are not used
-  SegmentationOptions segmentation;  ///< its threads and neighbors are not used
+  LocalNormalOptions normals;  ///< its k and threads are not used
+  /// Its threads and neighbors are not used, and settle_edges only by AUTO.
+  SegmentationOptions segmentation;
   /// How often normals near sharp edges are found anew and the cloud segmented again
   /// (paper, 2.3.1). Not for OrientationMethod::AUTO.
   int recomputations = 0;
