@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026, the segorient authors
-// Usual point types, organised clouds and a user's own type through every class: compiled without
-// PCL_NO_PRECOMPILE for PCL's types, so that the library has to hold them.
+// Usual point types and organised clouds through every class: compiled without PCL_NO_PRECOMPILE,
+// so that the library has to hold them.
 #include <gtest/gtest.h>
 #include <pcl/point_types.h>
 #include <segorient/features/awas_normal_estimation.h>
@@ -16,7 +16,9 @@
 #include <segorient/surface/segment_triangulation.h>
 
 #include <cmath>
+#include <cstdint>
 #include <limits>
+#include <vector>
 
 namespace segorient::test {
 namespace {
@@ -95,6 +97,15 @@ TYPED_TEST(PointTypes, GoThroughAllClasses) {
   EXPECT_FALSE(segments.empty());
   EXPECT_EQ(segmentation.getLabels().size(), cloud->size());
   EXPECT_EQ(segmentation.getLabels()[7], -1);
+
+  NormalRecomputation<TypeParam, pcl::Normal> recomputation;
+  recomputation.setInputCloud(cloud);
+  recomputation.setInputNormals(normals);
+  const Segmentation& flat = segmentation.getSegmentation();
+  recomputation.setLabels(flat.labels, std::vector<std::uint8_t>(flat.segments.size(), 1));
+  pcl::PointCloud<pcl::Normal> sharper;
+  recomputation.compute(sharper);
+  this->expectNormals(sharper);
 
   SegmentOrientation<TypeParam, pcl::Normal> orientation;
   orientation.setInputCloud(cloud);
