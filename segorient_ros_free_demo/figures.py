@@ -1,12 +1,14 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
 # Copyright (c) 2026, the segorient authors
-"""Makes the figures of the README and of the documentation from the shipped Fandisk.
+"""Makes the figures of the README and of the documentation anew.
 
 usage: figures.py [BUILD_DIRECTORY [CLOUDS]]
 
-With CLOUDS, a directory of clouds with true normals and their manifest.tsv, the tables of the README
-are printed as well (needs the target orientation_benchmark).
+The shipped Fandisk is enough for most of them. With CLOUDS, a directory of clouds with true normals
+and their manifest.tsv, those of the paper's other objects are drawn, and the table of the methods of
+orientation is printed (target orientation_benchmark). Where the target search_benchmark was built,
+the plot of the search is drawn as well, which takes minutes.
 """
 
 import subprocess
@@ -97,7 +99,13 @@ def main():
     build = Path(sys.argv[1] if len(sys.argv) > 1 else ROOT / "build").resolve()
     figures(build)
     if len(sys.argv) > 2:
+        run(ROOT / "segorient_ros_free_demo/paper_figures.sh", sys.argv[2], build)
         run(build / "bin/orientation_benchmark", sys.argv[2])
+    if (build / "bin/search_benchmark").exists():
+        with tempfile.TemporaryDirectory() as directory:
+            table = Path(directory) / "search.csv"
+            run(build / "bin/search_benchmark", "--csv", table)
+            run(ROOT / "test/benchmark/plot_search.py", table, ROOT / "test/benchmark/search_speed.svg")
 
 
 if __name__ == "__main__":
