@@ -9,6 +9,8 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
+#include <cstdint>
+#include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <map>
@@ -19,30 +21,60 @@
 
 namespace segorient::benchmark {
 
-/// A cloud with true normals: binary little-endian PLY of float x y z nx ny nz.
+/// A cloud with true normals.
 struct TrueCloud {
   std::string name;
   bool closed = false;
-  std::vector<float> rows;  // x y z nx ny nz
+  std::vector<float> rows;         // x y z nx ny nz
+  std::vector<std::int32_t> part;  // connected part of the surface, where the file tells
 
   std::size_t size() const { return rows.size() / 6; }
   PointView points() const { return {rows.data(), 6, size()}; }
   const float* normal(std::size_t i) const { return &rows[6 * i + 3]; }
 };
 
-/// A comment "closed=1" or "closed=0" in the file says which it is.
+/// Reads a binary little-endian PLY whose vertices have float x y z nx ny nz, in any order and
+/// beside other scalars; "part" tells the connected parts. A comment "closed=1" or "closed=0" in
+/// the file says which it is.
 inline bool readPly(const std::string& path, TrueCloud& cloud) {
+  const std::map<std::string, std::size_t> sizes{
+      {"char", 1},  {"uchar", 1},   {"int8", 1},   {"uint8", 1},  {"short", 2}, {"ushort", 2},
+      {"int16", 2}, {"uint16", 2},  {"int", 4},    {"uint", 4},   {"int32", 4}, {"uint32", 4},
+      {"float", 4}, {"float32", 4}, {"double", 8}, {"float64", 8}};
   std::ifstream file(path, std::ios::binary);
   std::string line;
   std::size_t points = 0;
+  std::size_t stride = 0;
+  std::map<std::string, std::size_t> offsets;
   while (std::getline(file, line) && line != "end_header") {
-    if (line.rfind("element vertex ", 0) == 0) points = std::stoul(line.substr(15));
+    std::istringstream words(line);
+    std::string word;
+    std::string type;
+    std::string name;
+    words >> word >> type >> name;
+    if (word == "element" && type == "vertex") points = std::stoul(name);
+    if (word == "property") {
+      if (sizes.count(type) == 0) return false;
+      offsets[name] = stride;
+      stride += sizes.at(type);
+    }
     if (line.find("closed=1") != std::string::npos) cloud.closed = true;
   }
   cloud.rows.resize(6 * points);
-  file.read(reinterpret_cast<char*>(cloud.rows.data()),
-            static_cast<std::streamsize>(cloud.rows.size() * sizeof(float)));
-  return file.good() && points > 0;
+  const auto part = offsets.find("part");
+  if (part != offsets.end()) cloud.part.resize(points);
+  std::vector<char> vertex(stride);
+  for (std::size_t i = 0; i < points; ++i) {
+    if (!file.read(vertex.data(), static_cast<std::streamsize>(stride))) return false;
+    float* row = &cloud.rows[6 * i];
+    for (const char* name : {"x", "y", "z", "nx", "ny", "nz"}) {
+      const auto offset = offsets.find(name);
+      if (offset == offsets.end()) return false;
+      std::memcpy(row++, &vertex[offset->second], sizeof(float));
+    }
+    if (part != offsets.end()) std::memcpy(&cloud.part[i], &vertex[part->second], sizeof(float));
+  }
+  return points > 0;
 }
 
 /// Names of clouds in a directory, and whether they are closed: from its manifest.tsv (name,
@@ -70,8 +102,16 @@ inline std::map<std::string, bool> listClouds(const std::string& directory) {
   return clouds;
 }
 
-/// Connected parts of the true surface: neighbours that lie along each other's true tangent plane.
+/// Connected parts of the true surface, as indices below the number of points: as the file tells,
+/// else by neighbours that lie along each other's true tangent plane.
 inline std::vector<std::size_t> connectedParts(const TrueCloud& cloud) {
+  if (!cloud.part.empty()) {
+    std::map<std::int32_t, std::size_t> first;
+    std::vector<std::size_t> parts;
+    for (const std::int32_t p : cloud.part)
+      parts.push_back(first.emplace(p, parts.size()).first->second);
+    return parts;
+  }
   search::MedianHashIndex index;
   index.build(cloud.points(), nullptr, {});
   Neighborhoods neighbors;
