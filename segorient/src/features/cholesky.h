@@ -13,11 +13,10 @@ template <std::size_t N>
 using VectorN = std::array<double, N>;
 
 /// Decomposes the symmetric positive definite lower triangle of m into L D L^T, in place.
-/// \return the smallest pivot as a share of its diagonal: 0 for a matrix that is not positive
-/// definite
+/// \param smallest_pivot as a share of its diagonal
+/// \return how many rows it went well for: N, or the first one whose pivot was smaller
 template <std::size_t N>
-double decompose(SquareMatrix<N>& m) {
-  double smallest = 1.0;
+std::size_t decompose(SquareMatrix<N>& m, double smallest_pivot) {
   for (std::size_t j = 0; j < N; ++j) {
     const double diagonal = m[j][j];
     for (std::size_t k = 0; k < j; ++k) {
@@ -25,26 +24,37 @@ double decompose(SquareMatrix<N>& m) {
       m[j][k] = product / m[k][k];
       m[j][j] -= product * m[j][k];
     }
-    const double share = m[j][j] / diagonal;
-    if (!(share > 0.0)) return 0.0;
-    if (share < smallest) smallest = share;
+    if (!(m[j][j] > smallest_pivot * diagonal)) return j;
     for (std::size_t i = j + 1; i < N; ++i) {
       for (std::size_t k = 0; k < j; ++k) m[i][j] -= m[i][k] * m[j][k];
     }
   }
-  return smallest;
+  return N;
+}
+
+/// Replaces the first `order` entries of x by those of the solution of L y = x.
+template <std::size_t N>
+void substituteForward(const SquareMatrix<N>& m, VectorN<N>& x, std::size_t order = N) {
+  for (std::size_t i = 0; i < order; ++i) {
+    for (std::size_t k = 0; k < i; ++k) x[i] -= m[i][k] * x[k];
+  }
+}
+
+/// Replaces x by the solution of L^T y = x, L being as large as x.
+template <std::size_t N, std::size_t M>
+void substituteBackward(const SquareMatrix<N>& m, VectorN<M>& x) {
+  static_assert(M <= N, "L must be as large as x");
+  for (std::size_t i = M; i-- > 0;) {
+    for (std::size_t k = i + 1; k < M; ++k) x[i] -= m[k][i] * x[k];
+  }
 }
 
 /// Replaces x by the solution for the right side x.
 template <std::size_t N>
 void solveDecomposed(const SquareMatrix<N>& m, VectorN<N>& x) {
-  for (std::size_t i = 0; i < N; ++i) {
-    for (std::size_t k = 0; k < i; ++k) x[i] -= m[i][k] * x[k];
-  }
+  substituteForward(m, x);
   for (std::size_t i = 0; i < N; ++i) x[i] /= m[i][i];
-  for (std::size_t i = N; i-- > 0;) {
-    for (std::size_t k = i + 1; k < N; ++k) x[i] -= m[k][i] * x[k];
-  }
+  substituteBackward(m, x);
 }
 
 }  // namespace segorient::detail

@@ -3,28 +3,31 @@
 #include "one_sided_fit.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <vector>
 
-#include "cholesky.h"
 #include "symmetric_eigen.h"
 
 namespace segorient::detail {
 namespace {
 
-/// Secant of 30 degrees. A surface that turns farther away from its own points' plane on the way to
-/// the point looked at is an extrapolation that nothing supports.
+// Secant of 30 degrees. A surface that turns farther away from its own points' plane on the way to
+// the point looked at is an extrapolation that nothing supports.
 constexpr double kSteepest = 1.1547;
+// Fewer points than this get a plane.
+constexpr std::size_t kFewestForQuadratic = 8;
+// A curvature counts if each of its coefficients takes this many times a residual's share of the
+// squares on average: noise alone does so once in some hundred times (F test). A plane's normal is
+// far better determined at the border of its points, which is where the edge is.
+constexpr double kLeastGain = 6.0;
+constexpr double kSmallestPivot = 1e-4;
 
-/// Points over their best plane; lengths in units of the largest distance from the point looked at.
-struct Projection {
-  double unit;
-  double axes[3][3];  ///< x, y, z
-  std::vector<std::array<double, 3>> local;
-};
+VectorN<6> termsAt(double x, double y) {
+  return {1.0, x, y, x * x, x * y, y * y};
+}
 
-bool project(const NearPoint* points, std::size_t count, Projection& projection) {
+}  // namespace
+
+bool OneSidedFit::findFrame(const NearPoint* points, std::size_t count) {
   double mean[3] = {0, 0, 0};
   double farthest = 0;
   for (std::size_t j = 0; j < count; ++j) {
@@ -44,81 +47,125 @@ bool project(const NearPoint* points, std::size_t count, Projection& projection)
   }
   const SymmetricEigen3 eigen = symmetricEigen(c);
   if (!(eigen.values[1] > 1e-6 * eigen.values[2]) || !(farthest > 0.0)) return false;
-  projection.unit = std::sqrt(farthest);
+  reach_ = std::sqrt(farthest);
   for (int a = 0; a < 3; ++a) {
-    projection.axes[0][a] = eigen.vectors[2][a];
-    projection.axes[1][a] = eigen.vectors[1][a];
-    projection.axes[2][a] = eigen.vectors[0][a];
+    origin_[a] = mean[a];
+    axes_[0][a] = eigen.vectors[2][a];
+    axes_[1][a] = eigen.vectors[1][a];
+    axes_[2][a] = eigen.vectors[0][a];
   }
-  projection.local.resize(count);
+  return true;
+}
+
+std::array<double, 3> OneSidedFit::inFrame(const double* offset) const {
+  const double d[3] = {(offset[0] - origin_[0]) / reach_, (offset[1] - origin_[1]) / reach_,
+                       (offset[2] - origin_[2]) / reach_};
+  std::array<double, 3> local{};
+  for (std::size_t i = 0; i < 3; ++i) {
+    local[i] = d[0] * axes_[i][0] + d[1] * axes_[i][1] + d[2] * axes_[i][2];
+  }
+  return local;
+}
+
+double OneSidedFit::sumUp(const NearPoint* points, std::size_t count, VectorN<6>& right) {
+  double x1 = 0, y1 = 0, x2 = 0, xy = 0, y2 = 0, x3 = 0, x2y = 0, xy2 = 0, y3 = 0;
+  double x4 = 0, x3y = 0, x2y2 = 0, xy3 = 0, y4 = 0, squares = 0;
+  right = {};
   for (std::size_t j = 0; j < count; ++j) {
-    for (std::size_t i = 0; i < 3; ++i) {
-      double sum = 0;
-      for (int a = 0; a < 3; ++a) sum += points[j].offset[a] * projection.axes[i][a];
-      projection.local[j][i] = sum / projection.unit;
-    }
+    const std::array<double, 3> p = inFrame(points[j].offset);
+    const double xx = p[0] * p[0];
+    const double cross = p[0] * p[1];
+    const double yy = p[1] * p[1];
+    x1 += p[0];
+    y1 += p[1];
+    x2 += xx;
+    xy += cross;
+    y2 += yy;
+    x3 += xx * p[0];
+    x2y += xx * p[1];
+    xy2 += p[0] * yy;
+    y3 += yy * p[1];
+    x4 += xx * xx;
+    x3y += xx * cross;
+    x2y2 += xx * yy;
+    xy3 += cross * yy;
+    y4 += yy * yy;
+    squares += p[2] * p[2];
+    right[0] += p[2];
+    right[1] += p[0] * p[2];
+    right[2] += p[1] * p[2];
+    right[3] += xx * p[2];
+    right[4] += cross * p[2];
+    right[5] += yy * p[2];
   }
-  return true;
+  factor_ = {{{static_cast<double>(count)},
+              {x1, x2},
+              {y1, xy, y2},
+              {x2, x3, x2y, x4},
+              {xy, x2y, xy2, x3y, x2y2},
+              {y2, xy2, y3, x2y2, xy3, y4}}};
+  return squares;
 }
 
-template <std::size_t N>
-VectorN<N> termsAt(double x, double y) {
-  if constexpr (N == 6) {
-    return {1.0, x, y, x * x, x * y, y * y};
-  } else {
-    return {1.0, x, y};
+void OneSidedFit::fit(const NearPoint* points, std::size_t count) {
+  order_ = 0;
+  if (count < 4 || !findFrame(points, count)) return;
+  VectorN<6> right{};
+  const double squares = sumUp(points, count, right);
+  SquareMatrix<6>& m = factor_;
+  const std::size_t determined = decompose(m, kSmallestPivot);
+  if (determined < 3) return;
+  // What each coefficient takes of the squares, given those before it.
+  substituteForward(m, right, determined == 6 ? 6 : 3);
+  const auto rest = [&](std::size_t order) {
+    double left = squares;
+    for (std::size_t i = 0; i < order; ++i) left -= right[i] * right[i] / m[i][i];
+    const double freedom = std::max(1.0, static_cast<double>(count) - static_cast<double>(order));
+    return std::max(0.0, left) / freedom;
+  };
+  order_ = 3;
+  if (determined == 6 && count >= kFewestForQuadratic) {
+    double gain = 0;
+    for (std::size_t i = 3; i < 6; ++i) gain += right[i] * right[i] / m[i][i];
+    if (gain > 3.0 * kLeastGain * rest(6)) order_ = 6;
   }
+  rms_ = reach_ * std::sqrt(rest(order_));
+  for (std::size_t i = 0; i < 3; ++i) plane_[i] = right[i] / m[i][i];
+  substituteBackward(m, plane_);
+  if (order_ < 6) return;
+  for (std::size_t i = 0; i < 6; ++i) quadratic_[i] = right[i] / m[i][i];
+  substituteBackward(m, quadratic_);
 }
 
-template <std::size_t N>
-bool fitPolynomial(const Projection& projection, OneSidedFit& fit) {
-  const std::size_t count = projection.local.size();
-  if (count < N) return false;
-  SquareMatrix<N> m{};
-  VectorN<N> c{};
-  for (const auto& p : projection.local) {
-    const VectorN<N> t = termsAt<N>(p[0], p[1]);
-    for (std::size_t i = 0; i < N; ++i) {
-      for (std::size_t k = 0; k <= i; ++k) m[i][k] += t[i] * t[k];
-      c[i] += t[i] * p[2];
+SurfaceView OneSidedFit::at(const double* offset) const {
+  const std::array<double, 3> local = inFrame(offset);
+  const double x = local[0];
+  const double y = local[1];
+  std::size_t order = order_;
+  double z = plane_[0] + plane_[1] * x + plane_[2] * y;
+  double slope[2] = {plane_[1], plane_[2]};
+  if (order == 6) {
+    const VectorN<6>& c = quadratic_;
+    const double u = c[1] + 2.0 * c[3] * x + c[4] * y;
+    const double v = c[2] + c[4] * x + 2.0 * c[5] * y;
+    if (1.0 + u * u + v * v <= kSteepest * kSteepest) {
+      z = c[0] + x * (c[1] + c[3] * x + c[4] * y) + y * (c[2] + c[5] * y);
+      slope[0] = u;
+      slope[1] = v;
+    } else {
+      order = 3;
     }
   }
-  if (decompose(m) < 1e-4) return false;
-  solveDecomposed(m, c);
-  VectorN<N> constant{};
-  constant[0] = 1.0;
-  solveDecomposed(m, constant);
-  double squares = 0;
-  for (const auto& p : projection.local) {
-    const VectorN<N> t = termsAt<N>(p[0], p[1]);
-    double z = p[2];
-    for (std::size_t i = 0; i < N; ++i) z -= t[i] * c[i];
-    squares += z * z;
-  }
-  const double slope = std::sqrt(1.0 + c[1] * c[1] + c[2] * c[2]);
-  if (N > 3 && slope > kSteepest) return false;
+  SurfaceView view;
+  const double secant = std::sqrt(1.0 + slope[0] * slope[0] + slope[1] * slope[1]);
   for (int a = 0; a < 3; ++a) {
-    fit.normal[a] =
-        (projection.axes[2][a] - c[1] * projection.axes[0][a] - c[2] * projection.axes[1][a]) /
-        slope;
+    view.normal[a] = (axes_[2][a] - slope[0] * axes_[0][a] - slope[1] * axes_[1][a]) / secant;
   }
-  const double freedom = std::max(1.0, static_cast<double>(count) - static_cast<double>(N));
-  fit.height = projection.unit * c[0] / slope;
-  fit.rms = projection.unit * std::sqrt(squares / freedom);
-  fit.leverage = constant[0];
-  fit.reach = projection.unit;
-  fit.valid = true;
-  return true;
-}
-
-}  // namespace
-
-OneSidedFit fitOneSided(const NearPoint* points, std::size_t count) {
-  OneSidedFit fit;
-  Projection projection;
-  if (count < 4 || !project(points, count, projection)) return fit;
-  if (count < 8 || !fitPolynomial<6>(projection, fit)) fitPolynomial<3>(projection, fit);
-  return fit;
+  view.height = reach_ * (z - local[2]) / secant;
+  VectorN<6> terms = termsAt(x, y);
+  substituteForward(factor_, terms, order);
+  for (std::size_t i = 0; i < order; ++i) view.leverage += terms[i] * terms[i] / factor_[i][i];
+  return view;
 }
 
 }  // namespace segorient::detail

@@ -6,31 +6,33 @@
 #include <map>
 #include <utility>
 
-#include "one_sided_fit.h"
-#include "point_set.h"
+#include "one_sided_patch.h"
 #include "recompute_scene.h"
 
 namespace segorient::detail {
 namespace {
 
-// Points of one segment that a surface is fitted to: some five for each coefficient, so that noise
-// of a quarter of the spacing averages out.
-constexpr std::size_t kMostPoints = 28;
+using Side = OneSidedPatch::Side;
+
 // Normals that differ by less than this (11 degrees) around a point need no second look.
 const double kFlat = std::cos(0.2);
-// One surface through everything around must fit this much worse than one side's surface.
-constexpr double kWorse = 1.5;
+// One surface through everything around must fit this much worse than one side's surface: by more
+// than such estimates of the same noise from some forty points differ.
+constexpr double kWorse = 1.2;
 // Standard deviations that a point may lie off the surface that it joins.
 constexpr double kFarthestOff = 3.0;
 // Beyond this a surface's height at the point is extrapolated guesswork.
 constexpr double kLargestLeverage = 30.0;
+// A point shares the patch of one of this many nearest: within that distance patches differ little.
+constexpr int kPatchNeighbors = 12;
 // Share of the points around, and of the points along the same border, that must see the edge as
 // well: an edge is a line of points, and one that stands alone is noise or curvature.
 constexpr double kAgreement = 0.5;
-
-// Share of all points looked at that must see an edge. On solids with edges it is 0.5 to 0.9; on
-// curved shapes, where segments meet smoothly and single folds mislead, 0.1 to 0.3.
-constexpr double kEdgedShare = 0.4;
+// Share of all points looked at that must see an edge. On solids with edges it is 0.65 to 0.95; on
+// curved shapes, where segments meet smoothly and single folds mislead, 0.15 to 0.5.
+constexpr double kEdgedShare = 0.55;
+// Patches that the share is measured on: it is then known to a few hundredths.
+constexpr std::size_t kSampledPatches = 512;
 
 double logNormalCdf(double x) {
   return std::log(std::max(0.5 * std::erfc(-x * M_SQRT1_2), 1e-30));
@@ -47,126 +49,95 @@ struct Proposal {
   std::vector<SeenBorder> borders;
 };
 
-/// One segment near a point.
-struct Side {
-  std::int32_t label = -1;
-  OneSidedFit fit;
-  double center[3] = {0, 0, 0};  ///< of its nearest points
+/// One side as a point sees it.
+struct SeenSide {
+  const Side* side;
+  SurfaceView view;
+  double sigma;      ///< standard deviation of the point's height over the surface; never zero
+  double center[3];  ///< of the side's points, from the point
 };
 
-double cosine(const Side& a, const Side& b) {
+double cosine(const SeenSide& a, const SeenSide& b) {
   double c = 0;
-  for (int i = 0; i < 3; ++i) c += a.fit.normal[i] * b.fit.normal[i];
+  for (int i = 0; i < 3; ++i) c += a.view.normal[i] * b.view.normal[i];
   return std::abs(c);
-}
-
-/// Standard deviation of a point's height over the surface; never zero, so that ratios exist on
-/// noiseless clouds.
-double sigma(const OneSidedFit& f) {
-  return f.rms * std::sqrt(1.0 + f.leverage) + 1e-3 * f.reach;
 }
 
 class OneSidedRule {
  public:
   OneSidedRule(const RecomputationScene& scene, const RecomputationOptions& options)
-      : scene_(scene), edge_cosine_(std::cos(static_cast<double>(options.edge_angle))) {}
+      : scene_(scene),
+        patch_(scene),
+        edge_cosine_(std::cos(static_cast<double>(options.edge_angle))) {}
 
-  /// Proposes a side for the point; accepted says whether it sees a sharp edge.
+  void buildPatch(std::size_t middle) {
+    middle_ = middle;
+    patch_.build(middle);
+  }
+
+  /// Proposes a side for a point on the patch; accepted says whether it sees a sharp edge.
   void propose(std::size_t i, Proposal& proposal) {
-    proposal.result.label = scene_.labels[i];
-    findSides(i);
-    if (sides_.empty()) return;
-    collect(i);
-    for (Side& side : sides_) fitSide(side);
-    const Side* best = mostLikelySide();
+    proposal.borders.clear();
+    lookAtSides(i);
+    const SeenSide* best = mostLikelySide();
     if (!best) return;
-    const bool edge = std::any_of(sides_.begin(), sides_.end(), [&](const Side& s) {
-      return s.fit.valid && cosine(*best, s) < edge_cosine_;
+    const bool edge = std::any_of(sides_.begin(), sides_.end(), [&](const SeenSide& s) {
+      return cosine(*best, s) < edge_cosine_;
     });
-    proposal.result.accepted = edge &&
-                               std::abs(best->fit.height) <= kFarthestOff * sigma(best->fit) &&
-                               oneSurfaceFitsWorse(best->fit);
+    proposal.result.accepted = edge && std::abs(best->view.height) <= kFarthestOff * best->sigma &&
+                               oneSurfaceFitsWorse(best->side->fit);
     noteBorders(*best, proposal);
     if (!proposal.result.accepted) return;
-    proposal.result.label = best->label;
+    proposal.result.label = best->side->label;
     for (int a = 0; a < 3; ++a) {
-      proposal.result.normal[a] = static_cast<float>(best->fit.normal[a]);
+      proposal.result.normal[a] = static_cast<float>(best->view.normal[a]);
     }
   }
 
  private:
-  struct Candidate {
-    NearPoint point;
-    std::int32_t label;
-    std::size_t index;
-  };
+  bool touches(std::size_t i, std::int32_t label) const {
+    for (int j = 0; j < scene_.count(i); ++j) {
+      if (scene_.labels[scene_.neighbor(i, j)] == label) return true;
+    }
+    return false;
+  }
 
-  void findSides(std::size_t i) {
+  void lookAtSides(std::size_t i) {
     sides_.clear();
-    for (int j = 0; j < scene_.count(i); ++j) {
-      const std::int32_t label = scene_.labels[scene_.neighbor(i, j)];
-      const bool known = std::any_of(sides_.begin(), sides_.end(),
-                                     [&](const Side& s) { return s.label == label; });
-      if (known || !scene_.isRegular(label)) continue;
-      sides_.emplace_back();
-      sides_.back().label = label;
+    double offset[3];
+    for (std::size_t a = 0; a < 3; ++a) {
+      offset[a] =
+          static_cast<double>(scene_.points[i][a]) - static_cast<double>(scene_.points[middle_][a]);
+    }
+    for (const Side& side : patch_.sides()) {
+      if (!side.fit.valid() || !touches(i, side.label)) continue;
+      SeenSide seen{};
+      seen.side = &side;
+      seen.view = side.fit.at(offset);
+      if (side.label == scene_.labels[i]) leaveOut(seen.view);
+      if (seen.view.leverage > kLargestLeverage) continue;
+      seen.sigma = side.fit.rms() * std::sqrt(1.0 + seen.view.leverage) + 1e-3 * side.fit.reach();
+      for (int a = 0; a < 3; ++a) seen.center[a] = side.fit.center()[a] - offset[a];
+      sides_.push_back(seen);
     }
   }
 
-  /// The neighbours and their neighbours, the point itself left out, by distance.
-  void collect(std::size_t i) {
-    seen_.clear();
-    seen_.insert(i);
-    near_.clear();
-    const float* p = scene_.points[i];
-    for (int j = 0; j < scene_.count(i); ++j) {
-      const std::size_t q = scene_.neighbor(i, j);
-      for (int k = 0; k < scene_.count(q); ++k) {
-        const std::size_t r = scene_.neighbor(q, k);
-        if (!seen_.insert(r)) continue;
-        NearPoint point{};
-        for (int a = 0; a < 3; ++a) {
-          point.offset[a] = static_cast<double>(scene_.points[r][a]) - static_cast<double>(p[a]);
-          point.sqr_distance += point.offset[a] * point.offset[a];
-        }
-        near_.push_back({point, scene_.labels[r], r});
-      }
-    }
-    order_.clear();
-    for (std::size_t c = 0; c < near_.size(); ++c) {
-      order_.emplace_back(near_[c].point.sqr_distance, c);
-    }
-    std::sort(order_.begin(), order_.end(), [&](const auto& a, const auto& b) {
-      return a.first != b.first ? a.first < b.first : near_[a.second].index < near_[b.second].index;
-    });
+  bool oneSurfaceFitsWorse(const OneSidedFit& best) {
+    const OneSidedFit& whole = patch_.whole();
+    return !whole.valid() || whole.rms() >= kWorse * best.rms();
   }
 
-  template <typename Accept>
-  OneSidedFit fitNearest(const Accept& accept) {
-    chosen_.clear();
-    for (const auto& [distance, at] : order_) {
-      if (chosen_.size() == kMostPoints) break;
-      if (accept(near_[at].label)) chosen_.push_back(near_[at].point);
-    }
-    return fitOneSided(chosen_.data(), chosen_.size());
+  /// As the surface would pass without the point itself, which is among those it was fitted to.
+  static void leaveOut(SurfaceView& view) {
+    const double rest = std::max(1.0 - view.leverage, 1e-3);
+    view.height /= rest;
+    view.leverage /= rest;
   }
 
-  void fitSide(Side& side) {
-    side.fit = fitNearest([&](std::int32_t label) { return label == side.label; });
-    if (side.fit.leverage > kLargestLeverage) side.fit.valid = false;
-    const std::size_t nearest = std::min<std::size_t>(chosen_.size(), 6);
-    for (std::size_t j = 0; j < nearest; ++j) {
-      for (int a = 0; a < 3; ++a) {
-        side.center[a] += chosen_[j].offset[a] / static_cast<double>(nearest);
-      }
-    }
-  }
-
-  const Side* mostLikelySide() const {
-    const Side* best = nullptr;
+  const SeenSide* mostLikelySide() const {
+    const SeenSide* best = nullptr;
     double best_score = std::numeric_limits<double>::infinity();
-    for (const Side& side : sides_) {
-      if (!side.fit.valid) continue;
+    for (const SeenSide& side : sides_) {
       const double score = unlikelihood(side);
       if (score >= best_score) continue;
       best_score = score;
@@ -178,74 +149,172 @@ class OneSidedRule {
   /// Negative logarithm of the likelihood that the point belongs to the side: that noise put it so
   /// far off this surface, and that it lies on that side of every other surface where this
   /// segment's points lie. The latter settles what distances alone leave open near the edge itself.
-  double unlikelihood(const Side& side) const {
-    const double off = side.fit.height / sigma(side.fit);
-    double sum = 0.5 * off * off + std::log(sigma(side.fit));
-    for (const Side& other : sides_) {
-      if (&other == &side || !other.fit.valid || cosine(side, other) > edge_cosine_) continue;
-      double height = -other.fit.height;
-      for (int a = 0; a < 3; ++a) height += side.center[a] * other.fit.normal[a];
-      const double inside = height < 0.0 ? other.fit.height : -other.fit.height;
-      sum -= logNormalCdf(inside / sigma(other.fit));
+  double unlikelihood(const SeenSide& side) const {
+    const double off = side.view.height / side.sigma;
+    double sum = 0.5 * off * off + std::log(side.sigma);
+    for (const SeenSide& other : sides_) {
+      if (&other == &side || cosine(side, other) > edge_cosine_) continue;
+      double height = -other.view.height;
+      for (int a = 0; a < 3; ++a) height += side.center[a] * other.view.normal[a];
+      const double inside = height < 0.0 ? other.view.height : -other.view.height;
+      sum -= logNormalCdf(inside / other.sigma);
     }
     return sum;
   }
 
-  bool oneSurfaceFitsWorse(const OneSidedFit& best) {
-    const OneSidedFit all = fitNearest([](std::int32_t) { return true; });
-    return !all.valid || all.rms >= kWorse * best.rms;
-  }
-
-  void noteBorders(const Side& best, Proposal& proposal) const {
-    for (const Side& a : sides_) {
-      for (const Side& b : sides_) {
-        if (!(a.label < b.label) || !a.fit.valid || !b.fit.valid) continue;
+  void noteBorders(const SeenSide& best, Proposal& proposal) const {
+    for (const SeenSide& a : sides_) {
+      for (const SeenSide& b : sides_) {
+        if (!(a.side->label < b.side->label)) continue;
         const bool concerns = &a == &best || &b == &best;
         proposal.borders.push_back(
-            {{a.label, b.label},
+            {{a.side->label, b.side->label},
              concerns && proposal.result.accepted && cosine(a, b) < edge_cosine_});
       }
     }
   }
 
   const RecomputationScene& scene_;
+  OneSidedPatch patch_;
   double edge_cosine_;
-  std::vector<Side> sides_;
-  PointSet seen_;
-  std::vector<Candidate> near_;
-  std::vector<std::pair<double, std::size_t>> order_;  ///< into near_, by distance
-  std::vector<NearPoint> chosen_;
+  std::size_t middle_ = 0;
+  std::vector<SeenSide> sides_;
 };
 
 /// What is known of a point while the votes are counted.
-enum State : std::uint8_t { kUntouched, kExamined, kSharp };
+enum State : std::uint8_t { kUntouched, kExamined, kMiddle, kSharp };
 
-std::vector<Proposal> examine(const RecomputationScene& scene, const RecomputationOptions& options,
-                              std::vector<std::uint8_t>& state) {
+/// A patch and the points that it serves: a range of the points looked at.
+struct Patch {
+  std::size_t middle = 0;
+  std::size_t begin = 0;
+  std::size_t end = 0;
+};
+
+/// The points to look at, patch by patch, and some patches spread evenly over the cloud.
+struct Looks {
+  std::vector<std::size_t> points;
+  std::vector<Patch> patches;
+  std::vector<std::size_t> sample;
+};
+
+std::vector<std::size_t> pointsAtBorders(const RecomputationScene& scene,
+                                         std::vector<std::uint8_t>& state) {
   const auto size = static_cast<std::ptrdiff_t>(scene.size());
 #pragma omp parallel for schedule(static) num_threads(scene.threads)
   for (std::ptrdiff_t i = 0; i < size; ++i) {
     const auto point = static_cast<std::size_t>(i);
     state[point] = scene.meetsBorder(point, kFlat) ? kExamined : kUntouched;
   }
-  std::vector<Proposal> proposals;
+  std::vector<std::size_t> points;
   for (std::size_t i = 0; i < scene.size(); ++i) {
-    if (state[i] != kExamined) continue;
-    proposals.emplace_back();
-    proposals.back().result.point = i;
+    if (state[i] == kExamined) points.push_back(i);
   }
-  const auto examined = static_cast<std::ptrdiff_t>(proposals.size());
-#pragma omp parallel num_threads(scene.threads)
-  {
-    OneSidedRule rule(scene, options);
-#pragma omp for schedule(dynamic, 64)
-    for (std::ptrdiff_t r = 0; r < examined; ++r) {
-      Proposal& proposal = proposals[static_cast<std::size_t>(r)];
-      rule.propose(proposal.result.point, proposal);
-      if (proposal.result.accepted) state[proposal.result.point] = kSharp;
+  return points;
+}
+
+/// By coordinates, so that nothing depends on the order of the points.
+std::vector<std::size_t> inOrderOfPlace(const RecomputationScene& scene,
+                                        std::vector<std::size_t> points) {
+  std::sort(points.begin(), points.end(), [&](std::size_t a, std::size_t b) {
+    for (std::size_t c = 0; c < 3; ++c) {
+      const float difference = scene.points[a][c] - scene.points[b][c];
+      if (difference != 0.F) return difference < 0.F;
+    }
+    return a < b;
+  });
+  return points;
+}
+
+/// Greedily, each point becomes the middle of a patch that has none among its nearest.
+Looks layPatches(const RecomputationScene& scene, std::vector<std::uint8_t>& state) {
+  const auto middleNear = [&](std::size_t i) {
+    const int count = std::min(scene.count(i), kPatchNeighbors + 1);
+    for (int j = 0; j < count; ++j) {
+      if (state[scene.neighbor(i, j)] == kMiddle) return scene.neighbor(i, j);
+    }
+    return scene.size();
+  };
+  const std::vector<std::size_t> examined = pointsAtBorders(scene, state);
+  std::vector<std::size_t> middles;
+  for (const std::size_t i : inOrderOfPlace(scene, examined)) {
+    if (middleNear(i) < scene.size()) continue;
+    state[i] = kMiddle;
+    middles.push_back(i);
+  }
+  std::vector<std::pair<std::size_t, std::size_t>> pairs;
+  pairs.reserve(examined.size());
+  for (const std::size_t i : examined) pairs.emplace_back(middleNear(i), i);
+  std::sort(pairs.begin(), pairs.end());
+
+  Looks looks;
+  looks.points.reserve(pairs.size());
+  for (const auto& [middle, point] : pairs) {
+    if (looks.patches.empty() || looks.patches.back().middle != middle) {
+      looks.patches.push_back({middle, looks.points.size(), looks.points.size()});
+    }
+    looks.points.push_back(point);
+    looks.patches.back().end = looks.points.size();
+  }
+  const std::size_t step = std::max<std::size_t>(1, middles.size() / kSampledPatches);
+  for (std::size_t m = 0; m < middles.size(); m += step) {
+    const auto at = std::lower_bound(
+        looks.patches.begin(), looks.patches.end(), middles[m],
+        [](const Patch& patch, std::size_t middle) { return patch.middle < middle; });
+    looks.sample.push_back(static_cast<std::size_t>(at - looks.patches.begin()));
+  }
+  return looks;
+}
+
+/// Proposals for the points of some patches, in their order.
+class Proposer {
+ public:
+  Proposer(const RecomputationScene& scene, const RecomputationOptions& options, const Looks& looks)
+      : scene_(scene), options_(options), looks_(looks), proposals_(looks.points.size()) {
+    for (std::size_t r = 0; r < proposals_.size(); ++r) {
+      proposals_[r].result.point = looks.points[r];
+      proposals_[r].result.label = scene.labels[looks.points[r]];
     }
   }
-  return proposals;
+
+  template <typename PatchAt>
+  void run(std::size_t count, const PatchAt& patchAt) {
+    const auto size = static_cast<std::ptrdiff_t>(count);
+#pragma omp parallel num_threads(scene_.threads)
+    {
+      OneSidedRule rule(scene_, options_);
+#pragma omp for schedule(dynamic, 16)
+      for (std::ptrdiff_t p = 0; p < size; ++p) {
+        const Patch& patch = looks_.patches[patchAt(static_cast<std::size_t>(p))];
+        rule.buildPatch(patch.middle);
+        for (std::size_t r = patch.begin; r < patch.end; ++r) {
+          rule.propose(looks_.points[r], proposals_[r]);
+        }
+      }
+    }
+  }
+  std::vector<Proposal>& proposals() {
+    return proposals_;
+  }
+
+ private:
+  const RecomputationScene& scene_;
+  const RecomputationOptions& options_;
+  const Looks& looks_;
+  std::vector<Proposal> proposals_;
+};
+
+/// Whether so many of the points of some patches see an edge that the cloud has edges at all.
+bool seesEdges(const Looks& looks, const std::vector<Proposal>& proposals) {
+  std::size_t sharp = 0;
+  std::size_t all = 0;
+  for (const std::size_t p : looks.sample) {
+    for (std::size_t r = looks.patches[p].begin; r < looks.patches[p].end; ++r) {
+      ++all;
+      sharp += proposals[r].result.accepted ? 1 : 0;
+    }
+  }
+  return static_cast<double>(sharp) >= kEdgedShare * static_cast<double>(all);
 }
 
 bool neighborsAgree(const RecomputationScene& scene, const std::vector<std::uint8_t>& state,
@@ -260,22 +329,19 @@ bool neighborsAgree(const RecomputationScene& scene, const std::vector<std::uint
   return sharp >= kAgreement * examined;
 }
 
-}  // namespace
+/// What along each border saw it as sharp.
+struct Votes {
+  std::size_t all = 0;
+  std::size_t sharp = 0;
+};
 
-std::vector<Recomputed> applyOneSidedRule(const RecomputationScene& scene,
-                                          const RecomputationOptions& options) {
-  std::vector<std::uint8_t> state(scene.size());
-  const std::vector<Proposal> proposals = examine(scene, options, state);
-
-  const auto sharp = static_cast<double>(std::count(state.begin(), state.end(), kSharp));
-  const bool edged = sharp >= kEdgedShare * static_cast<double>(proposals.size());
-
-  struct Votes {
-    std::size_t all = 0;
-    std::size_t sharp = 0;
-  };
+/// Accepts what the points around and along the same border agree with.
+std::vector<Recomputed> elect(const RecomputationScene& scene, bool edged,
+                              const std::vector<Proposal>& proposals,
+                              std::vector<std::uint8_t>& state) {
   std::map<std::pair<std::int32_t, std::int32_t>, Votes> votes;
   for (const Proposal& p : proposals) {
+    if (p.result.accepted) state[p.result.point] = kSharp;
     for (const SeenBorder& border : p.borders) {
       Votes& v = votes[border.labels];
       ++v.all;
@@ -297,6 +363,20 @@ std::vector<Recomputed> applyOneSidedRule(const RecomputationScene& scene,
         edged && border_agrees && neighborsAgree(scene, state, p.result.point);
   }
   return results;
+}
+
+}  // namespace
+
+std::vector<Recomputed> applyOneSidedRule(const RecomputationScene& scene,
+                                          const RecomputationOptions& options) {
+  std::vector<std::uint8_t> state(scene.size());
+  const Looks looks = layPatches(scene, state);
+  Proposer proposer(scene, options, looks);
+  proposer.run(looks.sample.size(), [&](std::size_t p) { return looks.sample[p]; });
+  const std::vector<Proposal>& proposals = proposer.proposals();
+  const bool edged = seesEdges(looks, proposals);
+  if (edged) proposer.run(looks.patches.size(), [](std::size_t p) { return p; });
+  return elect(scene, edged, proposals, state);
 }
 
 }  // namespace segorient::detail

@@ -87,7 +87,7 @@ bool fitCubic(const LocalFitJob& job, std::size_t row, SurfaceFit& fit) {
       x[i] += terms[i] * local[2];
     }
   }
-  if (decompose(m) < 1e-6) return false;
+  if (decompose(m, 1e-6) < kOrder) return false;
   solveDecomposed(m, x);
   for (std::size_t i = 0; i < 6; ++i) fit.c[i] = x[i];
   return true;
