@@ -313,6 +313,8 @@ void timing(std::size_t count) {
       sharp.view(), {sharp_normals.data(), 4, sharp.size()}, sharp_table, SegmentationOptions());
   std::vector<std::uint8_t> regular;
   for (const Segment& s : segments.segments) regular.push_back(s.kind == SegmentKind::Regular);
+  std::vector<std::int32_t> labels;
+  std::vector<float> recomputed_normals;
   const struct {
     const char* name;
     std::function<void()> run;
@@ -324,14 +326,15 @@ void timing(std::size_t count) {
                {"AwAS cubic", [&] { estimate(NormalEstimator::AwASCubic); }},
                {"PCL's plane step", pclStep},
                {"recomputation, one round", [&] {
-                  std::vector<std::int32_t> labels = segments.labels;
-                  std::vector<float> n = sharp_normals;
                   RecomputationOptions recomputation;
                   recomputation.threads = 1;
-                  recomputeNormals(sharp.view(), sharp_table, regular, recomputation, labels, n);
+                  recomputeNormals(sharp.view(), sharp_table, regular, recomputation, labels,
+                                   recomputed_normals);
                 }}};
   std::vector<std::vector<double>> seconds(std::size(steps));
   for (int round = 0; round < 5; ++round) {
+    labels = segments.labels;
+    recomputed_normals = sharp_normals;
     for (std::size_t s = 0; s < std::size(steps); ++s) {
       const auto start = std::chrono::steady_clock::now();
       steps[s].run();

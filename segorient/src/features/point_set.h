@@ -21,11 +21,11 @@ class PointSet {
 
   /// \return whether it was not yet in
   bool insert(std::size_t point) {
-    if (2 * used_.size() >= slots_.size()) grow();
     const std::size_t s = slotOf(point);
     if (slots_[s] == point) return false;
     slots_[s] = point;
     used_.push_back(s);
+    if (2 * used_.size() >= slots_.size()) grow();
     return true;
   }
 

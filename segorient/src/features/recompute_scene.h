@@ -45,9 +45,13 @@ struct RecomputationScene {
   /// Whether the neighbourhood holds points of other segments, and normals that differ.
   /// \param flat normals with a larger cosine do not
   bool meetsBorder(std::size_t i, double flat) const {
-    bool other = !isRegular(labels[i]);
-    for (int j = 1; j < count(i) && !other; ++j) other = labels[neighbor(i, j)] != labels[i];
-    if (!other) return false;
+    // Nearly all points are far from any border: what each of them costs is this loop.
+    const pcl::index_t* row = neighborhoods.indices(i);
+    const std::int32_t label = labels[i];
+    std::int32_t difference = 0;
+    for (int j = 1; j < count(i); ++j)
+      difference |= labels[static_cast<std::size_t>(row[j])] ^ label;
+    if (difference == 0 && isRegular(label)) return false;
     bool bent = false;
     for (int j = 1; j < count(i) && !bent; ++j) bent = !(cosine(i, neighbor(i, j)) > flat);
     return bent;

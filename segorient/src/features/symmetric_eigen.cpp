@@ -47,10 +47,11 @@ SymmetricEigen3 symmetricEigen(const SymmetricMatrix3& m) {
                     {m.xy * unit, m.yy * unit, m.yz * unit},
                     {m.xz * unit, m.yz * unit, m.zz * unit}};
   double v[3][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
-  // Convergence is quadratic: five or six sweeps reach the last bit.
+  // Convergence is quadratic: four or five sweeps reach the last bit. What is left then changes the
+  // eigenvalues by its square.
   for (int sweep = 0; finite && sweep < 16; ++sweep) {
     const double off = std::abs(a[0][1]) + std::abs(a[0][2]) + std::abs(a[1][2]);
-    if (off < std::numeric_limits<double>::min()) break;
+    if (off < 1e-20) break;
     rotate(a, v, 0, 1);
     rotate(a, v, 0, 2);
     rotate(a, v, 1, 2);

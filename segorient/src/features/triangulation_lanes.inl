@@ -101,9 +101,10 @@ inline Lanes3 fanNormals(Batch& batch, const Plane& plane, SortingNetwork& netwo
     area = {area.x + triangle.x, area.y + triangle.y, area.z + triangle.z};
     previous = next;
   }
+  // In units of the neighbourhood: squares of areas leave float's range early.
+  area = scaled(area, 1.0F / (plane.size * plane.size));
   // Collinear in projection: no area, no normal of its own.
-  const Lanes length = dot(area, frame.n);
-  return select(length > 1e-6F * plane.size * plane.size, unit(area), plane.normal);
+  return select(dot(area, frame.n) > 1e-6F, unit(area), plane.normal);
 }
 
 /// Local Delaunay triangulation. Of the triangulation only the star of the point is needed. Under
