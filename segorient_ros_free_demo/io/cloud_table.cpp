@@ -27,6 +27,11 @@ bool viewable(const CloudTable& table, const std::array<const Field*, 3>& xyz) {
 
 }  // namespace
 
+std::string pclName(std::string name) {
+  if (name == "nx" || name == "ny" || name == "nz") name.insert(1, "ormal_");
+  return name;
+}
+
 double loadNumber(const std::uint8_t* data, char type, std::uint32_t size) {
   if (type == 'F') return size == 8 ? load<double>(data) : load<float>(data);
   const bool is_signed = type == 'I';

@@ -68,6 +68,9 @@ struct CloudTable {
   void makeReal(const std::vector<std::string>& names);
 };
 
+/// nx, ny, nz as PCL names them, normal_x, normal_y, normal_z; other names as they are.
+std::string pclName(std::string name);
+
 /// A number in memory as a double.
 double loadNumber(const std::uint8_t* data, char type, std::uint32_t size);
 

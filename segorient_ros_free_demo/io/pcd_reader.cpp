@@ -99,7 +99,7 @@ PcdHeader readHeader(InputFile& file) {
     if (!isHeaderKey(key)) file.failLine("is not of a PCD header");
     if (values.empty()) file.failLine(key + " has no value");
     if (key == "FIELDS" || key == "COLUMNS") {
-      for (const auto& name : values) header.columns.push_back({std::string(name)});
+      for (const auto& name : values) header.columns.push_back({pclName(std::string(name))});
     } else if (key == "SIZE" || key == "TYPE" || key == "COUNT") {
       readColumnLine(file, key, values, header);
     } else if (key == "WIDTH") {

@@ -189,13 +189,6 @@ void readFaces(InputFile& file, Body& body, const Element& element, CloudTable& 
   }
 }
 
-std::string pclName(const std::string& name) {
-  if (name == "nx") return "normal_x";
-  if (name == "ny") return "normal_y";
-  if (name == "nz") return "normal_z";
-  return name;
-}
-
 // Where red, green and blue of 8 bits go: byte 2, 1, 0 of a packed rgb; -1 for any other property.
 int colourByte(const Property& p) {
   if (p.is_list || p.value.type != 'U' || p.value.size != 1) return -1;

@@ -11,12 +11,13 @@ namespace segorient::program {
 
 // Readers of our own: PCL's crash on empty files and wrong counts, lose doubles in OBJ and text
 // files, and load a file without coordinates as if it had some. All of these throw FileError on
-// anything that is not whole, and never allocate more than the file's size can account for.
+// anything that is not whole, and never allocate more than the file's size can account for. Fields
+// are named by pclName().
 
 /// PCD: ascii, binary, binary_compressed.
 CloudTable readPcd(InputFile& file);
-/// PLY: ascii, binary of both byte orders; elements other than vertex and face are skipped. nx, ny,
-/// nz become normal_x, normal_y, normal_z; red, green, blue become rgb.
+/// PLY: ascii, binary of both byte orders; elements other than vertex and face are skipped. red,
+/// green, blue become rgb.
 CloudTable readPly(InputFile& file);
 /// OBJ: the vertices.
 CloudTable readObj(InputFile& file);

@@ -108,9 +108,8 @@ std::vector<std::string> parseNames(std::string_view line) {
     }
     if (name.empty()) continue;
     if (name == "X" || name == "Y" || name == "Z") name[0] = static_cast<char>(name[0] - 'A' + 'a');
-    if (name == "nx" || name == "ny" || name == "nz") name = std::string("normal_") + name[1];
     known = known || name == "x";
-    names.push_back(std::move(name));
+    names.push_back(pclName(std::move(name)));
   }
   return known ? names : std::vector<std::string>{};
 }

@@ -179,6 +179,16 @@ TEST(Readers, TimesInTextKeepTheirDigits) {
   EXPECT_EQ(table.find("normal_z")->size, 4U);
 }
 
+TEST(Readers, NormalsOfAPcdMayBeNamedAsInPly) {
+  const ScratchDirectory directory;
+  const CloudTable table = readCloud(
+      directory.write("a.pcd", "FIELDS x y z nx ny nz\nPOINTS 1\nDATA ascii\n1 2 3 0 0.6 -0.8\n"));
+  ASSERT_TRUE(table.hasNormals());
+  const auto normal = table.triple(table.normals(), 0);
+  EXPECT_FLOAT_EQ(static_cast<float>(normal[1]), 0.6F);
+  EXPECT_FLOAT_EQ(static_cast<float>(normal[2]), -0.8F);
+}
+
 TEST(Readers, TextWithNamesCountLineSeparatorsAndComments) {
   const ScratchDirectory directory;
   const CloudTable named = readCloud(directory.write("a.csv", "X,Y,Z,nx,ny,nz,t\n1,2,3,0,0,1,9\n"));

@@ -18,7 +18,11 @@ struct Kernel {
 struct Mean {
   float x = 0.F, y = 0.F, z = 0.F;
   float total = 0.F;
-  float length() const { return std::sqrt(x * x + y * y + z * z); }
+  // In double: far from all neighbours the weights are so small that squares leave float's range.
+  double length() const {
+    const auto square = [](float v) { return static_cast<double>(v) * static_cast<double>(v); };
+    return std::sqrt(square(x) + square(y) + square(z));
+  }
 };
 
 constexpr std::size_t kLanes = 8;
@@ -128,14 +132,15 @@ FilteredNormals filterOrientedNormals(const PointView& points, const Neighborhoo
     for (std::size_t p = 0; p < points.size; ++p) {
       if (out.confidences[p] > kSettled) continue;
       const Mean mean = meanNormal(points, nb, out.normals, spacing[p], p, kernel);
-      const float l = mean.length();
-      if (!(mean.total > 0.F) || !(l > 1e-4F * mean.total)) continue;
+      const double l = mean.length();
+      const auto total = static_cast<double>(mean.total);
+      if (!(total > 0.0) || !(l > 1e-4 * total)) continue;
       float* n = next.data() + 4 * p;
       if (!std::isfinite(n[0])) n[3] = half_fit;
-      n[0] = mean.x / l;
-      n[1] = mean.y / l;
-      n[2] = mean.z / l;
-      out.confidences[p] = std::min(l / mean.total, 1.F);  // rounding may exceed 1
+      n[0] = static_cast<float>(static_cast<double>(mean.x) / l);
+      n[1] = static_cast<float>(static_cast<double>(mean.y) / l);
+      n[2] = static_cast<float>(static_cast<double>(mean.z) / l);
+      out.confidences[p] = static_cast<float>(std::min(l / total, 1.0));  // rounding may exceed 1
     }
     out.normals.swap(next);
   }
