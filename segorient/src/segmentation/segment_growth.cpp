@@ -16,13 +16,13 @@ std::uint32_t orderedBits(float curvature) {
   return (bits & 0x80000000U) != 0 ? ~bits : bits | 0x80000000U;
 }
 
-/// Seeds in the order of (curvature, index). Sorted by the upper half of the bits at first; the
-/// points of one bucket are put in their exact order when growing comes to it and most of them are
-/// taken.
+/// Seeds in the order of (curvature, index). Sorted by the upper bits at first, into about as many
+/// buckets as there are points; those of one bucket are put in their exact order when growing comes
+/// to it and most of them are taken.
 class SeedOrder {
  public:
   explicit SeedOrder(const std::vector<Node>& nodes)
-      : nodes_(nodes), starts_((1U << kBits) + 1, 0) {
+      : nodes_(nodes), shift_(32U - bitsFor(nodes.size())), starts_((1U << (32U - shift_)) + 1, 0) {
     for (const Node& p : nodes_) {
       if (usable(p)) ++starts_[bucketOf(p) + 1];
     }
@@ -56,12 +56,16 @@ class SeedOrder {
   }
 
  private:
-  static constexpr unsigned kBits = 16;
-
+  static unsigned bitsFor(std::size_t points) {
+    unsigned bits = 1;
+    while (bits < 16 && (std::size_t{1} << bits) < points) ++bits;
+    return bits;
+  }
   static bool usable(const Node& p) { return std::isfinite(p.nx + p.ny + p.nz + p.x + p.y + p.z); }
-  static std::size_t bucketOf(const Node& p) { return orderedBits(p.curvature) >> (32U - kBits); }
+  std::size_t bucketOf(const Node& p) const { return orderedBits(p.curvature) >> shift_; }
 
   const std::vector<Node>& nodes_;
+  unsigned shift_;  ///< bits that the buckets leave out
   std::vector<std::size_t> starts_;
   std::vector<pcl::index_t> points_;
 };
