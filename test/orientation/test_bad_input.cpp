@@ -18,9 +18,6 @@ namespace {
 using Cloud = pcl::PointCloud<pcl::PointXYZ>;
 using Normals = pcl::PointCloud<pcl::Normal>;
 
-constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
-constexpr float kInfinity = std::numeric_limits<float>::infinity();
-
 constexpr OrientationMethod kMethods[] = {OrientationMethod::AUTO, OrientationMethod::PROPAGATION,
                                           OrientationMethod::BOUNDARY, OrientationMethod::COMBINED,
                                           OrientationMethod::EXTREMAL};
@@ -34,56 +31,30 @@ INSTANTIATE_TEST_SUITE_P(Methods, BadInput, testing::ValuesIn(kMethods),
                            return std::string(toString(method.param));
                          });
 
-void checkNormals(const BadCloud& bad, const IndexCase& index, const Normals& out) {
-  const std::size_t all = index.indices ? index.indices->size() : bad.cloud->size();
-  const std::size_t rows = bad.cloud->empty() ? 0 : all;
-  ASSERT_EQ(out.size(), rows);
-  std::size_t found = 0;
-  std::size_t valid = 0;
-  for (std::size_t i = 0; i < rows; ++i) {
-    ASSERT_TRUE(isUnitOrNan(out[i])) << i << ": " << out[i];
-    const bool is_point = pointOf(*bad.cloud, index.indices, i) != nullptr;
-    ASSERT_TRUE(is_point || std::isnan(out[i].normal_x)) << i;
-    found += std::isnan(out[i].normal_x) ? 0 : 1;
-    valid += is_point ? 1 : 0;
-  }
-  EXPECT_EQ(out.is_dense, found == rows);
-  if (bad.planes == Planes::NONE) {
-    EXPECT_EQ(found, 0U);
-  }
-  if (bad.planes == Planes::NEARLY_ALL) {
-    EXPECT_GE(10 * found, 9 * valid);
-  }
-}
-
 // One object for all of them: what it was used for before must not matter.
 TEST_P(BadInput, EstimationOfCloudsAndIndices) {
   OrientedNormalEstimation<pcl::PointXYZ, pcl::Normal> estimation;
   estimation.setMethod(GetParam());
   estimation.setNumberOfThreads(1);
-  for (const BadCloud& bad : badClouds()) {
-    SCOPED_TRACE(bad.name);
-    for (const IndexCase& index : indexCases(bad.cloud->size())) {
-      SCOPED_TRACE(index.name);
-      estimation.setInputCloud(bad.cloud);
-      estimation.setIndices(index.indices);
-      Normals out(3, 1);
-      for (const int k : {-1, std::numeric_limits<int>::min()}) {
-        estimation.setKSearch(k);
-        estimation.compute(out);
-        EXPECT_TRUE(out.empty());
-        EXPECT_TRUE(estimation.getLabels().empty());
-      }
-      for (const int k : {0, 1, std::numeric_limits<int>::max()}) {
-        SCOPED_TRACE("k " + std::to_string(k));
-        estimation.setKSearch(k);
-        estimation.compute(out);
-        if (k == 1) continue;  // one neighbour makes no plane but where the method has its own
-        checkNormals(bad, index, out);
-        EXPECT_EQ(estimation.getLabels().size(), out.size());
-      }
+  forEachBadInput([&](const BadCloud& bad, const IndexCase& index) {
+    estimation.setInputCloud(bad.cloud);
+    estimation.setIndices(index.indices);
+    Normals out(3, 1);
+    for (const int k : {-1, std::numeric_limits<int>::min()}) {
+      estimation.setKSearch(k);
+      estimation.compute(out);
+      EXPECT_TRUE(out.empty());
+      EXPECT_TRUE(estimation.getLabels().empty());
     }
-  }
+    for (const int k : {0, 1, std::numeric_limits<int>::max()}) {
+      SCOPED_TRACE("k " + std::to_string(k));
+      estimation.setKSearch(k);
+      estimation.compute(out);
+      if (k == 1) continue;  // one neighbour makes no plane but where the method has its own
+      checkNormals(bad, index, out);
+      EXPECT_EQ(estimation.getLabels().size(), out.size());
+    }
+  });
 }
 
 TEST_P(BadInput, EstimationWithoutACloud) {
@@ -123,36 +94,31 @@ TEST_P(BadInput, OrientationOfCloudsNormalsAndIndices) {
   SegmentOrientation<pcl::PointXYZ, pcl::Normal> orientation;
   orientation.setMethod(GetParam());
   orientation.setNumberOfThreads(1);
-  for (const BadCloud& bad : badClouds()) {
-    SCOPED_TRACE(bad.name);
+  forEachBadInput([&](const BadCloud& bad, const IndexCase& index) {
     const std::size_t size = bad.cloud->size();
-    for (const IndexCase& index : indexCases(size)) {
-      SCOPED_TRACE(index.name);
-      const std::size_t rows = index.indices ? index.indices->size() : size;
-      orientation.setInputCloud(bad.cloud);
-      orientation.setIndices(index.indices);
-      for (const float z : {1.F, 0.F, kNaN, kInfinity, 1e30F}) {
-        SCOPED_TRACE("normal " + std::to_string(z));
-        orientation.setInputNormals(pcl::make_shared<Normals>(size, 1, pcl::Normal(0.F, 0.F, z)));
-        // More neighbours than points are no matter of the normals.
-        const std::vector<int> ks = z == 1.F
-                                        ? std::vector<int>{0, 1, std::numeric_limits<int>::max()}
-                                        : std::vector<int>{0};
-        for (const int k : ks) {
-          orientation.setKSearch(k);
-          Normals out(3, 1);
-          orientation.compute(out);
-          ASSERT_EQ(out.size(), size == 0 ? 0U : rows) << "k " << k;
-          for (std::size_t i = 0; i < out.size(); ++i) {
-            ASSERT_TRUE(z != 1.F || isUnitOrNan(out[i])) << out[i];
-            if (pointOf(*bad.cloud, index.indices, i) == nullptr) {
-              ASSERT_TRUE(std::isnan(out[i].normal_z)) << i;
-            }
+    const std::size_t rows = index.indices ? index.indices->size() : size;
+    orientation.setInputCloud(bad.cloud);
+    orientation.setIndices(index.indices);
+    for (const float z : {1.F, 0.F, kNaN, kInfinity, 1e30F}) {
+      SCOPED_TRACE("normal " + std::to_string(z));
+      orientation.setInputNormals(pcl::make_shared<Normals>(size, 1, pcl::Normal(0.F, 0.F, z)));
+      // More neighbours than points are no matter of the normals.
+      const std::vector<int> ks =
+          z == 1.F ? std::vector<int>{0, 1, std::numeric_limits<int>::max()} : std::vector<int>{0};
+      for (const int k : ks) {
+        orientation.setKSearch(k);
+        Normals out(3, 1);
+        orientation.compute(out);
+        ASSERT_EQ(out.size(), size == 0 ? 0U : rows) << "k " << k;
+        for (std::size_t i = 0; i < out.size(); ++i) {
+          ASSERT_TRUE(z != 1.F || isUnitOrNan(out[i])) << out[i];
+          if (pointOf(*bad.cloud, index.indices, i) == nullptr) {
+            ASSERT_TRUE(std::isnan(out[i].normal_z)) << i;
           }
         }
       }
     }
-  }
+  });
 }
 
 TEST_P(BadInput, OrientationOfMismatchedInput) {

@@ -15,6 +15,7 @@ namespace segorient {
 namespace {
 
 using Orientation = SegmentOrientation<pcl::PointXYZ, pcl::Normal>;
+using Normals = pcl::PointCloud<pcl::Normal>;
 using test::LabelledCloud;
 
 class SegmentOrientationTest : public testing::Test {
@@ -22,6 +23,17 @@ class SegmentOrientationTest : public testing::Test {
   void SetUp() override { pcl::console::setVerbosityLevel(pcl::console::L_ALWAYS); }
   void TearDown() override { pcl::console::setVerbosityLevel(pcl::console::L_INFO); }
 
+  // The normals of `points`, oriented; with what else was set.
+  Normals orient(const Normals::ConstPtr& normals, OrientationMethod method) {
+    orientation.setInputCloud(points);
+    orientation.setInputNormals(normals);
+    orientation.setMethod(method);
+    Normals out;
+    orientation.compute(out);
+    return out;
+  }
+
+  Orientation orientation;
   const LabelledCloud cloud = test::sample("bracket", test::bracket(), 5000, 71);
   const pcl::PointCloud<pcl::PointXYZ>::Ptr points = test::toPcl(cloud);
   const std::vector<float> scrambled = test::scrambledNormals(cloud, 72);
@@ -30,12 +42,7 @@ class SegmentOrientationTest : public testing::Test {
 TEST_F(SegmentOrientationTest, EachMethodTurnsTrueNormalsOutward) {
   for (const auto method :
        {Orientation::AUTO, Orientation::BOUNDARY, Orientation::COMBINED, Orientation::EXTREMAL}) {
-    Orientation orientation;
-    orientation.setInputCloud(points);
-    orientation.setInputNormals(test::toPclNormals(scrambled));
-    orientation.setMethod(method);
-    pcl::PointCloud<pcl::Normal> out;
-    orientation.compute(out);
+    const Normals out = orient(test::toPclNormals(scrambled), method);
     ASSERT_EQ(out.size(), cloud.size());
     std::size_t wrong = 0;
     for (std::size_t i = 0; i < cloud.size(); ++i) {
@@ -75,16 +82,10 @@ TEST_F(SegmentOrientationTest, TakesASearchOfOthers) {
   points->push_back((*points)[0]);  // repeated points are one neighbour
   auto normals = test::toPclNormals(scrambled);
   normals->push_back((*normals)[0]);
-  Orientation orientation;
-  orientation.setInputCloud(points);
-  orientation.setInputNormals(normals);
-  orientation.setMethod(Orientation::COMBINED);
-  pcl::PointCloud<pcl::Normal> own;
-  orientation.compute(own);
+  const Normals own = orient(normals, Orientation::COMBINED);
   const auto search = pcl::make_shared<CountingSearch>();
   orientation.setSearchMethod(search);
-  pcl::PointCloud<pcl::Normal> theirs;
-  orientation.compute(theirs);
+  const Normals theirs = orient(normals, Orientation::COMBINED);
   EXPECT_EQ(search->queries, cloud.size());
   ASSERT_EQ(theirs.size(), own.size());
   std::size_t different = 0;
@@ -98,7 +99,6 @@ TEST_F(SegmentOrientationTest, TakesASearchOfOthers) {
 // reference normals cannot decide, and the angle across the border can (paper, 3.1, and ours).
 TEST_F(SegmentOrientationTest, TheAngleOfSegmentsIsSelectable) {
   const LabelledCloud ring = test::sample("torus", {test::torus(1, 0.4)}, 6000, 73);
-  Orientation orientation;
   orientation.setInputCloud(test::toPcl(ring));
   orientation.setInputNormals(test::toPclNormals(test::scrambledNormals(ring, 74)));
   orientation.setMethod(Orientation::PROPAGATION);
@@ -106,7 +106,7 @@ TEST_F(SegmentOrientationTest, TheAngleOfSegmentsIsSelectable) {
   std::vector<std::size_t> hard;
   for (const auto angle : {SegmentAngle::REFERENCE_NORMALS, SegmentAngle::ACROSS_BORDER}) {
     orientation.setSegmentAngle(angle);
-    pcl::PointCloud<pcl::Normal> out;
+    Normals out;
     orientation.compute(out);
     hard.push_back(0);
     for (const auto& segment : orientation.getResult().segments) hard.back() += segment.hard;
@@ -116,11 +116,10 @@ TEST_F(SegmentOrientationTest, TheAngleOfSegmentsIsSelectable) {
 
 TEST_F(SegmentOrientationTest, HoppesTreeNeedsNoSegmentsButASmoothSurface) {
   const LabelledCloud ring = test::sample("torus", {test::torus(1, 0.4)}, 4000, 75);
-  Orientation orientation;
   orientation.setInputCloud(test::toPcl(ring));
   orientation.setInputNormals(test::toPclNormals(test::scrambledNormals(ring, 76)));
   orientation.setMethod(Orientation::HOPPE);
-  pcl::PointCloud<pcl::Normal> out;
+  Normals out;
   orientation.compute(out);
   ASSERT_EQ(out.size(), ring.size());
   for (std::size_t i = 0; i < ring.size(); ++i) EXPECT_TRUE(test::agrees(out[i], ring, i));
@@ -137,13 +136,8 @@ TEST_F(SegmentOrientationTest, TakesSegmentsOfOthers) {
     const bool turned = cloud.face[i] % 2 == 1;
     segments->signs.push_back(same != turned ? std::int8_t{1} : std::int8_t{-1});
   }
-  Orientation orientation;
-  orientation.setInputCloud(points);
-  orientation.setInputNormals(test::toPclNormals(scrambled));
   orientation.setSegmentation(segments);
-  orientation.setMethod(Orientation::BOUNDARY);
-  pcl::PointCloud<pcl::Normal> out;
-  orientation.compute(out);
+  Normals out = orient(test::toPclNormals(scrambled), Orientation::BOUNDARY);
   ASSERT_EQ(out.size(), cloud.size());
   for (std::size_t i = 0; i < cloud.size(); ++i) EXPECT_TRUE(test::agrees(out[i], cloud, i));
   ASSERT_EQ(orientation.getResult().segments.size(), 8U);
@@ -170,12 +164,7 @@ TEST_F(SegmentOrientationTest, CopesWithHolesAndRepeatedPoints) {
     const pcl::Normal& n = (*normals)[i];
     normals->push_back(pcl::Normal(-n.normal_x, -n.normal_y, -n.normal_z));
   }
-  Orientation orientation;
-  orientation.setInputCloud(points);
-  orientation.setInputNormals(normals);
-  orientation.setMethod(Orientation::COMBINED);
-  pcl::PointCloud<pcl::Normal> out;
-  orientation.compute(out);
+  const Normals out = orient(normals, Orientation::COMBINED);
   ASSERT_EQ(out.size(), points->size());
   EXPECT_FALSE(out.is_dense);
   std::size_t wrong = 0;
@@ -193,7 +182,6 @@ TEST_F(SegmentOrientationTest, CopesWithHolesAndRepeatedPoints) {
 
 TEST_F(SegmentOrientationTest, OutputBelongsToTheIndicesAndMayBeTheInput) {
   auto normals = test::toPclNormals(scrambled);
-  Orientation orientation;
   orientation.setInputCloud(points);
   orientation.setInputNormals(normals);
   orientation.setIndices(pcl::make_shared<pcl::Indices>(pcl::Indices{10, 4999, -1, 5000}));
@@ -206,15 +194,10 @@ TEST_F(SegmentOrientationTest, OutputBelongsToTheIndicesAndMayBeTheInput) {
 }
 
 TEST_F(SegmentOrientationTest, WithoutTurningOutwardTheLargestSegmentKeepsItsSign) {
-  Orientation orientation;
-  orientation.setInputCloud(points);
   std::vector<float> inward = cloud.normals;
   for (float& c : inward) c = -c;
-  orientation.setInputNormals(test::toPclNormals(inward));
-  orientation.setMethod(Orientation::BOUNDARY);
   orientation.setTurnOutward(false);
-  pcl::PointCloud<pcl::Normal> out;
-  orientation.compute(out);
+  const Normals out = orient(test::toPclNormals(inward), Orientation::BOUNDARY);
   std::size_t outward = 0;
   for (std::size_t i = 0; i < cloud.size(); ++i) outward += test::agrees(out[i], cloud, i) ? 1 : 0;
   EXPECT_TRUE(outward <= 5 || outward + 5 >= cloud.size());
@@ -223,7 +206,6 @@ TEST_F(SegmentOrientationTest, WithoutTurningOutwardTheLargestSegmentKeepsItsSig
 }
 
 TEST_F(SegmentOrientationTest, GettersReturnWhatWasSet) {
-  Orientation orientation;
   orientation.setMethod(Orientation::EXTREMAL);
   orientation.setGamma(0.5F);
   orientation.setSegmentAngle(SegmentAngle::REFERENCE_NORMALS);

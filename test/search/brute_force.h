@@ -56,4 +56,14 @@ inline std::vector<Neighbor> bruteForceRow(const PointView& points, pcl::index_t
   return found;
 }
 
+/// Row i of a table of neighbours, of Neighborhoods or RadiusNeighborhoods.
+template <typename Table>
+std::vector<Neighbor> row(const Table& table, std::size_t i) {
+  std::vector<Neighbor> result;
+  for (std::size_t j = 0; j < static_cast<std::size_t>(table.count(i)); ++j) {
+    result.push_back({table.sqrDistances(i)[j], table.indices(i)[j]});
+  }
+  return result;
+}
+
 }  // namespace segorient::test

@@ -2,6 +2,7 @@
 // Copyright (c) 2026, the segorient authors
 #pragma once
 
+#include <pcl/types.h>
 #include <segorient/common/point_view.h>
 
 #include <cmath>
@@ -24,10 +25,27 @@ struct SearchCloud {
   void add(double x, double y, double z) {
     for (const double v : {x, y, z, 0.0}) xyz.push_back(static_cast<float>(v));
   }
+  /// Whether this is the index of a point with finite coordinates.
+  bool has(pcl::index_t index) const {
+    const auto row = static_cast<std::size_t>(index);
+    return index >= 0 && row < size() && isFinite(view()[row]);
+  }
 };
 
 inline std::ostream& operator<<(std::ostream& out, const SearchCloud& cloud) {
   return out << cloud.name;
+}
+
+/// Every other point, from the last to the first, one of them twice, and two that are no points.
+inline std::vector<pcl::index_t> everyOtherIndex(const SearchCloud& cloud) {
+  std::vector<pcl::index_t> indices;
+  for (std::size_t i = 0; i < cloud.size(); i += 2) {
+    indices.push_back(static_cast<pcl::index_t>(cloud.size() - 1 - i));
+  }
+  indices.push_back(indices.front());
+  indices.insert(indices.begin() + 5, -7);
+  indices.push_back(static_cast<pcl::index_t>(cloud.size()));
+  return indices;
 }
 
 /// Clouds on which a search goes wrong in different ways, about n points each.

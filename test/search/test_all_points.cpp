@@ -11,14 +11,6 @@ namespace {
 
 using search::MedianHashIndex;
 
-std::vector<Neighbor> row(const Neighborhoods& table, std::size_t i) {
-  std::vector<Neighbor> result;
-  for (std::size_t j = 0; j < static_cast<std::size_t>(table.count(i)); ++j) {
-    result.push_back({table.sqrDistances(i)[j], table.indices(i)[j]});
-  }
-  return result;
-}
-
 class AllPoints : public testing::TestWithParam<SearchCloud> {};
 
 TEST_P(AllPoints, EqualsBruteForce) {
@@ -46,23 +38,16 @@ TEST_P(AllPoints, EqualsBruteForce) {
 
 TEST_P(AllPoints, SubsetOfIndices) {
   const SearchCloud& cloud = GetParam();
-  std::vector<pcl::index_t> indices;
-  for (std::size_t i = 0; i < cloud.size(); i += 2) {
-    indices.push_back(static_cast<pcl::index_t>(cloud.size() - 1 - i));
-  }
-  indices.push_back(indices.front());
-  indices.insert(indices.begin() + 5, -7);
-  indices.push_back(static_cast<pcl::index_t>(cloud.size()));
+  const std::vector<pcl::index_t> indices = everyOtherIndex(cloud);
   MedianHashIndex index;
   index.build(cloud.view(), &indices, {});
   Neighborhoods table;
   index.nearestKAll(9, table);
   ASSERT_EQ(table.size(), indices.size());
   for (std::size_t i = 0; i < indices.size(); i += i < 10 ? 1 : 13) {
-    const bool valid = indices[i] >= 0 && static_cast<std::size_t>(indices[i]) < cloud.size() &&
-                       isFinite(cloud.view()[static_cast<std::size_t>(indices[i])]);
-    const auto expected =
-        valid ? bruteForceRow(cloud.view(), indices[i], 9, &indices) : std::vector<Neighbor>{};
+    const auto expected = cloud.has(indices[i])
+                              ? bruteForceRow(cloud.view(), indices[i], 9, &indices)
+                              : std::vector<Neighbor>{};
     ASSERT_EQ(row(table, i), expected) << "row " << i;
   }
 }

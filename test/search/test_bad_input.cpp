@@ -17,9 +17,6 @@ namespace {
 using Cloud = pcl::PointCloud<pcl::PointXYZ>;
 using Tree = search::MedianHash<pcl::PointXYZ>;
 
-const float kNan = std::numeric_limits<float>::quiet_NaN();
-const float kInf = std::numeric_limits<float>::infinity();
-
 Cloud::Ptr smallCloud() {
   auto cloud = pcl::make_shared<Cloud>();
   for (const float x : {0.0F, 1.0F, 2.0F, 4.0F, 8.0F}) cloud->push_back({x, 0.0F, 0.0F});
@@ -41,10 +38,10 @@ const std::vector<Case>& emptyAnswers() {
          return t.nearestKSearch(0, std::numeric_limits<int>::min(), i, d);
        }},
       {"NaN query", [](auto& t, auto& i,
-                       auto& d) { return t.nearestKSearch(pcl::PointXYZ(0, kNan, 0), 3, i, d); }},
+                       auto& d) { return t.nearestKSearch(pcl::PointXYZ(0, kNaN, 0), 3, i, d); }},
       {"infinite query",
        [](auto& t, auto& i, auto& d) {
-         return t.nearestKSearch(pcl::PointXYZ(kInf, 0, 0), 3, i, d);
+         return t.nearestKSearch(pcl::PointXYZ(kInfinity, 0, 0), 3, i, d);
        }},
       {"negative index", [](auto& t, auto& i, auto& d) { return t.nearestKSearch(-1, 3, i, d); }},
       {"index too large", [](auto& t, auto& i, auto& d) { return t.nearestKSearch(5, 3, i, d); }},
@@ -58,7 +55,7 @@ const std::vector<Case>& emptyAnswers() {
        }},
       {"NaN query, radius",
        [](auto& t, auto& i, auto& d) {
-         return t.radiusSearch(pcl::PointXYZ(kNan, 0, 0), 1.0, i, d);
+         return t.radiusSearch(pcl::PointXYZ(kNaN, 0, 0), 1.0, i, d);
        }},
       {"negative index, radius",
        [](auto& t, auto& i, auto& d) { return t.radiusSearch(-1, 1.0, i, d); }},
@@ -127,7 +124,7 @@ class EveryCloud : public testing::Test {
     const PointView view{cloud.empty() ? nullptr : &cloud[0].x, 4, cloud.size()};
     std::vector<Neighbor> truth;
     if (query != nullptr) truth = bruteForce(view, &query->x, indices.get());
-    const pcl::PointXYZ point = query != nullptr ? *query : pcl::PointXYZ(kNan, 0.F, 0.F);
+    const pcl::PointXYZ point = query != nullptr ? *query : pcl::PointXYZ(kNaN, 0.F, 0.F);
     pcl::Indices found;
     std::vector<float> distances;
     for (const int k : {-5, 0, 1, 7, 1000, std::numeric_limits<int>::max()}) {
@@ -136,7 +133,7 @@ class EveryCloud : public testing::Test {
       EXPECT_EQ(tree_.nearestKSearch(point, k, found, distances), static_cast<int>(most));
       compare(truth, most, found, distances);
     }
-    for (const double radius : {kNan + 0.0, -1.0, 0.0, 1e-32, 0.3, 1e20, kInf + 0.0}) {
+    for (const double radius : {kNaN + 0.0, -1.0, 0.0, 1e-32, 0.3, 1e20, kInfinity + 0.0}) {
       SCOPED_TRACE("radius " + std::to_string(radius));
       const auto square = static_cast<float>(radius * radius);
       const auto within = static_cast<std::size_t>(
@@ -163,52 +160,43 @@ class EveryCloud : public testing::Test {
 };
 
 TEST_F(EveryCloud, EqualsBruteForceWhateverTheIndicesAndTheQuery) {
-  for (const BadCloud& bad : badClouds()) {
-    SCOPED_TRACE(bad.name);
+  forEachBadInput([&](const BadCloud& bad, const IndexCase& index) {
     const Cloud& cloud = *bad.cloud;
-    for (const IndexCase& index : indexCases(cloud.size())) {
-      SCOPED_TRACE(index.name);
-      tree_.setInputCloud(bad.cloud, index.indices);
-      ask(cloud, nullptr, index.indices);
-      const pcl::PointXYZ elsewhere(0.3F, -0.2F, 0.1F);
-      ask(cloud, &elsewhere, index.indices);
-      for (std::size_t row = 0; row < cloud.size(); row += 75) {
-        ask(cloud, pointOf(cloud, nullptr, row), index.indices);
-      }
+    tree_.setInputCloud(bad.cloud, index.indices);
+    ask(cloud, nullptr, index.indices);
+    const pcl::PointXYZ elsewhere(0.3F, -0.2F, 0.1F);
+    ask(cloud, &elsewhere, index.indices);
+    for (std::size_t row = 0; row < cloud.size(); row += 75) {
+      ask(cloud, pointOf(cloud, nullptr, row), index.indices);
     }
-  }
+  });
 }
 
 TEST_F(EveryCloud, RowsOfAllPointsAreThoseOfBruteForce) {
-  for (const BadCloud& bad : badClouds()) {
-    SCOPED_TRACE(bad.name);
+  forEachBadInput([&](const BadCloud& bad, const IndexCase& index) {
     const Cloud& cloud = *bad.cloud;
     const PointView view{cloud.empty() ? nullptr : &cloud[0].x, 4, cloud.size()};
-    for (const IndexCase& index : indexCases(cloud.size())) {
-      SCOPED_TRACE(index.name);
-      tree_.setInputCloud(bad.cloud, index.indices);
-      const std::size_t rows = index.indices ? index.indices->size() : cloud.size();
-      Neighborhoods table;
-      for (const int k : {-5, 0, 1, 7, 1000}) {
-        tree_.nearestKSearchAll(k, table);
-        if (cloud.empty()) continue;  // an error; there are no rows to speak of
-        ASSERT_EQ(table.size(), rows);
-        for (std::size_t row = 0; row < rows; row += 11) {
-          std::vector<Neighbor> truth;
-          if (pointOf(cloud, index.indices, row) != nullptr && k > 0) {
-            const auto self =
-                index.indices ? (*index.indices)[row] : static_cast<pcl::index_t>(row);
-            truth = bruteForceRow(view, self, static_cast<std::size_t>(k), index.indices.get());
-          }
-          ASSERT_EQ(table.count(row), static_cast<int>(truth.size())) << "k " << k;
-          for (std::size_t i = 0; i < truth.size(); ++i) {
-            ASSERT_EQ(table.indices(row)[i], truth[i].index) << "k " << k << " row " << row;
-            ASSERT_EQ(table.sqrDistances(row)[i], truth[i].distance);
-          }
+    tree_.setInputCloud(bad.cloud, index.indices);
+    const std::size_t rows = index.indices ? index.indices->size() : cloud.size();
+    Neighborhoods table;
+    for (const int k : {-5, 0, 1, 7, 1000}) {
+      tree_.nearestKSearchAll(k, table);
+      if (cloud.empty()) continue;  // an error; there are no rows to speak of
+      ASSERT_EQ(table.size(), rows);
+      for (std::size_t row = 0; row < rows; row += 11) {
+        std::vector<Neighbor> truth;
+        if (pointOf(cloud, index.indices, row) != nullptr && k > 0) {
+          const auto self = index.indices ? (*index.indices)[row] : static_cast<pcl::index_t>(row);
+          truth = bruteForceRow(view, self, static_cast<std::size_t>(k), index.indices.get());
+        }
+        ASSERT_EQ(table.count(row), static_cast<int>(truth.size())) << "k " << k;
+        for (std::size_t i = 0; i < truth.size(); ++i) {
+          ASSERT_EQ(table.indices(row)[i], truth[i].index) << "k " << k << " row " << row;
+          ASSERT_EQ(table.sqrDistances(row)[i], truth[i].distance);
         }
       }
     }
-  }
+  });
 }
 
 TEST(BadInput, ClosestWithinWideRadii) {
@@ -229,7 +217,7 @@ TEST(BadInput, OddSettings) {
     tree.setNumberOfThreads(std::numeric_limits<unsigned int>::max());
     tree.setNumberOfThreads(1);
     tree.setInputCloud(smallCloud());
-    for (const float epsilon : {kNan, -1.0F, 0.0F}) {
+    for (const float epsilon : {kNaN, -1.0F, 0.0F}) {
       tree.setEpsilon(epsilon);
       pcl::Indices indices;
       std::vector<float> distances;

@@ -16,9 +16,6 @@ namespace {
 using Cloud = pcl::PointCloud<pcl::PointXYZ>;
 using Normals = pcl::PointCloud<pcl::Normal>;
 
-const float kNaN = std::numeric_limits<float>::quiet_NaN();
-const float kInfinity = std::numeric_limits<float>::infinity();
-
 struct NormalsCase {
   const char* name;
   std::function<void(Normals&)> change;
@@ -93,25 +90,21 @@ void checkSegments(const BadCloud& bad, const IndexCase& index, bool labelled,
 TEST_F(BadInput, CloudsIndicesAndNormals) {
   NormalSegmentation<pcl::PointXYZ, pcl::Normal> segmentation;
   segmentation.setNumberOfThreads(1);
-  for (const BadCloud& bad : badClouds()) {
-    SCOPED_TRACE(bad.name);
-    for (const IndexCase& index : indexCases(bad.cloud->size())) {
-      SCOPED_TRACE(index.name);
-      for (const NormalsCase& c : kNormals) {
-        SCOPED_TRACE(c.name);
-        const std::size_t size = bad.cloud->size();
-        auto normals = pcl::make_shared<Normals>(size, 1, pcl::Normal(0.F, 0.F, 1.F));
-        c.change(*normals);
-        segmentation.setInputCloud(bad.cloud);
-        segmentation.setIndices(index.indices);
-        segmentation.setInputNormals(normals);
-        for (const unsigned int k : {0U, 5U, std::numeric_limits<unsigned int>::max()}) {
-          segmentation.setNumberOfNeighbours(k);
-          checkSegments(bad, index, c.labelled, segmentation);
-        }
+  forEachBadInput([&](const BadCloud& bad, const IndexCase& index) {
+    for (const NormalsCase& c : kNormals) {
+      SCOPED_TRACE(c.name);
+      const std::size_t size = bad.cloud->size();
+      auto normals = pcl::make_shared<Normals>(size, 1, pcl::Normal(0.F, 0.F, 1.F));
+      c.change(*normals);
+      segmentation.setInputCloud(bad.cloud);
+      segmentation.setIndices(index.indices);
+      segmentation.setInputNormals(normals);
+      for (const unsigned int k : {0U, 5U, std::numeric_limits<unsigned int>::max()}) {
+        segmentation.setNumberOfNeighbours(k);
+        checkSegments(bad, index, c.labelled, segmentation);
       }
     }
-  }
+  });
 }
 
 TEST_F(BadInput, SearchOfAnotherCloud) {

@@ -2,6 +2,7 @@
 // Copyright (c) 2026, the segorient authors
 #pragma once
 
+#include <gtest/gtest.h>
 #include <pcl/console/print.h>
 #include <pcl/pcl_base.h>
 #include <pcl/point_cloud.h>
@@ -16,6 +17,9 @@
 #include <vector>
 
 namespace segorient::test {
+
+inline constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
+inline constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
 /// Whether the finite points of a cloud have a plane around them.
 enum class Planes { NONE, MAYBE, NEARLY_ALL };
@@ -62,8 +66,6 @@ inline pcl::PointCloud<pcl::PointXYZ> curvedPatch(std::size_t size) {
 
 inline std::vector<BadCloud> badClouds() {
   using Point = pcl::PointXYZ;
-  constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
-  constexpr float kInf = std::numeric_limits<float>::infinity();
   constexpr std::size_t kSize = 150;
   std::vector<BadCloud> out;
   const auto keep = [&](const std::string& name, Planes planes, std::size_t size) {
@@ -98,12 +100,12 @@ inline std::vector<BadCloud> badClouds() {
   for (const bool dense : {true, false}) {
     const std::string said = dense ? ", said to be dense" : "";
     each("some NaN" + said, Planes::NEARLY_ALL, [](std::size_t i, Point& p) {
-      if (i % 10 == 3) p.y = kNan;
+      if (i % 10 == 3) p.y = kNaN;
     })->is_dense = dense;
     each("some infinite" + said, Planes::NEARLY_ALL, [](std::size_t i, Point& p) {
-      if (i % 10 == 3) (i % 20 == 3 ? p.x : p.z) = i % 20 == 3 ? kInf : -kInf;
+      if (i % 10 == 3) (i % 20 == 3 ? p.x : p.z) = i % 20 == 3 ? kInfinity : -kInfinity;
     })->is_dense = dense;
-    each("all NaN" + said, Planes::NONE, [](std::size_t, Point& p) { p.x = kNan; })->is_dense =
+    each("all NaN" + said, Planes::NONE, [](std::size_t, Point& p) { p.x = kNaN; })->is_dense =
         dense;
   }
   scaled("1e30", 1e30F);
@@ -121,7 +123,7 @@ inline std::vector<BadCloud> badClouds() {
   });
   const auto organized =
       each("organised with holes", Planes::NEARLY_ALL, [](std::size_t i, Point& p) {
-        p = i % 7 == 0 ? Point(kNan, kNan, kNan)
+        p = i % 7 == 0 ? Point(kNaN, kNaN, kNaN)
                        : Point(static_cast<float>(i % 15), static_cast<float>(i / 15), 0.F);
       });
   organized->width = 15;
@@ -148,6 +150,19 @@ inline std::vector<IndexCase> indexCases(std::size_t size) {
   return out;
 }
 
+/// Calls check(cloud, indices) for every bad cloud with all indices for its size; failures say
+/// which they belong to.
+template <typename Check>
+void forEachBadInput(const Check& check) {
+  for (const BadCloud& bad : badClouds()) {
+    SCOPED_TRACE(bad.name);
+    for (const IndexCase& index : indexCases(bad.cloud->size())) {
+      SCOPED_TRACE(index.name);
+      check(bad, index);
+    }
+  }
+}
+
 /// The point that an output's row belongs to; null where there is none.
 inline const pcl::PointXYZ* pointOf(const pcl::PointCloud<pcl::PointXYZ>& cloud,
                                     const pcl::IndicesPtr& indices, std::size_t row) {
@@ -162,6 +177,34 @@ template <typename NormalT>
 bool isUnitOrNan(const NormalT& n) {
   if (std::isnan(n.normal_x)) return std::isnan(n.normal_y) && std::isnan(n.normal_z);
   return std::abs(n.getNormalVector3fMap().norm() - 1.F) < 1e-4F;
+}
+
+/// Expects a row for each point: of NaN where there is no valid point, and of unit normals as far
+/// as the cloud and the settings allow.
+/// \param most what the settings allow
+inline void checkNormals(const BadCloud& bad, const IndexCase& index,
+                         const pcl::PointCloud<pcl::Normal>& out,
+                         Planes most = Planes::NEARLY_ALL) {
+  const std::size_t all = index.indices ? index.indices->size() : bad.cloud->size();
+  const std::size_t rows = bad.cloud->empty() ? 0 : all;
+  ASSERT_EQ(out.size(), rows);
+  std::size_t valid = 0;
+  std::size_t found = 0;
+  for (std::size_t i = 0; i < rows; ++i) {
+    ASSERT_TRUE(isUnitOrNan(out[i])) << i << ": " << out[i];
+    const bool is_point = pointOf(*bad.cloud, index.indices, i) != nullptr;
+    const bool has_normal = !std::isnan(out[i].normal_x);
+    ASSERT_TRUE(is_point || !has_normal) << i;
+    valid += is_point ? 1 : 0;
+    found += has_normal ? 1 : 0;
+  }
+  EXPECT_EQ(out.is_dense, found == rows);
+  if (bad.planes == Planes::NONE || most == Planes::NONE) {
+    EXPECT_EQ(found, 0U);
+  }
+  if (bad.planes == Planes::NEARLY_ALL && most == Planes::NEARLY_ALL) {
+    EXPECT_GE(10 * found, 9 * valid) << found << " of " << valid;
+  }
 }
 
 }  // namespace segorient::test
