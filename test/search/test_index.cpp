@@ -196,5 +196,18 @@ TEST(Index, ConcurrentQueriesOnOneObject) {
   for (const std::size_t w : wrong) EXPECT_EQ(w, 0U);
 }
 
+// More points than 32 bits number, all of them the same one: refused before memory is asked for.
+TEST(Index, MoreThanItNumbersAreNotTaken) {
+  const float point[3] = {1.F, 2.F, 3.F};
+  MedianHashIndex index;
+  index.build({point, 0, MedianHashIndex::kMostPoints + 1}, nullptr, {});
+  EXPECT_EQ(index.size(), 0U);
+  Neighborhoods table;
+  index.nearestKAll(5, table);
+  EXPECT_EQ(table.size(), 0U);
+  index.build({point, 0, 4}, nullptr, {});
+  EXPECT_EQ(index.size(), 4U);
+}
+
 }  // namespace
 }  // namespace segorient::test

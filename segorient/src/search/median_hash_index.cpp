@@ -22,6 +22,10 @@ void MedianHashIndex::build(const PointView& points, const std::vector<pcl::inde
   self.options = options;
   self.rows = indices != nullptr ? indices->size() : points.size;
   self.number = ++built;
+  if (std::max(points.size, self.rows) > kMostPoints) {
+    self.rows = 0;
+    return;
+  }
   const std::unique_ptr<BuildPoint[]> finite(new BuildPoint[self.rows]);
   std::size_t count = 0;
   for (std::size_t i = 0; i < self.rows; ++i) {

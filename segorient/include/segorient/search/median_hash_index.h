@@ -32,7 +32,11 @@ class MedianHashIndex {
   MedianHashIndex(const MedianHashIndex&) = delete;
   MedianHashIndex& operator=(const MedianHashIndex&) = delete;
 
-  /// Copies the points; those with NaN or infinite coordinates are left out.
+  /// Points, and indices, that there may be: 32 bits number them, whatever pcl::index_t is.
+  static constexpr std::size_t kMostPoints = 0xffffffffU;
+
+  /// Copies the points; those with NaN or infinite coordinates are left out. More than kMostPoints
+  /// are not taken: the index is empty then.
   /// \param indices rows of `points` to use, or null for all; repeated ones are found repeatedly,
   ///        out of range ones are left out
   void build(const PointView& points, const std::vector<pcl::index_t>* indices,

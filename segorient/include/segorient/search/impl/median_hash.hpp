@@ -59,6 +59,10 @@ bool MedianHash<PointT>::build(const PointCloudConstPtr& cloud, const IndicesCon
               cloud ? "empty" : "null");
     return false;
   }
+  if (cloud->size() > MedianHashIndex::kMostPoints) {
+    PCL_ERROR("[segorient::MedianHash::setInputCloud] The input cloud is too large!\n");
+    return false;
+  }
   representation_ = this->getPointRepresentation();
   access_ = chooseAccess();
   if (access_ == Access::kPcl) {
