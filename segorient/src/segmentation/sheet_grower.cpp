@@ -64,7 +64,8 @@ int SheetGrower::accepts(std::size_t p, std::size_t q, const SheetSegment& segme
   const float from_parent = dot(n, normal(p));
   if (std::fabs(from_parent) < cos_alpha_) return 0;
   const float to_reference = n[0] * segment.x + n[1] * segment.y + n[2] * segment.z;
-  if (std::fabs(to_reference) < cos_beta * segment.length()) return 0;
+  const float least = cos_beta * cos_beta * segment.squaredLength();
+  if (to_reference * to_reference < least) return 0;
   const int by_parent = from_parent * static_cast<float>(signs_[p]) >= 0.F ? 1 : -1;
   const int by_reference = to_reference >= 0.F ? 1 : -1;
   return by_parent == by_reference ? by_parent : 0;
@@ -73,14 +74,18 @@ int SheetGrower::accepts(std::size_t p, std::size_t q, const SheetSegment& segme
 bool SheetGrower::supported(std::size_t q, std::int32_t label, std::uint32_t size) const {
   if (!options_.require_support) return true;
   constexpr std::uint32_t kYoung = 6;  // a segment that small has no three neighbours to offer
+  const int wanted = size <= kYoung ? 0 : 3;
   const pcl::index_t* row = neighbors(q);
+  const int last = degree(q);
   int good = 0;
   int bad = 0;
-  for (int j = 0; j < degree(q); ++j) {
+  // Most points have one sheet around them, so that nothing can speak against it.
+  const bool one_sheet = admissible_[q] == (1U << last) - 1U;
+  for (int j = 0; j < last && !(one_sheet && good >= wanted); ++j) {
     if (labels_[at(row[j])] != label) continue;
     (admits(q, j) ? good : bad) += 1;
   }
-  return bad <= good && (size <= kYoung || good >= 3);
+  return bad <= good && good >= wanted;
 }
 
 void SheetGrower::add(std::size_t q, std::int32_t label, int sign) {

@@ -16,7 +16,8 @@ struct SheetSegment {
   std::uint32_t size = 0;
   pcl::index_t head = -1;
   pcl::index_t tail = -1;
-  float length() const { return std::sqrt(x * x + y * y + z * z); }
+  float squaredLength() const { return x * x + y * y + z * z; }
+  float length() const { return std::sqrt(squaredLength()); }
 };
 
 /// State of one segmentSheets() run: labels are provisional, and segments that were merged away
