@@ -66,12 +66,13 @@ py::tuple normalArrays(std::vector<float> normals) {
 }
 
 NormalEstimator estimatorNamed(const std::string& name) {
+  if (name == "auto") return NormalEstimator::Automatic;
   if (name == "plane") return NormalEstimator::Plane;
   if (name == "lct") return NormalEstimator::LCT;
   if (name == "ldt") return NormalEstimator::LDT;
   if (name == "awas") return NormalEstimator::AwASQuadratic;
   if (name == "awas3") return NormalEstimator::AwASCubic;
-  throw std::invalid_argument("normals must be 'plane', 'lct', 'ldt', 'awas' or 'awas3', not '" +
+  throw std::invalid_argument("normals must be 'auto', 'plane', 'lct', 'ldt', 'awas' or 'awas3', not '" +
                               name + "'");
 }
 
@@ -151,6 +152,7 @@ py::dict reportOf(const PipelineReport& report) {
   out["duplicates"] = report.duplicates;
   out["without_normal"] = report.without_normal;
   out["k"] = report.k;
+  out["normals_chosen"] = report.normals_chosen;
   out["method"] = toString(report.method);
   out["spacing"] = report.spacing;
   out["noise_in_spacings"] = report.noise;

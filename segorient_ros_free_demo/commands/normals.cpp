@@ -21,10 +21,10 @@ void printSummary(const FirstStages& stages, const std::vector<float>& normals,
   std::size_t without = 0;
   for (std::size_t i = 0; i < normals.size(); i += 4) without += std::isfinite(normals[i]) ? 0 : 1;
   std::printf(
-      "points          %zu\nwithout normal  %zu\nneighbours      %d, %s\nseconds         %s\n"
-      "written         %s\n",
+      "points          %zu\nwithout normal  %zu\nneighbours      %d, %s\nnormals         %s\n"
+      "seconds         %s\nwritten         %s\n",
       normals.size() / 4, without, stages.k(), estimatorName(options.normals.estimator),
-      timesText(stages.times()).c_str(), path.c_str());
+      stages.normalsChosen().c_str(), timesText(stages.times()).c_str(), path.c_str());
 }
 
 }  // namespace

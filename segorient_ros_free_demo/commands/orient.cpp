@@ -33,6 +33,7 @@ void printSummary(const PipelineReport& report, const std::array<double, 3>& ori
               report.connected_segments, report.isolated_segments);
   std::printf("neighbours      %d; spacing %.4g, noise %.2f spacings\n", report.k,
               static_cast<double>(report.spacing), static_cast<double>(report.noise));
+  std::printf("normals         %s\n", report.normals_chosen.c_str());
   std::printf("components      %zu, oriented by method %s\n", report.components.size(),
               toString(report.method));
   for (std::size_t i = 0; i < report.components.size(); ++i) {
@@ -90,6 +91,7 @@ std::string reportText(const OrientedCloud& cloud, const std::array<double, 3>& 
   json.field("without_normal", report.without_normal);
   json.field("k", report.k);
   json.field("normals", estimatorName(report.estimator));
+  json.field("normals_chosen", report.normals_chosen);
   json.field("method", toString(report.method));
   json.field("spacing", report.spacing);
   json.field("noise_in_spacings", report.noise);

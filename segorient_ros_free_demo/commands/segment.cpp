@@ -35,7 +35,8 @@ void printSummary(const FirstStages& stages, const Segmentation& segmentation,
     std::printf("%-10s %zu segments of %zu points\n", kindName(kind),
                 count[static_cast<std::size_t>(kind)], points[static_cast<std::size_t>(kind)]);
   }
-  std::printf("seconds    %s\nwritten    %s\n", timesText(stages.times()).c_str(), path.c_str());
+  std::printf("normals    %s\nseconds    %s\nwritten    %s\n", stages.normalsChosen().c_str(),
+              timesText(stages.times()).c_str(), path.c_str());
 }
 
 std::string reportText(const FirstStages& stages, const Segmentation& segmentation,
@@ -45,6 +46,7 @@ std::string reportText(const FirstStages& stages, const Segmentation& segmentati
   json.field("non_finite", stages.nonFinite());
   json.field("duplicates", stages.duplicates());
   json.field("k", stages.k());
+  json.field("normals_chosen", stages.normalsChosen());
   json.beginObject("seconds");
   for (const StageTime& s : stages.times()) json.field(s.stage, s.seconds);
   json.endObject();

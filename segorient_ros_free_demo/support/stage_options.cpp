@@ -15,7 +15,8 @@ struct EstimatorName {
   const char* name;
   NormalEstimator estimator;
 };
-constexpr std::array kEstimators{EstimatorName{"plane", NormalEstimator::Plane},
+constexpr std::array kEstimators{EstimatorName{"auto", NormalEstimator::Automatic},
+                                 EstimatorName{"plane", NormalEstimator::Plane},
                                  EstimatorName{"lct", NormalEstimator::LCT},
                                  EstimatorName{"ldt", NormalEstimator::LDT},
                                  EstimatorName{"awas", NormalEstimator::AwASQuadratic},
@@ -33,7 +34,7 @@ const char* estimatorName(NormalEstimator estimator) {
   for (const EstimatorName& e : kEstimators) {
     if (e.estimator == estimator) return e.name;
   }
-  return "plane";
+  return "auto";
 }
 
 const char* kindName(SegmentKind kind) {
@@ -54,8 +55,10 @@ void StageOptions::add(CommandLine& line) {
       "method", po::value(&method_)->default_value("auto"),
       "of orientation: auto (the best known), propagation, boundary, combined or extremal\n"
       "(the paper's), hoppe (the classical tree over points)")(
-      "normals", po::value(&normals_)->default_value("plane"),
-      "plane, lct, ldt, awas or awas3; method auto has its own way and does not look at this")(
+      "normals", po::value(&normals_)->default_value("auto"),
+      "auto (chosen from the cloud itself), plane, lct, ldt, awas or awas3; method auto has its "
+      "own "
+      "way and does not look at this")(
       "alpha", po::value(&alpha_),
       "degrees: largest angle between normals of neighbours in a segment; about 20")(
       "beta", po::value(&beta_), "degrees: largest angle between a normal and its segment's; 30")(
@@ -87,7 +90,7 @@ void StageOptions::apply(const CommandLine& line, const CommonOptions& common,
     options.normals.estimator = e.estimator;
     known = true;
   }
-  require(known, "--normals is one of plane lct ldt awas awas3");
+  require(known, "--normals is one of auto plane lct ldt awas awas3");
   setAngle(line, "alpha", alpha_, options.segmentation.alpha);
   setAngle(line, "alpha", alpha_, options.sheets.alpha);
   setAngle(line, "beta", beta_, options.segmentation.beta);

@@ -42,7 +42,7 @@ class StageOptions {
 /// \param with_k whether -k is among them
 void takeSharedOptions(CommandLine& line, bool with_k = true);
 
-/// plane, lct, ldt, awas, awas3.
+/// auto, plane, lct, ldt, awas, awas3.
 const char* estimatorName(NormalEstimator estimator);
 const char* kindName(SegmentKind kind);
 /// "search 0.12  normals 0.03": one line of a summary.

@@ -178,7 +178,7 @@ def orient(
     *,
     method: str = "auto",
     k: Optional[int] = None,
-    normals: str = "plane",
+    normals: str = "auto",
     alpha: Optional[float] = None,
     beta: Optional[float] = None,
     gamma: Optional[float] = None,
@@ -202,8 +202,8 @@ def orient(
     :param method: of orientation: ``auto`` (the best known), ``propagation``, ``boundary``,
         ``combined`` or ``extremal`` (the paper's)
     :param k: neighbours of a point; None: from the cloud's noise
-    :param normals: estimator for the paper's methods: ``plane``, ``lct``, ``ldt``, ``awas``,
-        ``awas3``; ``auto`` has its own way
+    :param normals: estimator for the paper's methods: ``auto`` (chosen from the cloud itself),
+        ``plane``, ``lct``, ``ldt``, ``awas``, ``awas3``; method ``auto`` has its own way
     :param alpha: degrees, largest angle between normals of neighbours in a segment
     :param beta: degrees, largest angle between a normal and its segment's
     :param gamma: degrees, angles between segments up to this decide (the paper's methods)
@@ -260,7 +260,7 @@ def orient(
 def normals(
     points: npt.ArrayLike,
     *,
-    normals: str = "plane",
+    normals: str = "auto",
     k: Optional[int] = None,
     alpha: Optional[float] = None,
     beta: Optional[float] = None,
@@ -273,8 +273,9 @@ def normals(
     """One unoriented normal a point.
 
     :param points: (n, 3)
-    :param normals: estimator: ``plane``, ``lct`` and ``ldt`` (local triangulations), ``awas`` and
-        ``awas3`` (quadratic and cubic surfaces)
+    :param normals: estimator: ``auto`` (it and its neighbours chosen from the cloud itself),
+        ``plane``, ``lct`` and ``ldt`` (local triangulations), ``awas`` and ``awas3`` (quadratic and
+        cubic surfaces)
     :param k: neighbours of a point; None: 12
     :param alpha, beta, epsilon: degrees, of the segments that `recompute` goes by; see :func:`segment`
     :param delta: degrees, what makes a border a sharp one for `recompute`, which then follows the
@@ -292,7 +293,7 @@ def segment(
     points: npt.ArrayLike,
     *,
     split: bool = False,
-    normals: str = "plane",
+    normals: str = "auto",
     k: Optional[int] = None,
     alpha: Optional[float] = None,
     beta: Optional[float] = None,

@@ -16,8 +16,11 @@ namespace {
 
 // Neighbourhoods of the quadratic surfaces that are tried.
 constexpr std::array<int, 6> kSizes{10, 16, 24, 32, 48, kMostAutomaticNeighbors};
-// Median of a standard deviation estimated with as much freedom as the sample's surfaces have (7).
-constexpr double kMedianShare = 0.952;
+// The noise is what is left of quadratic surfaces through the fewest neighbours that leave
+// anything: larger ones take what the surface bends beyond a quadratic for noise.
+constexpr int kNoiseNeighbors = 8;
+// Median of a standard deviation estimated with as much freedom as they have (3).
+constexpr double kMedianShare = 0.888;
 // A residual is taken for noise up to this many of its own standard deviations.
 constexpr double kTolerance = 2.5;
 // Least noise, in spacings: less cannot be told from what a quadratic leaves of a smooth surface.
@@ -31,9 +34,12 @@ constexpr int kSmallestNoisy = 16;
 constexpr int kTriangulationNeighbors = 12;
 // Neighbourhoods that are worth trying, per unit of noise over spacing. Noise turns the normals of
 // k neighbours by about noise / (spacing k): with 400 it has sunk to a fraction of a degree, below
-// 72 it is several degrees, more than what the larger neighbourhood costs at an edge.
+// 90 it is several degrees, more than what the larger neighbourhood costs at an edge.
 constexpr double kLargestPerNoise = 400.0;
-constexpr double kSmallestPerNoise = 72.0;
+constexpr double kSmallestPerNoise = 90.0;
+// Beyond this noise a few neighbours are a ball of points, whose residual hardly grows with the
+// noise and says nothing of the surface: then only the largest neighbourhood is left.
+constexpr double kSaturatedNoise = 0.45;
 // Points that the noise is estimated from.
 constexpr std::size_t kSamples = 4000;
 
@@ -84,6 +90,7 @@ std::vector<int> sizesFor(double noise, int available) {
     if (s == 0 || (kSizes[s] <= largest && kSizes[s] <= available)) sizes.push_back(kSizes[s]);
   }
   if (sizes.size() > 1 && sizes.back() < smallest) sizes.pop_back();
+  if (noise > kSaturatedNoise) sizes.resize(1);
   return sizes;
 }
 
@@ -106,7 +113,7 @@ Noise sampleNoise(const PointView& points, const Neighborhoods& neighborhoods, i
   const std::size_t step = std::max<std::size_t>(1, points.size / kSamples);
   for (std::size_t i = 0; i < points.size; i += step) rows.push_back(static_cast<pcl::index_t>(i));
   Surfaces surfaces;
-  surfaces.fit(points, neighborhoods, kTriangulationNeighbors, threads, rows);
+  surfaces.fit(points, neighborhoods, kNoiseNeighbors, threads, rows);
   std::vector<double> lengths;
   std::vector<double> ratios;
   for (const pcl::index_t r : rows) {
@@ -165,6 +172,23 @@ AutomaticNormalReport estimateNormalsAutomatically(const PointView& points,
     report.undefined += isFinite(normals + 4 * i) ? 0 : 1;
   }
   return report;
+}
+
+AutomaticNormalReport estimateNormalsAutomatically(const PointView& points,
+                                                   const search::MedianHashIndex& index,
+                                                   const Neighborhoods& neighborhoods, int threads,
+                                                   float* normals) {
+  const double noise =
+      std::max(kLeastNoise, static_cast<double>(estimateNoise(points, neighborhoods, threads)));
+  const int wanted =
+      std::max(sizesFor(noise, kMostAutomaticNeighbors).front(), kTriangulationNeighbors);
+  const bool all = static_cast<std::size_t>(neighborhoods.k()) >= points.size;
+  if (all || neighborhoods.k() > wanted) {
+    return estimateNormalsAutomatically(points, neighborhoods, threads, normals);
+  }
+  Neighborhoods wider;
+  index.nearestKAll(wanted + 1, wider, false);
+  return estimateNormalsAutomatically(points, wider, threads, normals);
 }
 
 std::string AutomaticNormalReport::text() const {

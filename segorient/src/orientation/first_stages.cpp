@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026, the segorient authors
-#include <segorient/features/local_normals.h>
 #include <segorient/features/recompute_normals.h>
 #include <segorient/orientation/first_stages.h>
-#include <segorient/search/median_hash_index.h>
 #include <segorient/segmentation/region_growing.h>
 
 #include <algorithm>
@@ -11,6 +9,8 @@
 #include <cstdint>
 #include <limits>
 #include <utility>
+
+#include "unoriented_normals.h"
 
 namespace segorient {
 
@@ -39,24 +39,20 @@ FirstStages::FirstStages(const PointView& points, const PipelineOptions& options
   const Timer timer(*this, "search", 0.0);
   cloud_ = compactCloud(points, nullptr, options_.threads);
   normalizeUnit(cloud_);
-  search::MedianHashIndex index;
   search::MedianHashIndex::Options search_options;
   search_options.threads = options_.threads;
-  index.build(cloud_.view(), nullptr, search_options);
+  index_.build(cloud_.view(), nullptr, search_options);
   // More than there are would only cost memory.
   const std::size_t others = cloud_.size() > 0 ? cloud_.size() - 1 : 0;
   const int wanted = options_.k > 0 ? options_.k : kDefaultNeighbors;
   k_ = static_cast<int>(std::min(static_cast<std::size_t>(wanted), others));
-  index.nearestKAll(k_ + 1, neighborhoods_);
+  index_.nearestKAll(k_ + 1, neighborhoods_);
 }
 
 void FirstStages::findNormals() {
   const Timer timer(*this, "normals", 0.4);
-  normals_.resize(4 * cloud_.size());
-  LocalNormalOptions options = options_.normals;
-  options.k = 0;
-  options.threads = options_.threads;
-  estimateNormals(cloud_.view(), neighborhoods_, options, normals_.data());
+  normals_chosen_ =
+      detail::findUnorientedNormals(cloud_.view(), index_, neighborhoods_, options_, normals_);
 }
 
 void FirstStages::findSegments() {

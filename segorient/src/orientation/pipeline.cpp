@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026, the segorient authors
 #include <segorient/common/compact_cloud.h>
+#include <segorient/features/automatic_normals.h>
 #include <segorient/orientation/pipeline.h>
 #include <segorient/search/median_hash_index.h>
 #include <sys/resource.h>
@@ -9,11 +10,14 @@
 #include <chrono>
 #include <cmath>
 #include <cstring>
+#include <iomanip>
 #include <limits>
+#include <sstream>
 
 #include "auto_stages.h"
 #include "cloud_scale.h"
 #include "segment_members.h"
+#include "unoriented_normals.h"
 
 namespace segorient {
 namespace {
@@ -57,6 +61,7 @@ class Stages {
 // The distinct points with all that the stages find out about them.
 struct Working {
   CompactCloud cloud;
+  search::MedianHashIndex index;
   Neighborhoods neighborhoods;
   std::vector<float> normals;
   Segmentation segmentation;
@@ -72,26 +77,17 @@ std::size_t peakMemory() {
 }
 
 void findNeighbors(const PipelineOptions& options, Working& work, PipelineReport& report) {
-  search::MedianHashIndex index;
   search::MedianHashIndex::Options search_options;
   search_options.threads = options.threads;
-  index.build(work.cloud.view(), nullptr, search_options);
-  const CloudScale scale = measureScale(work.cloud.view(), index);
+  work.index.build(work.cloud.view(), nullptr, search_options);
+  const CloudScale scale = measureScale(work.cloud.view(), work.index);
   report.spacing = scale.spacing;
   report.noise = scale.noise;
   const int wanted = options.k > 0 ? options.k : neighborsForNoise(scale.noise);
   // More than there are would only cost memory.
   const std::size_t others = work.cloud.size() > 0 ? work.cloud.size() - 1 : 0;
   report.k = static_cast<int>(std::min(static_cast<std::size_t>(wanted), others));
-  index.nearestKAll(report.k + 1, work.neighborhoods);
-}
-
-void findNormals(const PipelineOptions& options, Working& work) {
-  work.normals.resize(4 * work.cloud.size());
-  LocalNormalOptions normal_options = options.normals;
-  normal_options.k = 0;
-  normal_options.threads = options.threads;
-  estimateNormals(work.cloud.view(), work.neighborhoods, normal_options, work.normals.data());
+  work.index.nearestKAll(report.k + 1, work.neighborhoods);
 }
 
 void findSegments(const PipelineOptions& options, Working& work) {
@@ -151,6 +147,17 @@ void applyOrientation(Working& work) {
   }
 }
 
+// What the default method chose, and why.
+std::string sheetChoice(const detail::AutoStages& stages) {
+  std::ostringstream text;
+  text << std::setprecision(2) << "noise " << stages.noise << " of the spacing, "
+       << (stages.denoised ? "too much to see the surface by few points, so positions were smoothed"
+                           : "so positions stay as they are")
+       << "; planes of one sheet each, of as few of " << stages.k
+       << " neighbours as the noise allows";
+  return text.str();
+}
+
 // The default method brings its own stages; its normals come out oriented.
 void runAutomatic(const PipelineOptions& options, const PointHints& hints, Stages& stages,
                   Working& work, PipelineReport& report) {
@@ -161,6 +168,7 @@ void runAutomatic(const PipelineOptions& options, const PointHints& hints, Stage
   report.spacing = result.spacing;
   report.noise = result.noise;
   report.denoised = result.denoised;
+  report.normals_chosen = sheetChoice(result);
   report.contradictions = std::move(result.orientation.contradictions);
   report.clusters = std::move(result.orientation.clusters);
   work.normals = std::move(result.normals);
@@ -255,7 +263,8 @@ OrientedCloud orientCloud(const PointView& points, const std::vector<pcl::index_
   } else {
     findNeighbors(options, work, out.report);
     stages.begin("normals", 0.4);
-    findNormals(options, work);
+    out.report.normals_chosen = detail::findUnorientedNormals(
+        work.cloud.view(), work.index, work.neighborhoods, options, work.normals);
     stages.begin("segmentation", 0.5);
     findSegments(options, work);
     if (options.recomputations > 0) stages.begin("recomputation", 0.65);
@@ -283,7 +292,12 @@ std::size_t expectedMemory(std::size_t points, const PipelineOptions& options) {
   // measured on clouds of one to ten million points.
   const std::size_t entry = automatic ? sizeof(pcl::index_t) : sizeof(pcl::index_t) + sizeof(float);
   constexpr std::size_t kElse = 150;
-  return points * (entry * (k + 1) + kElse);
+  // Automatic normals of noisy clouds have neighbours of their own for a while.
+  const bool wider =
+      !automatic && options.k <= 0 && options.normals.estimator == NormalEstimator::Automatic;
+  const std::size_t wide =
+      wider ? sizeof(pcl::index_t) * static_cast<std::size_t>(kMostAutomaticNeighbors + 1) : 0;
+  return points * (entry * (k + 1) + wide + kElse);
 }
 
 OrientedCloud selectRows(const OrientedCloud& cloud, const std::vector<pcl::index_t>& rows) {

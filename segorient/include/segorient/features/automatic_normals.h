@@ -5,6 +5,7 @@
 #include <segorient/common/neighborhoods.h>
 #include <segorient/common/point_view.h>
 #include <segorient/features/local_normals.h>
+#include <segorient/search/median_hash_index.h>
 
 #include <cstddef>
 #include <string>
@@ -41,6 +42,13 @@ constexpr int kMostAutomaticNeighbors = 64;
 ///        kMostAutomaticNeighbors; with a narrow one noisy clouds are served less well
 /// \param normals 4 floats a row, as from estimateNormals()
 AutomaticNormalReport estimateNormalsAutomatically(const PointView& points,
+                                                   const Neighborhoods& neighborhoods, int threads,
+                                                   float* normals);
+
+/// The same, with more neighbours where the noise asks for them: then they are sought again.
+/// \param index built on `points`
+AutomaticNormalReport estimateNormalsAutomatically(const PointView& points,
+                                                   const search::MedianHashIndex& index,
                                                    const Neighborhoods& neighborhoods, int threads,
                                                    float* normals);
 

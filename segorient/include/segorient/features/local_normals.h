@@ -17,7 +17,10 @@ enum class NormalEstimator {
   LCT,            ///< local centre triangulation: area-weighted fan around the centre of mass
   LDT,            ///< local Delaunay triangulation: unit-weighted star of the point
   AwASQuadratic,  ///< approximation with an analytic surface: z = f(x, y) with 6 coefficients
-  AwASCubic       ///< the same with 10; where they are not determined, the quadratic one
+  AwASCubic,      ///< the same with 10; where they are not determined, the quadratic one
+  /// Chosen point by point from the cloud itself: see estimateNormalsAutomatically(). Functions
+  /// that do not say otherwise take it for Plane.
+  Automatic
 };
 
 /// Curvatures of the fitted surface at the point, by pcl::PrincipalCurvatures' conventions:

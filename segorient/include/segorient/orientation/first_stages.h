@@ -6,9 +6,11 @@
 #include <segorient/common/neighborhoods.h>
 #include <segorient/common/point_view.h>
 #include <segorient/orientation/pipeline.h>
+#include <segorient/search/median_hash_index.h>
 #include <segorient/segmentation/segmentation.h>
 
 #include <cstddef>
+#include <string>
 #include <vector>
 
 namespace segorient {
@@ -41,6 +43,8 @@ class FirstStages {
 
   const std::vector<StageTime>& times() const { return times_; }
   int k() const { return k_; }  ///< neighbours used, the point itself not counted
+  /// How the normals were found, and why so: see PipelineReport::normals_chosen.
+  const std::string& normalsChosen() const { return normals_chosen_; }
   std::size_t nonFinite() const;
   std::size_t duplicates() const;
 
@@ -51,9 +55,11 @@ class FirstStages {
   PipelineProgress progress_;
   std::vector<StageTime> times_;
   CompactCloud cloud_;
+  search::MedianHashIndex index_;
   Neighborhoods neighborhoods_;
   std::vector<float> normals_;
   Segmentation segmentation_;
+  std::string normals_chosen_;
   int k_ = 0;
 };
 

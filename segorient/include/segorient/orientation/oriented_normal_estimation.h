@@ -50,7 +50,8 @@ class OrientedNormalEstimation : public pcl::NormalEstimation<PointInT, PointOut
   void setMethod(Method method) { options_.orientation.method = method; }
   Method getMethod() const { return options_.orientation.method; }
 
-  /// How normals are estimated; default Plane.
+  /// How normals are estimated; default Automatic: estimator and neighbours from the cloud itself,
+  /// as getReport().normals_chosen tells. AUTO has its own way and does not look at this.
   void setNormalEstimator(NormalEstimator estimator) { options_.normals.estimator = estimator; }
   NormalEstimator getNormalEstimator() const { return options_.normals.estimator; }
 

@@ -24,7 +24,8 @@ namespace segorient {
 /// Settings of orientCloud(). The defaults need no tuning.
 struct PipelineOptions {
   int k = 0;  ///< neighbours of a point, itself not counted; <= 0 = from the cloud's noise
-  LocalNormalOptions normals;  ///< its k and threads are not used
+  /// How normals are estimated, by default as the cloud asks for; its k and threads are not used.
+  LocalNormalOptions normals{NormalEstimator::Automatic};
   /// Its threads and neighbors are not used, and settle_edges only by AUTO.
   SegmentationOptions segmentation;
   /// How often normals near sharp edges are found anew and the cloud segmented again
@@ -64,7 +65,8 @@ struct PipelineReport {
   std::size_t isolated_segments = 0;
   std::size_t hard_segments = 0;  ///< regular ones that no method decided
   int k = 0;                      ///< neighbours used, the point itself not counted
-  NormalEstimator estimator = NormalEstimator::Plane;
+  NormalEstimator estimator = NormalEstimator::Automatic;  ///< as asked for
+  std::string normals_chosen;  ///< how normals were found and, where nothing was asked for, why so
   OrientationMethod method = OrientationMethod::AUTO;
   float spacing = 0.F;    ///< h: median over points of the mean distance to the 6 nearest
   float noise = 0.F;      ///< rms distance of a neighbourhood from its plane, in spacings, median
