@@ -7,6 +7,8 @@
 #include <array>
 #include <cmath>
 
+#include "sheet_choice.h"
+
 namespace segorient {
 namespace {
 
@@ -144,6 +146,7 @@ FilteredNormals filterOrientedNormals(const PointView& points, const Neighborhoo
     }
     out.normals.swap(next);
   }
+  detail::chooseSheets(points, nb, spacing, residual, t, out);
   return out;
 }
 
