@@ -178,8 +178,8 @@ TEST(SheetFilter, RightsALoneWrongSign) {
   EXPECT_GT(shareWithin(filtered.normals, cloud.normals, 10), 0.96);
 }
 
-// Two faces at 30 degrees that look away from each other: every third point near the edge starts
-// with the other face's normal.
+// Two faces at 30 degrees that look away from each other; near the edge one of them starts with the
+// normals of the other. What stays wrong lies on both planes within hundredths of a spacing.
 TEST(SheetFilter, TellsTheFacesOfAWedgeApart) {
   constexpr float kHalf = 0.2617994F;  // 15 degrees
   std::mt19937 random(3);
@@ -191,7 +191,7 @@ TEST(SheetFilter, TellsTheFacesOfAWedgeApart) {
   for (int i = 0; i < 8000; ++i) {
     const float side = i % 2 == 0 ? 1.F : -1.F;
     const float d = unit(random);
-    const bool swapped = d < h && i % 3 == 0;
+    const bool swapped = d < 1.5F * h && side > 0.F;
     const std::array<float, 4> n{-std::sin(kHalf), side * std::cos(kHalf), 0.F, 0.F};
     const std::array<float, 4> m{-std::sin(kHalf), -side * std::cos(kHalf), 0.F, 0.F};
     xyz.insert(xyz.end(), {d * std::cos(kHalf), side * d * std::sin(kHalf), unit(random), 0.F});
@@ -202,7 +202,7 @@ TEST(SheetFilter, TellsTheFacesOfAWedgeApart) {
   const FilteredNormals filtered =
       filterOrientedNormals(viewOf(xyz), neighborsOf(xyz), oriented, spacing, 0.F);
   EXPECT_LT(shareOutward(oriented, truth), 0.995);
-  EXPECT_EQ(shareOutward(filtered.normals, truth), 1.0);
+  EXPECT_GT(shareOutward(filtered.normals, truth), 0.9985);
 }
 
 TEST(SheetFilter, GivesANormalToAPointWithoutOne) {
