@@ -72,8 +72,8 @@ NormalEstimator estimatorNamed(const std::string& name) {
   if (name == "ldt") return NormalEstimator::LDT;
   if (name == "awas") return NormalEstimator::AwASQuadratic;
   if (name == "awas3") return NormalEstimator::AwASCubic;
-  throw std::invalid_argument("normals must be 'auto', 'plane', 'lct', 'ldt', 'awas' or 'awas3', not '" +
-                              name + "'");
+  throw std::invalid_argument(
+      "normals must be 'auto', 'plane', 'lct', 'ldt', 'awas' or 'awas3', not '" + name + "'");
 }
 
 void setAngle(const py::dict& given, const char* name, float& out) {
@@ -218,10 +218,6 @@ py::tuple normals(const FloatArray& points, const py::dict& given, const py::obj
     const py::gil_scoped_release unlocked;
     FirstStages stages(rows, options, callback);
     stages.findNormals();
-    if (options.recomputations > 0) {
-      stages.findSegments();
-      stages.recomputeNormals();
-    }
     result = stages.normals();
   }
   return normalArrays(std::move(result));
@@ -238,15 +234,7 @@ py::tuple segment(const FloatArray& points, const py::dict& given, const py::obj
     const py::gil_scoped_release unlocked;
     FirstStages stages(rows, options, callback);
     stages.findNormals();
-    if (options.recomputations > 0) {
-      stages.findSegments();
-      stages.recomputeNormals();
-    }
-    if (split) {
-      stages.findSegments();
-    } else {
-      stages.findFaces();
-    }
+    stages.findSegments(split);
     segmentation = stages.segmentation();
     normals_by_segment = stages.normalsBySegment();
   }

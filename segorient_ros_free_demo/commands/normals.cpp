@@ -52,10 +52,6 @@ int runNormals(const std::vector<std::string>& words) {
   ProgressBar bar(!common.quiet, table.size);
   FirstStages stages(points.view(), options, bar.callback());
   stages.findNormals();
-  if (options.recomputations > 0) {
-    stages.findSegments();
-    stages.recomputeNormals();
-  }
   const std::vector<float> normals = stages.normals();
   Results results;
   results.normals = &normals;

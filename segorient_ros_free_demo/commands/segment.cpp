@@ -110,15 +110,7 @@ int runSegment(const std::vector<std::string>& words) {
   ProgressBar bar(!common.quiet, table.size);
   FirstStages stages(points.view(), options, bar.callback());
   stages.findNormals();
-  if (options.recomputations > 0) {
-    stages.findSegments();
-    stages.recomputeNormals();
-  }
-  if (split) {
-    stages.findSegments();
-  } else {
-    stages.findFaces();
-  }
+  stages.findSegments(split);
   const Segmentation segmentation = stages.segmentation();
   const std::vector<float> normals = stages.normalsBySegment();
   Results results;

@@ -50,31 +50,36 @@ FirstStages::FirstStages(const PointView& points, const PipelineOptions& options
 }
 
 void FirstStages::findNormals() {
-  const Timer timer(*this, "normals", 0.4);
-  normals_chosen_ =
-      detail::findUnorientedNormals(cloud_.view(), index_, neighborhoods_, options_, normals_);
+  {
+    const Timer timer(*this, "normals", 0.4);
+    normals_chosen_ =
+        detail::findUnorientedNormals(cloud_.view(), index_, neighborhoods_, options_, normals_);
+  }
+  if (options_.recomputations <= 0) return;
+  segment(0.5, nullptr);
+  recomputeNormals();
 }
 
-void FirstStages::findSegments() {
-  const Timer timer(*this, "segmentation", 0.6);
-  SegmentationOptions options = options_.segmentation;
-  options.threads = options_.threads;
-  segmentation_ =
-      segmentByNormals(cloud_.view(), {normals_.data(), 4, cloud_.size()}, neighborhoods_, options);
-}
-
-void FirstStages::findFaces() {
-  const Timer timer(*this, "segmentation", 0.6);
-  SegmentationOptions options = options_.segmentation;
-  options.threads = options_.threads;
+void FirstStages::findSegments(bool split) {
+  if (split) {
+    segment(0.8, nullptr);
+    return;
+  }
   Segmentation faces;
-  segmentByNormals(cloud_.view(), {normals_.data(), 4, cloud_.size()}, neighborhoods_, options,
-                   nullptr, &faces);
+  segment(0.8, &faces);
   segmentation_ = std::move(faces);
 }
 
+void FirstStages::segment(double done, Segmentation* faces) {
+  const Timer timer(*this, "segmentation", done);
+  SegmentationOptions options = options_.segmentation;
+  options.threads = options_.threads;
+  segmentation_ = segmentByNormals(cloud_.view(), {normals_.data(), 4, cloud_.size()},
+                                   neighborhoods_, options, nullptr, faces);
+}
+
 void FirstStages::recomputeNormals() {
-  const Timer timer(*this, "recomputation", 0.8);
+  const Timer timer(*this, "recomputation", 0.65);
   RecomputationOptions options = options_.recomputation;
   options.estimator = options_.normals.estimator;
   options.k = 0;

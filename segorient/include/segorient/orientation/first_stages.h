@@ -28,12 +28,12 @@ class FirstStages {
   FirstStages(const PointView& points, const PipelineOptions& options,
               PipelineProgress progress = {});
 
-  void findNormals();   ///< unoriented ones, by `options.normals`
-  void findSegments();  ///< after findNormals(); once more after recomputeNormals(), if wanted
-  void findFaces();     ///< as findSegments(), then united where only beta parted them
-  /// After findSegments(): normals near sharp edges, `options.recomputations` times. The segments
-  /// stay.
-  void recomputeNormals();
+  /// Unoriented ones, by `options.normals`; those near sharp edges anew, `options.recomputations`
+  /// times.
+  void findNormals();
+  /// After findNormals(). \param split whether faces that bend by more than beta stay in pieces, as
+  /// the paper has it; otherwise these are united
+  void findSegments(bool split);
 
   // By input row. Rows that repeat a point have that point's result.
   std::vector<float> normals() const;  ///< 4 floats: normal, curvature; NaN where there is none
@@ -50,6 +50,9 @@ class FirstStages {
 
  private:
   class Timer;
+
+  void segment(double done, Segmentation* faces);
+  void recomputeNormals();
 
   const PipelineOptions& options_;
   PipelineProgress progress_;
