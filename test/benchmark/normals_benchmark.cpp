@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026, the segorient authors
 //
-// Accuracy and time of all normal estimators, with and without recomputation, beside PCL's.
+// Accuracy and time of all normal estimators, with and without recomputation, beside PCL's and, in
+// accuracy, CGAL's where it is installed.
 //   normals_benchmark [FILE...]    PCD or PLY files with true normals; without any, a torus and a
 //   cube normals_benchmark --time [N]   one thread, ratios to our own all-points search; 1,000,000
 //   points
@@ -26,6 +27,8 @@
 #include <random>
 #include <string>
 #include <vector>
+
+#include "normals_peers.h"
 
 namespace {
 
@@ -271,6 +274,11 @@ void accuracy(const std::string& name, const Truth& raw) {
   }
   printRow("PCL MLS", truth, near,
            pclMovingLeastSquares(truth, radius / static_cast<double>(truth.size())));
+  for (const unsigned k : {11U, 30U}) {
+    const std::vector<float> jet = benchmark::cgalJetNormals(truth.view(), k);
+    const std::string row = "CGAL jet k=" + std::to_string(k);
+    if (!jet.empty()) printRow(row.c_str(), truth, near, jet);
+  }
   std::printf("  chosen: %s\n", report.text().c_str());
 }
 

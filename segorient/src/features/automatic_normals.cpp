@@ -197,7 +197,7 @@ std::string AutomaticNormalReport::text() const {
   for (const auto& [k, count] : surfaces) {
     out << ", " << count << " points by quadratic surfaces of " << k << " neighbours";
   }
-  out << ", " << at_edges << " near edges by "
+  out << ", " << at_edges << " that none of these fits, as at edges, by "
       << (triangulated ? "local Delaunay triangulation" : "quadratic surfaces") << " of " << edge_k;
   if (undefined > 0) out << ", " << undefined << " without a normal";
   return out.str();
