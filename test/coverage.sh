@@ -10,15 +10,8 @@ set -euo pipefail
 cd "$(dirname "$(realpath "$0")")/.."
 . segorient_ros_free_demo/setup.sh
 
-install_packages "${BUILD_PACKAGES[@]}" "${TEST_PACKAGES[@]}" gcovr
-if command -v ninja >/dev/null; then export CMAKE_GENERATOR=Ninja; fi
-(
-  cd test/sanitizers
-  cmake --preset coverage
-  cmake --build --preset coverage -j "$(build_jobs)"
-  find ../../build/coverage -name '*.gcda' -delete
-  ctest --preset coverage -j "$(build_jobs)"
-)
+install_packages gcovr
+./test/sanitizers/run.sh coverage
 # Exception paths that the compiler adds are no lines of ours.
 gcovr --root . --filter 'segorient/' --exclude-throw-branches --exclude-unreachable-branches \
   --object-directory build/coverage --html-details build/coverage/report.html \

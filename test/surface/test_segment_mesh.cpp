@@ -10,6 +10,7 @@
 #include <set>
 
 #include "labelled_solids.h"
+#include "triangle_selection.h"
 
 namespace segorient::test {
 namespace {
@@ -241,6 +242,24 @@ TEST(SegmentMesh, GridOfDuplicates) {
   EXPECT_EQ(mesh.duplicates.size(), 900U);
   EXPECT_NEAR(mesh.area, 29.0 * 29.0, 1e-3);
   EXPECT_EQ(loopKinds(mesh), std::make_pair(std::size_t{1}, std::size_t{0}));
+}
+
+// Bins of half a unit from 1 to 3 hold 6, 0, 1 and 1 lengths: the critical one is the end of the
+// last bin that has more than its share of the fullest.
+TEST(CriticalLength, IsTheEndOfTheLastFullBin) {
+  const std::vector<float> lengths{1.F, 1.F, 1.F, 1.F, 1.F, 1.F, 2.F, 3.F};
+  TriangulationOptions options;
+  options.bins = 4;
+  options.critical_factor = 2.F;
+  options.kappa1 = 0.1F;
+  EXPECT_FLOAT_EQ(surface::criticalLength(lengths, options), 2 * 3.F);
+  options.kappa1 = 0.2F;
+  EXPECT_FLOAT_EQ(surface::criticalLength(lengths, options), 2 * 1.5F);
+  // Bins of a quarter of the median length, the ninth of which is the last with an edge.
+  options.bins = 0;
+  options.kappa1 = 0.1F;
+  EXPECT_FLOAT_EQ(surface::criticalLength(lengths, options), 2 * 3.25F);
+  EXPECT_FLOAT_EQ(surface::criticalLength({4.F, 4.F}, options), 2 * 4.F);
 }
 
 }  // namespace
