@@ -210,7 +210,7 @@ TEST(Interrupt, LeavesNoHalfFileWhereverItComes) {
   for (const int milliseconds : {20, 60, 120, 250, 400}) {
     const pid_t child = fork();
     if (child == 0) {
-      std::signal(SIGINT, SIG_DFL);  // ignored in what a shell starts in the background
+      signal(SIGINT, SIG_DFL);  // ignored in what a shell starts in the background
       std::freopen("/dev/null", "w", stdout);
       execl(SEGORIENT_PROGRAM, SEGORIENT_PROGRAM, "orient", in.c_str(), out.c_str(), "--report",
             directory.file("report.json").c_str(), nullptr);
