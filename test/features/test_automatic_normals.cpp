@@ -96,6 +96,19 @@ TEST(AutomaticNormals, SameForAnyThreads) {
   EXPECT_EQ(one, four);
 }
 
+TEST(AutomaticNormals, SeekMoreNeighborsWhereTheNoiseAsks) {
+  for (const float noise : {0.F, 0.4F}) {
+    const Sample sample = torus(6000, 6, noise * torusSpacing(6000));
+    search::MedianHashIndex index;
+    index.build(sample.view(), nullptr, {});
+    std::vector<float> found(4 * 6000);
+    const AutomaticNormalReport report = estimateNormalsAutomatically(
+        sample.view(), index, neighborsOf(sample.view(), 12), 0, found.data());
+    EXPECT_EQ(report.surfaces[0].first, noise > 0.F ? kMostAutomaticNeighbors : 10);
+    EXPECT_EQ(found, automatic(sample).normals);
+  }
+}
+
 TEST(AutomaticNormals, SmallAndDegenerateClouds) {
   for (const std::size_t count : {0U, 1U, 2U, 3U, 7U, 20U}) {
     Sample sample = torus(count, 5);
