@@ -74,7 +74,8 @@ Segmented segmentedCube(std::size_t count, unsigned seed, float noise) {
   std::normal_distribution<float> gauss(0.F, 1.F);
   for (std::size_t i = 0; i < count; ++i) {
     s.truth.push_back(static_cast<std::int32_t>(i % 6));
-    for (int a = 0; noise > 0.F && a < 3; ++a) s.sample.points[i].data[a] += noise * gauss(generator);
+    for (int a = 0; noise > 0.F && a < 3; ++a)
+      s.sample.points[i].data[a] += noise * gauss(generator);
   }
   s.estimate();
   s.regular.assign(7, 1);
