@@ -196,6 +196,15 @@ TEST(Index, ConcurrentQueriesOnOneObject) {
   for (const std::size_t w : wrong) EXPECT_EQ(w, 0U);
 }
 
+TEST(Index, MemoryIsThatOfThePointsAndLittleMore) {
+  const SearchCloud cloud = searchClouds(20000).front();
+  MedianHashIndex index;
+  index.build(cloud.view(), nullptr, {});
+  const std::size_t points = cloud.size() * (3 * sizeof(float) + sizeof(std::uint32_t));
+  EXPECT_GE(index.memory(), points);
+  EXPECT_LT(index.memory(), 3 * points);
+}
+
 // More points than 32 bits number, all of them the same one: refused before memory is asked for.
 TEST(Index, MoreThanItNumbersAreNotTaken) {
   const float point[3] = {1.F, 2.F, 3.F};
