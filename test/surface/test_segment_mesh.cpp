@@ -260,6 +260,8 @@ TEST(CriticalLength, IsTheEndOfTheLastFullBin) {
   options.kappa1 = 0.1F;
   EXPECT_FLOAT_EQ(surface::criticalLength(lengths, options), 2 * 3.25F);
   EXPECT_FLOAT_EQ(surface::criticalLength({4.F, 4.F}, options), 2 * 4.F);
+  const float infinity = std::numeric_limits<float>::infinity();
+  EXPECT_EQ(surface::criticalLength({4.F, infinity, infinity}, options), infinity);
 }
 
 }  // namespace

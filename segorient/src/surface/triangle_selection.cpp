@@ -248,7 +248,9 @@ float criticalLength(const std::vector<float>& lengths, const TriangulationOptio
     bins = std::min(static_cast<std::size_t>(options.bins), kMostBins);
     width = range / static_cast<float>(bins);
   } else {
-    bins = static_cast<std::size_t>(std::min(range / width, static_cast<float>(kMostBins))) + 1;
+    const float wanted = range / width;  // NaN where both are infinite
+    bins =
+        (wanted < static_cast<float>(kMostBins) ? static_cast<std::size_t>(wanted) : kMostBins) + 1;
   }
   std::vector<std::uint32_t> counts(bins, 0);
   for (const float length : lengths) {
