@@ -92,7 +92,7 @@ void estimateNormals(const PointView& queries, const PointView& points,
   job.rows = rows ? rows->data() : nullptr;
   job.estimator = options.estimator;
   job.first_guess = options.first_guess;
-  job.entries = options.k > 0 ? std::min(neighborhoods.k(), options.k + 1) : neighborhoods.k();
+  job.entries = options.k > 0 ? std::min(neighborhoods.k() - 1, options.k) + 1 : neighborhoods.k();
   job.normals = normals;
   job.curvatures = curvatures;
   job.residuals = residuals;

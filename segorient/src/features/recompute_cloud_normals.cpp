@@ -56,7 +56,9 @@ RecomputationReport recomputeCloudNormals(const PointView& points,
   search_options.threads = options.threads;
   index.build(cloud.view(), nullptr, search_options);
   Neighborhoods table;
-  index.nearestKAll(std::max(options.k, 1) + 1, table, false);
+  // More than there are would only cost memory.
+  const std::size_t wanted = static_cast<std::size_t>(std::max(options.k, 1)) + 1;
+  index.nearestKAll(static_cast<int>(std::min(wanted, cloud.size())), table, false);
 
   const auto sourceOf = [&](std::size_t row) {
     return static_cast<std::size_t>(indices[static_cast<std::size_t>(cloud.source[row])]);

@@ -21,7 +21,7 @@ RecomputationReport recomputeNormals(const PointView& points, const Neighborhood
     return report;
   }
   const int entries =
-      options.k > 0 ? std::min(options.k + 1, neighborhoods.k()) : neighborhoods.k();
+      options.k > 0 ? std::min(options.k, neighborhoods.k() - 1) + 1 : neighborhoods.k();
   const detail::RecomputationScene scene{
       points, neighborhoods, regular, labels, normals, entries, resolveThreads(options.threads)};
   const std::vector<detail::Recomputed> results =

@@ -77,7 +77,7 @@ class SignedSets {
 std::vector<Edge> sortedEdges(const PointView& normals, const Neighborhoods& neighborhoods, int k) {
   std::vector<Edge> edges;
   for (std::size_t i = 0; i < neighborhoods.size(); ++i) {
-    const int end = k > 0 ? std::min(k + 1, neighborhoods.count(i)) : neighborhoods.count(i);
+    const int end = k > 0 ? std::min(k, neighborhoods.count(i) - 1) + 1 : neighborhoods.count(i);
     const pcl::index_t* row = neighborhoods.indices(i);
     for (int j = 1; j < end; ++j) {
       const float cosine = std::abs(dot(normals[i], normals[static_cast<std::size_t>(row[j])]));

@@ -10,7 +10,7 @@ namespace {
 
 int rowEnd(const Neighborhoods& neighborhoods, std::size_t row, int k) {
   const int count = neighborhoods.count(row);
-  return k > 0 ? std::min(count, k + 1) : count;
+  return k > 0 ? std::min(count - 1, k) + 1 : count;
 }
 
 // For each point the point of a regular segment that it is nearest to in steps, -1 where none is

@@ -17,7 +17,8 @@ Segmentation segmentByNormals(const PointView& points, const PointView& normals,
     segmentation::GrowthState state;
     state.neighborhoods = &neighborhoods;
     state.neighbors = neighborhoods.k();
-    if (options.neighbors > 0) state.neighbors = std::min(state.neighbors, options.neighbors + 1);
+    if (options.neighbors > 0)
+      state.neighbors = std::min(state.neighbors - 1, options.neighbors) + 1;
     segmentation::prepare(points, normals, options, state);
     counts.offset_limit = state.limits.offset;
     segmentation::grow(options, state);
