@@ -127,17 +127,9 @@ Noise sampleNoise(const PointView& points, const Neighborhoods& neighborhoods, i
   return {median(lengths) / kMedianShare, median(ratios) / kMedianShare};
 }
 
-}  // namespace
-
-float estimateNoise(const PointView& points, const Neighborhoods& neighborhoods, int threads) {
-  return static_cast<float>(sampleNoise(points, neighborhoods, threads).in_spacings);
-}
-
-AutomaticNormalReport estimateNormalsAutomatically(const PointView& points,
-                                                   const Neighborhoods& neighborhoods, int threads,
-                                                   float* normals) {
+AutomaticNormalReport estimateByNoise(const PointView& points, const Neighborhoods& neighborhoods,
+                                      const Noise& estimate, int threads, float* normals) {
   AutomaticNormalReport report;
-  const Noise estimate = sampleNoise(points, neighborhoods, threads);
   report.noise = static_cast<float>(estimate.in_spacings);
   const double noise = std::max(kLeastNoise, estimate.in_spacings);
   std::vector<pcl::index_t> open(neighborhoods.size());
@@ -174,21 +166,35 @@ AutomaticNormalReport estimateNormalsAutomatically(const PointView& points,
   return report;
 }
 
+}  // namespace
+
+float estimateNoise(const PointView& points, const Neighborhoods& neighborhoods, int threads) {
+  return static_cast<float>(sampleNoise(points, neighborhoods, threads).in_spacings);
+}
+
+AutomaticNormalReport estimateNormalsAutomatically(const PointView& points,
+                                                   const Neighborhoods& neighborhoods, int threads,
+                                                   float* normals) {
+  const Noise noise = sampleNoise(points, neighborhoods, threads);
+  return estimateByNoise(points, neighborhoods, noise, threads, normals);
+}
+
 AutomaticNormalReport estimateNormalsAutomatically(const PointView& points,
                                                    const search::MedianHashIndex& index,
                                                    const Neighborhoods& neighborhoods, int threads,
                                                    float* normals) {
-  const double noise =
-      std::max(kLeastNoise, static_cast<double>(estimateNoise(points, neighborhoods, threads)));
-  const int wanted =
-      std::max(sizesFor(noise, kMostAutomaticNeighbors).front(), kTriangulationNeighbors);
+  const Noise noise = sampleNoise(points, neighborhoods, threads);
+  const std::vector<int> sizes =
+      sizesFor(std::max(kLeastNoise, noise.in_spacings), kMostAutomaticNeighbors);
+  const int wanted = std::max(sizes.front(), kTriangulationNeighbors);
   const bool all = static_cast<std::size_t>(neighborhoods.k()) >= points.size;
   if (all || neighborhoods.k() > wanted) {
-    return estimateNormalsAutomatically(points, neighborhoods, threads, normals);
+    return estimateByNoise(points, neighborhoods, noise, threads, normals);
   }
+  // The nearest of each point, which the noise comes from, are the same.
   Neighborhoods wider;
   index.nearestKAll(wanted + 1, wider, false);
-  return estimateNormalsAutomatically(points, wider, threads, normals);
+  return estimateByNoise(points, wider, noise, threads, normals);
 }
 
 std::string AutomaticNormalReport::text() const {
