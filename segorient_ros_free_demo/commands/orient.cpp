@@ -15,6 +15,7 @@
 #include "support/memory.h"
 #include "support/progress_bar.h"
 #include "support/result_columns.h"
+#include "support/stage_memory.h"
 #include "support/stage_options.h"
 
 namespace segorient::program {
@@ -23,8 +24,8 @@ namespace {
 
 constexpr std::size_t kComponentsShown = 5;
 
-void printSummary(const PipelineReport& report, const std::array<double, 3>& origin,
-                  const std::string& out, bool verbose) {
+void printSummary(const PipelineReport& report, const StageMemory& memory,
+                  const std::array<double, 3>& origin, const std::string& out, bool verbose) {
   std::printf("points          %zu", report.points);
   if (report.non_finite > 0) std::printf(", %zu not finite", report.non_finite);
   if (report.duplicates > 0) std::printf(", %zu duplicates", report.duplicates);
@@ -53,7 +54,7 @@ void printSummary(const PipelineReport& report, const std::array<double, 3>& ori
         origin[1] + static_cast<double>(where[1]), origin[2] + static_cast<double>(where[2]));
   }
   std::printf("seconds         %.2f: %s\n", report.seconds, timesText(report.stages).c_str());
-  std::printf("peak memory     %.0f MB\n", static_cast<double>(report.peak_memory) / 1048576.0);
+  std::printf("peak memory     %.0f MB\n", static_cast<double>(memory.most()) / 1048576.0);
   std::printf("written         %s\n", out.c_str());
 }
 
@@ -82,7 +83,8 @@ void addSegments(const OrientedCloud& cloud, JsonWriter& json) {
   json.endArray();
 }
 
-std::string reportText(const OrientedCloud& cloud, const std::array<double, 3>& origin) {
+std::string reportText(const OrientedCloud& cloud, const StageMemory& memory,
+                       const std::array<double, 3>& origin) {
   const PipelineReport& report = cloud.report;
   JsonWriter json;
   json.field("points", report.points);
@@ -106,7 +108,8 @@ std::string reportText(const OrientedCloud& cloud, const std::array<double, 3>& 
   for (const StageTime& s : report.stages) json.field(s.stage, s.seconds);
   json.field("total", report.seconds);
   json.endObject();
-  json.field("peak_memory_bytes", report.peak_memory);
+  json.field("peak_memory_bytes", memory.most());
+  addTo(json, memory);
   json.beginArray("components");
   for (const ComponentOrientationResult& c : report.components) {
     json.beginItem();
@@ -174,6 +177,8 @@ int runOrient(const std::vector<std::string>& words) {
   OutputFile out(line.argument("OUT"));
   std::optional<OutputFile> report;
   if (!report_path.empty()) report.emplace(report_path);
+  StageMemory memory;
+  memory.begin("reading");
   const CloudTable table = readUsableCloud(line.argument("IN"));
   requireMemory(line.argument("IN"), expectedMemory(table.size, options), availableMemory());
   OrientedCloud cloud;
@@ -183,17 +188,19 @@ int runOrient(const std::vector<std::string>& words) {
     origin = points.origin();
     hints.apply(table, line.argument("IN"), points, options);
     ProgressBar bar(!common.quiet, table.size);
-    cloud = orientCloud(points.view(), nullptr, options, bar.callback());
+    cloud = orientCloud(points.view(), nullptr, options, memory.watch(bar.callback()));
   }
+  memory.begin("writing");
   Results results;
   results.normals = &cloud.normals;
   results.segmentation = &cloud.segmentation;
   results.keep_colors = true;  // worth more than ours; the label tells the segments
   writeResults(table, results, out);
-  if (report) report->write(reportText(cloud, origin));
+  memory.end();
+  if (report) report->write(reportText(cloud, memory, origin));
   out.commit();
   if (report) report->commit();
-  if (!common.quiet) printSummary(cloud.report, origin, out.path(), common.verbose);
+  if (!common.quiet) printSummary(cloud.report, memory, origin, out.path(), common.verbose);
   return 0;
 }
 

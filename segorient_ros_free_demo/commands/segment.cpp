@@ -14,6 +14,7 @@
 #include "support/json.h"
 #include "support/progress_bar.h"
 #include "support/result_columns.h"
+#include "support/stage_memory.h"
 #include "support/stage_options.h"
 
 namespace segorient::program {
@@ -39,8 +40,8 @@ void printSummary(const FirstStages& stages, const Segmentation& segmentation,
               timesText(stages.times()).c_str(), path.c_str());
 }
 
-std::string reportText(const FirstStages& stages, const Segmentation& segmentation,
-                       const std::array<double, 3>& origin) {
+std::string reportText(const FirstStages& stages, const StageMemory& memory,
+                       const Segmentation& segmentation, const std::array<double, 3>& origin) {
   JsonWriter json;
   json.field("points", segmentation.labels.size());
   json.field("non_finite", stages.nonFinite());
@@ -50,6 +51,8 @@ std::string reportText(const FirstStages& stages, const Segmentation& segmentati
   json.beginObject("seconds");
   for (const StageTime& s : stages.times()) json.field(s.stage, s.seconds);
   json.endObject();
+  json.field("peak_memory_bytes", memory.most());
+  addTo(json, memory);
   json.beginArray("segments");
   for (std::size_t i = 0; i < segmentation.segments.size(); ++i) {
     const Segment& s = segmentation.segments[i];
@@ -105,20 +108,25 @@ int runSegment(const std::vector<std::string>& words) {
   OutputFile file(line.argument("OUT"));
   std::optional<OutputFile> report;
   if (!report_path.empty()) report.emplace(report_path);
+  StageMemory memory;
+  memory.begin("reading");
   const CloudTable table = readUsableCloud(line.argument("IN"));
   const LocalPoints points(table);
   ProgressBar bar(!common.quiet, table.size);
-  FirstStages stages(points.view(), options, bar.callback());
+  FirstStages stages(points.view(), options, memory.watch(bar.callback()));
   stages.findNormals();
   stages.findSegments(split);
+  memory.begin("output");
   const Segmentation segmentation = stages.segmentation();
   const std::vector<float> normals = stages.normalsBySegment();
   Results results;
   results.normals = &normals;
   results.segmentation = &segmentation;
   results.kinds = true;
+  memory.begin("writing");
   writeResults(table, results, file);
-  if (report) report->write(reportText(stages, segmentation, points.origin()));
+  memory.end();
+  if (report) report->write(reportText(stages, memory, segmentation, points.origin()));
   file.commit();
   if (report) report->commit();
   if (!common.quiet) printSummary(stages, segmentation, file.path());

@@ -2,6 +2,9 @@
 // Copyright (c) 2026, the segorient authors
 #include "support/memory.h"
 
+#include <sys/resource.h>
+#include <unistd.h>
+
 #include <algorithm>
 #include <cstdio>
 #include <fstream>
@@ -29,6 +32,16 @@ std::size_t leftInGroup() {
   return limit - std::min(limit, used);
 }
 
+// ulimit -v
+std::size_t leftInAddressSpace() {
+  rlimit limit{};
+  if (getrlimit(RLIMIT_AS, &limit) != 0 || limit.rlim_cur == RLIM_INFINITY) return kUnknown;
+  const std::size_t pages = numberIn("/proc/self/statm");
+  if (pages == kUnknown) return kUnknown;
+  const auto all = static_cast<std::size_t>(limit.rlim_cur);
+  return all - std::min(all, pages * static_cast<std::size_t>(sysconf(_SC_PAGESIZE)));
+}
+
 std::string gigabytes(std::size_t bytes) {
   char text[32];
   std::snprintf(text, sizeof text, "%.1f GB", static_cast<double>(bytes) / 1e9);
@@ -50,7 +63,7 @@ std::size_t availableIn(std::istream& meminfo) {
 
 std::size_t availableMemory() {
   std::ifstream meminfo("/proc/meminfo");
-  return std::min(availableIn(meminfo), leftInGroup());
+  return std::min({availableIn(meminfo), leftInGroup(), leftInAddressSpace()});
 }
 
 void requireMemory(const std::string& file, std::size_t needed, std::size_t available) {

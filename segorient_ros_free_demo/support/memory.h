@@ -8,8 +8,8 @@
 
 namespace segorient::program {
 
-/// Bytes that a process can still get without swapping, as /proc/meminfo says and the control
-/// group's limit allows; the largest number where neither is known.
+/// Bytes that this process can still get without swapping, as /proc/meminfo says and the limits of
+/// its control group and its own (ulimit -v) allow; the largest number where none is known.
 std::size_t availableMemory();
 
 /// MemAvailable of a /proc/meminfo in bytes; the largest number where it has none.

@@ -2,13 +2,17 @@
 // Copyright (c) 2026, the segorient authors
 #include <gtest/gtest.h>
 #include <segorient/orientation/pipeline.h>
+#include <sys/mman.h>
 
+#include <algorithm>
+#include <cstring>
 #include <limits>
 #include <sstream>
 #include <string>
 
 #include "io/errors.h"
 #include "support/memory.h"
+#include "support/stage_memory.h"
 
 namespace segorient::program {
 namespace {
@@ -47,6 +51,65 @@ TEST(Memory, NeedGrowsWithPointsAndNeighbours) {
   EXPECT_EQ(expectedMemory(2'000'000, few), 2 * expectedMemory(1'000'000, few));
   EXPECT_EQ(expectedMemory(1000, many) - expectedMemory(1000, few), 1000U * 56U * 4U);
   EXPECT_LE(expectedMemory(1'000'000, {}), 300'000'000U) << "what the README promises";
+}
+
+constexpr std::size_t kMegabyte = 1024 * 1024;
+
+// Memory of the system itself: what goes through malloc may stay in the process.
+void useFor(StageMemory& memory, const std::string& stage, std::size_t bytes) {
+  memory.begin(stage);
+  void* pages = mmap(nullptr, bytes, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
+  ASSERT_NE(pages, MAP_FAILED);
+  std::memset(pages, 1, bytes);
+  munmap(pages, bytes);
+}
+
+TEST(StageMemory, EachStageHasItsOwnPeak) {
+  if (!resetPeakMemory()) GTEST_SKIP() << "this system keeps the mark";
+  StageMemory memory;
+  useFor(memory, "large", 192 * kMegabyte);
+  useFor(memory, "none", kMegabyte);
+  useFor(memory, "small", 64 * kMegabyte);
+  memory.end();
+  memory.end();  // once more changes nothing
+  ASSERT_EQ(memory.stages().size(), 3U);
+  EXPECT_EQ(memory.stages()[0].first, "large");
+  EXPECT_EQ(memory.stages()[1].first, "none");
+  EXPECT_EQ(memory.stages()[2].first, "small");
+  const auto over_none = [&](std::size_t i) {
+    return static_cast<double>(memory.stages()[i].second) / kMegabyte -
+           static_cast<double>(memory.stages()[1].second) / kMegabyte;
+  };
+  EXPECT_NEAR(over_none(0), 191.0, 4.0);
+  EXPECT_NEAR(over_none(2), 63.0, 4.0);
+  EXPECT_EQ(memory.most(), memory.stages()[0].second);
+}
+
+TEST(StageMemory, StageThatComesAgainKeepsItsLargest) {
+  StageMemory memory;
+  useFor(memory, "first", 64 * kMegabyte);
+  useFor(memory, "second", kMegabyte);
+  useFor(memory, "first", kMegabyte);
+  memory.end();
+  ASSERT_EQ(memory.stages().size(), 2U);
+  EXPECT_GE(memory.stages()[0].second, 64 * kMegabyte);
+  EXPECT_EQ(memory.most(), memory.stages()[0].second);
+}
+
+TEST(StageMemory, HearsOfStagesAndPassesThemOn) {
+  StageMemory memory;
+  std::string heard;
+  const PipelineProgress progress =
+      memory.watch([&heard](const char* stage, double) { heard += std::string(stage) + " "; });
+  progress("search", 0.0);
+  progress("search", 0.1);
+  progress("normals", 0.2);
+  memory.watch({})("output", 1.0);  // nobody listens
+  memory.end();
+  EXPECT_EQ(heard, "search search normals ");
+  ASSERT_EQ(memory.stages().size(), 3U);
+  EXPECT_EQ(memory.stages()[2].first, "output");
+  EXPECT_GT(memory.stages()[2].second, kMegabyte);
 }
 
 }  // namespace
