@@ -177,7 +177,7 @@ int runOrient(const std::vector<std::string>& words) {
   OutputFile out(line.argument("OUT"));
   std::optional<OutputFile> report;
   if (!report_path.empty()) report.emplace(report_path);
-  StageMemory memory;
+  StageMemory memory(!common.quiet || report);
   memory.begin("reading");
   const CloudTable table = readUsableCloud(line.argument("IN"));
   requireMemory(line.argument("IN"), expectedMemory(table.size, options), availableMemory());

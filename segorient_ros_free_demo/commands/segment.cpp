@@ -108,7 +108,7 @@ int runSegment(const std::vector<std::string>& words) {
   OutputFile file(line.argument("OUT"));
   std::optional<OutputFile> report;
   if (!report_path.empty()) report.emplace(report_path);
-  StageMemory memory;
+  StageMemory memory(!common.quiet || report);
   memory.begin("reading");
   const CloudTable table = readUsableCloud(line.argument("IN"));
   const LocalPoints points(table);

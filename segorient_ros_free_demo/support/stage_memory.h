@@ -4,8 +4,11 @@
 
 #include <segorient/orientation/pipeline.h>
 
+#include <condition_variable>
 #include <cstddef>
+#include <mutex>
 #include <string>
+#include <thread>
 #include <utility>
 #include <vector>
 
@@ -13,11 +16,18 @@
 
 namespace segorient::program {
 
-/// The most memory that the process had during each stage of its work. Linux keeps one high-water
-/// mark a process, which is set back where a stage begins; where that is not allowed, a stage has
-/// the most so far. It may do so because the process is ours: a library may not.
+/// The most memory that the process had during each stage of its work.
+///
+/// Linux keeps one high-water mark a process. It is exact for a stage that raises it; what lies
+/// below is read by a thread of its own every two milliseconds. The mark is not set back, although
+/// that is possible: it would be wrong for whoever measures the process from outside.
 class StageMemory {
  public:
+  explicit StageMemory(bool wanted);
+  ~StageMemory();
+  StageMemory(const StageMemory&) = delete;
+  StageMemory& operator=(const StageMemory&) = delete;
+
   /// Ends the stage before and begins another one; nothing if that goes on. One that comes again is
   /// counted with what it had before.
   void begin(const std::string& stage);
@@ -32,16 +42,21 @@ class StageMemory {
   std::size_t most() const;  ///< of all stages
 
  private:
+  void run();
+  void sample();
+
+  int file_ = -1;  // says what is in use; kept open, as opening takes most of the time
   std::string stage_;
   std::vector<std::pair<std::string, std::size_t>> stages_;
+  std::size_t mark_ = 0;  // high-water mark when the stage began
+  std::mutex mutex_;      // guards all below
+  std::condition_variable wake_;
+  bool end_ = false;
+  std::size_t sampled_ = 0;  // most that was seen in this stage
+  std::thread thread_;       // not started where nobody wants to know, or threads have run out
 };
 
 /// As the object `peak_memory_bytes_by_stage` of a report.
 void addTo(JsonWriter& json, const StageMemory& memory);
-
-/// The process's high-water mark in bytes, 0 where it is not known.
-std::size_t peakMemory();
-/// Sets it back to what is in use. \return whether that is allowed
-bool resetPeakMemory();
 
 }  // namespace segorient::program
