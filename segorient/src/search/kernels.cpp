@@ -21,6 +21,15 @@
 #define SEGORIENT_X86 0
 #endif
 
+#define SEGORIENT_INLINE inline __attribute__((always_inline))
+
+// Before a loop over an array that is to be in registers, at any level of optimisation.
+#if defined(__clang__)
+#define SEGORIENT_UNROLL _Pragma("clang loop unroll(full)")
+#else
+#define SEGORIENT_UNROLL _Pragma("GCC unroll 16")
+#endif
+
 namespace segorient::search {
 namespace {
 

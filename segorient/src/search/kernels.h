@@ -10,6 +10,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <cstring>
 #include <limits>
 
 #include "layout.h"
@@ -167,10 +168,13 @@ const Kernels& chooseKernels();
 
 /// Makes what lies beyond the last candidate come last in any order.
 inline void padCandidates(float* distance, std::uint32_t* id, std::size_t count) {
-  for (std::size_t i = 0; i < 8; ++i) {
-    distance[count + i] = std::numeric_limits<float>::infinity();
-    id[count + i] = 0xffffffffU;
-  }
+  // Copied from constants, since that compiles to vector stores.
+  constexpr float kFar = std::numeric_limits<float>::infinity();
+  static constexpr float kDistances[8] = {kFar, kFar, kFar, kFar, kFar, kFar, kFar, kFar};
+  static constexpr std::uint32_t kLast = 0xffffffffU;
+  static constexpr std::uint32_t kIds[8] = {kLast, kLast, kLast, kLast, kLast, kLast, kLast, kLast};
+  std::memcpy(distance + count, kDistances, sizeof(kDistances));
+  std::memcpy(id + count, kIds, sizeof(kIds));
 }
 
 /// Sorts candidates by distance, ties by id; in place, too.

@@ -128,12 +128,9 @@ inline bool gather(const LayoutView& view, const Box& box, float limit, RegionSt
     if (!(squaredGap(view.boxes[view.region_count + other], box) < reach)) continue;
     if (!forRanges(view, other, box, reach, take)) return false;
   }
-  // Up to a full vector, points that are never near.
-  for (std::size_t i = take.count; i < take.count + kWidth; ++i) {
-    task.block[0][i] = kInfinity;
-    task.block[1][i] = 0.0F;
-    task.block[2][i] = 0.0F;
-    task.block_id[i] = 0;
+  // Up to full steps, points that are never near.
+  for (std::size_t i = take.count; i < take.count + 2 * kWidth; i += kWidth) {
+    store(broadcast(kInfinity), task.block[0] + i);
   }
   task.block_count = take.count;
   return true;
@@ -153,11 +150,16 @@ inline std::size_t takeNear(const GroupTask& task, const float* q, float limit, 
   const std::uint32_t* const id = task.block_id;
   const std::size_t block = task.block_count;
   std::size_t count = 0;
-  for (std::size_t i = 0; i < block; i += kWidth) {
+  for (std::size_t i = 0; i < block; i += 2 * kWidth) {
+    const std::size_t j = i + kWidth;
     const Vector d = squaredNorm(qx - load(x + i), qy - load(y + i), qz - load(z + i));
+    const Vector e = squaredNorm(qx - load(x + j), qy - load(y + j), qz - load(z + j));
     const unsigned int mask = lessMask(d, bound);
+    const unsigned int next_mask = lessMask(e, bound);
     compress(d, mask, out_distance + count);
     count += compressIds(id + i, mask, out_id + count);
+    compress(e, next_mask, out_distance + count);
+    count += compressIds(id + j, next_mask, out_id + count);
   }
   return count;
 }

@@ -6,8 +6,6 @@
 // four lanes; the order of a sorted block runs down the first lane, then down the second and so on,
 // so that most comparisons are between whole rows.
 
-#define SEGORIENT_INLINE inline __attribute__((always_inline))
-
 SEGORIENT_INLINE void exchange(Keys& a, Keys& b) {
   const Keys least = minOf(a, b);
   b = maxOf(a, b);
@@ -77,6 +75,7 @@ SEGORIENT_INLINE void sortBitonicLanes(Keys (&k)[8]) {
 // and then falls or the other way round.
 template <std::size_t kRows>
 SEGORIENT_INLINE void sortBitonicHalves(Keys (&k)[kRows]) {
+  SEGORIENT_UNROLL
   for (std::size_t r = 0; r < kRows; ++r) {
     const Keys other = swapPairs(k[r]);
     k[r] = evenOdd(minOf(k[r], other), maxOf(k[r], other));
@@ -89,11 +88,13 @@ SEGORIENT_INLINE void sortBlock(Keys (&k)[kRows]) {
   sortLanes(k);
   // Lanes 0 and 1, as well as 2 and 3, are merged: the least of one meet the largest of the other.
   Keys merged[kRows];
+  SEGORIENT_UNROLL
   for (std::size_t r = 0; r < kRows; ++r) {
     const Keys other = swapPairs(k[kRows - 1 - r]);
     merged[r] = evenOdd(minOf(k[r], other), maxOf(k[r], other));
   }
   sortBitonicLanes(merged);
+  SEGORIENT_UNROLL
   for (std::size_t r = 0; r < kRows; ++r) {
     const Keys other = reverse(merged[kRows - 1 - r]);
     k[r] = lowHigh(minOf(merged[r], other), maxOf(merged[r], other));
@@ -103,6 +104,7 @@ SEGORIENT_INLINE void sortBlock(Keys (&k)[kRows]) {
 
 template <std::size_t kRows>
 SEGORIENT_INLINE void sortBitonicBlock(Keys (&k)[kRows]) {
+  SEGORIENT_UNROLL
   for (std::size_t r = 0; r < kRows; ++r) {
     const Keys other = swapHalves(k[r]);
     k[r] = lowHigh(minOf(k[r], other), maxOf(k[r], other));
@@ -112,6 +114,7 @@ SEGORIENT_INLINE void sortBitonicBlock(Keys (&k)[kRows]) {
 
 template <std::size_t kRows>
 SEGORIENT_INLINE void loadBlock(const float* distance, const std::uint32_t* id, Keys (&k)[kRows]) {
+  SEGORIENT_UNROLL
   for (std::size_t r = 0; r < kRows; ++r) k[r] = packKeys(distance + 4 * r, id + 4 * r);
 }
 
@@ -120,12 +123,16 @@ template <std::size_t kRows>
 SEGORIENT_INLINE void storeBlock(const Keys (&k)[kRows], float* distance, std::uint32_t* id) {
   constexpr std::size_t kSquares = (kRows + 3) / 4;
   Keys square[kSquares][4];
+  SEGORIENT_UNROLL
   for (std::size_t s = 0; s < kSquares; ++s) {
+    SEGORIENT_UNROLL
     for (std::size_t r = 0; r < 4; ++r) square[s][r] = k[4 * s + r < kRows ? 4 * s + r : 0];
     transpose(square[s]);
   }
   // What is written beyond the end of a lane is overwritten by the next lane.
+  SEGORIENT_UNROLL
   for (std::size_t lane = 0; lane < 4; ++lane) {
+    SEGORIENT_UNROLL
     for (std::size_t s = 0; s < kSquares; ++s) {
       const std::size_t at = lane * kRows + 4 * s;
       unpackKeys(square[s][lane], distance + at, id + at);
@@ -152,6 +159,7 @@ void sortTwoBlocks(const float* distance, const std::uint32_t* id, float* out_di
   sortBlock(a);
   sortBlock(b);
   Keys high[kRows];
+  SEGORIENT_UNROLL
   for (std::size_t r = 0; r < kRows; ++r) {
     const Keys other = reverse(b[kRows - 1 - r]);
     high[r] = maxOf(a[r], other);

@@ -9,6 +9,9 @@ using Vector = float;
 inline Vector load(const float* p) {
   return *p;
 }
+inline void store(Vector v, float* p) {
+  *p = v;
+}
 inline Vector broadcast(float v) {
   return v;
 }

@@ -11,6 +11,9 @@ inline Vector load(const float* p) {
   __builtin_memcpy(&v, p, sizeof(v));
   return v;
 }
+inline void store(Vector v, float* p) {
+  __builtin_memcpy(p, &v, sizeof(v));
+}
 inline Vector broadcast(float v) {
   return Vector{} + v;
 }
