@@ -124,6 +124,43 @@ TEST(SegmentMesh, StraightSidesKeepTheirAreaAndNotchesStay) {
   }
 }
 
+// A random sample of a square without the points of a circle, whose area is given in areas that a
+// point has. In one of twenty such samples of 10,000 points a circle of some 15 is empty anyway.
+std::vector<float> withHole(double area_in_points, unsigned seed) {
+  const double radius = std::sqrt(area_in_points / (10000 * M_PI));
+  const LabelledCloud cloud = sample("square", {lid(rectangle(1, 1), {}, 0, 1)}, 10000, seed);
+  double middle[2] = {0, 0};
+  for (std::size_t i = 0; i < cloud.xyz.size(); ++i) {
+    if (i % 4 < 2) middle[i % 4] += static_cast<double>(cloud.xyz[i]) / 10000;
+  }
+  std::vector<float> kept;
+  for (std::size_t i = 0; i < cloud.xyz.size(); i += 4) {
+    const double x = static_cast<double>(cloud.xyz[i]) - middle[0];
+    const double y = static_cast<double>(cloud.xyz[i + 1]) - middle[1];
+    if (std::hypot(x, y) < radius) continue;
+    kept.insert(kept.end(), &cloud.xyz[i], &cloud.xyz[i] + 4);
+  }
+  return kept;
+}
+
+TEST(SegmentMesh, HolesThatSamplingLeavesAreFilled) {
+  TriangulationOptions left;
+  left.fill_gaps = false;
+  std::size_t left_open = 0;
+  for (unsigned seed = 1; seed <= 5; ++seed) {
+    const std::vector<float> small = withHole(13, seed);
+    const std::vector<float> large = withHole(40, seed);
+    const SegmentMesh filled = meshOf(small, {0, 0, 1});
+    const SegmentMesh holed = meshOf(large, {0, 0, 1});
+    EXPECT_EQ(loopKinds(filled).second, 0U) << seed;
+    EXPECT_EQ(loopKinds(holed).second, 1U) << seed;
+    left_open += loopKinds(meshOf(small, {0, 0, 1}, left)).second;
+    expectSound(filled, small, {0, 0, 1});
+    expectSound(holed, large, {0, 0, 1});
+  }
+  EXPECT_GT(left_open, 0U);
+}
+
 TEST(SegmentMesh, NormalDecidesTheTurn) {
   const LabelledCloud cloud = sample("square", {lid(rectangle(1, 1), {}, 0, 1)}, 500, 3);
   const SegmentMesh up = meshOf(cloud.xyz, {0, 0, 1});
@@ -197,7 +234,12 @@ TEST(SegmentMesh, ParametersAct) {
   options.bins = 5;
   const SegmentMesh coarse = meshOf(cloud.xyz, {0, 0, 1}, options);
   EXPECT_NE(coarse.critical_length, usual.critical_length);
-  for (const SegmentMesh* mesh : {&paper, &peeled, &early, &coarse}) {
+  options = {};
+  options.fill_gaps = false;
+  const SegmentMesh open = meshOf(cloud.xyz, {0, 0, 1}, options);
+  EXPECT_EQ(open.critical_length, usual.critical_length);
+  EXPECT_LT(open.area, usual.area);
+  for (const SegmentMesh* mesh : {&paper, &peeled, &early, &coarse, &open}) {
     expectSound(*mesh, cloud.xyz, {0, 0, 1});
   }
 }

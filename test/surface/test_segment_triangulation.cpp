@@ -142,12 +142,14 @@ TEST(SegmentTriangulation, SettersHaveGetters) {
   t.setKappa2(0.5F);
   t.setCriticalFactor(1.5F);
   t.setNumberOfBins(30);
+  t.setFillGaps(false);
   t.setAllSegments(true);
   t.setNumberOfThreads(3);
   EXPECT_EQ(t.getKappa1(), 0.2F);
   EXPECT_EQ(t.getKappa2(), 0.5F);
   EXPECT_EQ(t.getCriticalFactor(), 1.5F);
   EXPECT_EQ(t.getNumberOfBins(), 30);
+  EXPECT_FALSE(t.getFillGaps());
   EXPECT_TRUE(t.getAllSegments());
   EXPECT_EQ(t.getNumberOfThreads(), 3U);
 }

@@ -15,6 +15,8 @@ constexpr std::size_t kMostBins = 1U << 16U;
 /// edges. Notches of the shape itself are deeper, or wider than random gaps.
 constexpr float kPocketLength = 2.F;
 constexpr float kPocketDepth = 1.F;
+/// Random samples of a surface that may have a gap taken for a hole: one in so many.
+constexpr double kSamples = 20;
 
 float medianOf(std::vector<float> values) {
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
@@ -107,7 +109,53 @@ class Selector {
     }
   }
 
+  // Holes no larger than the gaps that random sampling leaves.
+  void fillHoles() {
+    const double most_area = largestGap();
+    std::vector<std::uint8_t> seen(kept_);
+    std::vector<std::uint32_t> gap;
+    for (std::uint32_t t = 0; t < kept_.size(); ++t) {
+      if (seen[t] != 0) continue;
+      gap.assign(1, t);
+      seen[t] = 1;
+      bool closed = true;
+      double area = 0.;
+      for (std::size_t head = 0; head < gap.size(); ++head) {
+        area += areaOf(gap[head]);
+        for (const std::uint32_t e : mesh_.triangles[gap[head]].edges) {
+          const std::uint32_t other = across(gap[head], e);
+          if (other == kNone) {
+            closed = false;
+          } else if (seen[other] == 0) {
+            seen[other] = 1;
+            gap.push_back(other);
+          }
+        }
+      }
+      if (!closed || !(area <= most_area)) continue;
+      for (const std::uint32_t g : gap) keep(g);
+    }
+  }
+
  private:
+  // Of independent, uniform points a circle of x times the area that there is to each is empty with
+  // a probability of exp(-x), the circumcircle of a Delaunay triangle with (1 + x) exp(-x); and
+  // there are two triangles to a point. The polygon of the points around an empty circle reaches
+  // about half a spacing farther.
+  double largestGap() const {
+    double triangles = 0.;
+    double area = 0.;
+    for (std::uint32_t t = 0; t < kept_.size(); ++t) {
+      if (kept_[t] == 0) continue;
+      ++triangles;
+      area += areaOf(t);
+    }
+    double x = 1.;
+    for (int i = 0; i < 8; ++i) x = std::log(kSamples * triangles * (1. + x));
+    const double radius = std::sqrt(x / M_PI) + 0.5;
+    return M_PI * radius * radius * 2. * area / triangles;
+  }
+
   bool isPocket(std::uint32_t t) const {
     int kept = 0;
     for (const std::uint32_t e : mesh_.triangles[t].edges) {
@@ -119,15 +167,18 @@ class Selector {
     return kept == 2;
   }
 
-  // Over the longest edge, by Heron's formula.
-  float heightOf(std::uint32_t t) const {
+  // By Heron's formula.
+  float areaOf(std::uint32_t t) const {
     const auto& edges = mesh_.triangles[t].edges;
     const float a = lengths_[edges[0]];
     const float b = lengths_[edges[1]];
     const float c = lengths_[edges[2]];
     const float square = (a + b + c) * (b + c - a) * (a + c - b) * (a + b - c);
-    return 0.5F * std::sqrt(std::max(square, 0.F)) / longest_[t];
+    return 0.25F * std::sqrt(std::max(square, 0.F));
   }
+
+  // Over the longest edge.
+  float heightOf(std::uint32_t t) const { return 2.F * areaOf(t) / longest_[t]; }
 
   void keep(std::uint32_t t) {
     kept_[t] = 1;
@@ -277,7 +328,9 @@ Selection selectTriangles(const PlanarTriangulation& mesh, const std::vector<flo
   selector.peel(options.kappa2 * selection.critical_length);
   selector.takeInLoosePoints();
   selector.closePinches();
+  if (!options.fill_gaps) return selection;
   selector.fillPockets(kPocketLength * selection.critical_length, kPocketDepth * medianOf(lengths));
+  selector.fillHoles();
   return selection;
 }
 

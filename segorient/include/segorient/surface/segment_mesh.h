@@ -27,6 +27,10 @@ struct TriangulationOptions {
   /// Bins between the shortest and the longest edge (the paper); 0 = as wide as a quarter of the
   /// median.
   int bins = 0;
+  /// Fills what random sampling leaves open: pockets along straight sides, and holes no larger than
+  /// the largest empty circle that so many random points are likely to have. False is the paper's
+  /// rule.
+  bool fill_gaps = true;
   int threads = 0;  ///< see resolveThreads()
 };
 

@@ -57,6 +57,11 @@ class SegmentTriangulation : public pcl::MeshConstruction<PointNT> {
   void setNumberOfBins(int bins) { options_.bins = bins; }
   int getNumberOfBins() const { return options_.bins; }
 
+  /// Whether pockets and holes no larger than random sampling leaves are filled; default true, the
+  /// paper's rule is false.
+  void setFillGaps(bool fill) { options_.fill_gaps = fill; }
+  bool getFillGaps() const { return options_.fill_gaps; }
+
   /// Whether connected and isolated segments are triangulated, too; default false.
   void setAllSegments(bool all) { all_ = all; }
   bool getAllSegments() const { return all_; }
