@@ -69,13 +69,39 @@ TEST(AutomaticNormals, AsGoodAsTheBestSingleEstimator) {
         << noise;
   }
   const Sample edges = cube(10000, 2);
-  EXPECT_LT(rmsDegrees(edges, automatic(edges).normals), 1.05 * bestSingle(edges));
+  EXPECT_LT(rmsDegrees(edges, automatic(edges).normals), bestSingle(edges));
+}
+
+// Two flat sheets that pass each other at a few spacings: where surfaces of ten neighbours take in
+// both, the nearest six lie on one of them.
+TEST(AutomaticNormals, NarrowGaps) {
+  const float h = 0.01F;
+  Sample sheets;
+  for (int i = 0; i < 60; ++i) {
+    for (int j = 0; j < 60; ++j) {
+      const float x = h * static_cast<float>(i);
+      const float y = h * static_cast<float>(j);
+      sheets.add({x, y, 0.F}, Eigen::Vector3f::UnitZ());
+      sheets.add({x + 0.4F * h, y + 0.3F * h, 1.8F * h}, Eigen::Vector3f::UnitZ());
+    }
+  }
+  const Automatic result = automatic(sheets);
+  EXPECT_GT(result.report.planes, 5000U);
+  // At the rim the other sheet is nearer than a sixth neighbour.
+  for (std::size_t i = 0; i < sheets.normals.size(); ++i) {
+    const Eigen::Vector3f& p = sheets.points[i].getVector3fMap();
+    const float rim = std::min({p.x(), p.y(), 59 * h - p.x(), 59 * h - p.y()});
+    if (rim < 2 * h) continue;
+    EXPECT_GT(std::abs(result.normals[4 * i + 2]), 0.99999F) << i;
+  }
 }
 
 TEST(AutomaticNormals, ReportsWhatWasChosen) {
   const Automatic clean = automatic(cube(10000, 3));
   EXPECT_TRUE(clean.report.triangulated);
   EXPECT_GT(clean.report.at_edges, 500U);
+  EXPECT_GT(clean.report.planes, 200U);
+  EXPECT_LT(clean.report.planes, clean.report.at_edges);
   ASSERT_EQ(clean.report.surfaces.size(), 1U);
   EXPECT_EQ(clean.report.surfaces[0].first, 10);
   EXPECT_EQ(clean.report.surfaces[0].second + clean.report.at_edges, 10000U);
@@ -83,6 +109,7 @@ TEST(AutomaticNormals, ReportsWhatWasChosen) {
   EXPECT_FALSE(noisy.report.triangulated);
   EXPECT_EQ(noisy.report.surfaces[0].first, kMostAutomaticNeighbors);
   EXPECT_GT(noisy.report.surfaces[0].second, 5000U);
+  EXPECT_EQ(noisy.report.planes, 0U);
   EXPECT_NE(noisy.report.text().find("64 neighbours"), std::string::npos);
 }
 

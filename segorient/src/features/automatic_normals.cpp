@@ -32,6 +32,9 @@ constexpr double kTriangulationNoise = 0.1;
 // Smallest neighbourhood beyond that.
 constexpr int kSmallestNoisy = 16;
 constexpr int kTriangulationNeighbors = 12;
+// Near edges, where a plane fits a few neighbours as well as noise lets it, they are all on one
+// side.
+constexpr int kPlaneNeighbors = 6;
 // Neighbourhoods that are worth trying, per unit of noise over spacing. Noise turns the normals of
 // k neighbours by about noise / (spacing k): with 400 it has sunk to a fraction of a degree, below
 // 90 it is several degrees, more than what the larger neighbourhood costs at an edge.
@@ -101,6 +104,27 @@ double median(std::vector<double>& values) {
   return *middle;
 }
 
+// Standard deviation of the nearest neighbours, the point itself among them, from their plane.
+double planeResidual(const PointView& points, const Neighborhoods& table, std::size_t row,
+                     const float* normal) {
+  const int count = std::min(table.count(row), kPlaneNeighbors + 1);
+  const float* origin = points[row];
+  double sum = 0;
+  double squares = 0;
+  for (int j = 0; j < count; ++j) {
+    const float* p = points[static_cast<std::size_t>(table.indices(row)[j])];
+    double offset = 0;
+    for (int a = 0; a < 3; ++a) {
+      offset += (static_cast<double>(p[a]) - static_cast<double>(origin[a])) *
+                static_cast<double>(normal[a]);
+    }
+    sum += offset;
+    squares += offset * offset;
+  }
+  if (count < 4) return std::numeric_limits<double>::infinity();
+  return std::sqrt(std::max(0.0, squares - sum * sum / count) / (count - 3));
+}
+
 struct Noise {
   double length = 0.0;  ///< standard deviation
   double in_spacings = 0.0;
@@ -127,6 +151,47 @@ Noise sampleNoise(const PointView& points, const Neighborhoods& neighborhoods, i
   return {median(lengths) / kMedianShare, median(ratios) / kMedianShare};
 }
 
+/// Whether noise explains what a surface leaves of a neighbourhood: its standard deviation, with
+/// the scatter of such estimates.
+class Explained {
+ public:
+  /// \param freedom points less coefficients
+  Explained(const PointView& points, const Neighborhoods& table, double noise, int freedom)
+      : points_(points),
+        table_(table),
+        noise_(noise),
+        scatter_(1.0 + kTolerance / std::sqrt(2.0 * freedom)) {}
+
+  bool operator()(std::size_t row, double residual) const {
+    const double least = kLeastNoise * spacingAt(points_, table_, row);
+    return residual <= scatter_ * std::max(noise_, least);
+  }
+
+ private:
+  const PointView& points_;
+  const Neighborhoods& table_;
+  double noise_;
+  double scatter_;
+};
+
+/// Gives the rows that a plane fits its normal.
+/// \return the others
+std::vector<pcl::index_t> takePlanes(const PointView& points, const Neighborhoods& table,
+                                     double noise, int threads,
+                                     const std::vector<pcl::index_t>& rows, float* normals) {
+  LocalNormalOptions options;
+  options.k = kPlaneNeighbors;
+  options.threads = threads;
+  estimateNormals(points, points, table, options, normals, nullptr, &rows);
+  const Explained explained(points, table, noise, kPlaneNeighbors + 1 - 3);
+  std::vector<pcl::index_t> left;
+  for (const pcl::index_t r : rows) {
+    const auto row = static_cast<std::size_t>(r);
+    if (!explained(row, planeResidual(points, table, row, normals + 4 * row))) left.push_back(r);
+  }
+  return left;
+}
+
 AutomaticNormalReport estimateByNoise(const PointView& points, const Neighborhoods& neighborhoods,
                                       const Noise& estimate, int threads, float* normals) {
   AutomaticNormalReport report;
@@ -137,15 +202,12 @@ AutomaticNormalReport estimateByNoise(const PointView& points, const Neighborhoo
   Surfaces surfaces;
   for (const int k : sizesFor(noise, neighborhoods.k() - 1)) {
     surfaces.fit(points, neighborhoods, k, threads, open);
-    // What noise explains: its standard deviation, and the scatter of such estimates from k points.
-    const double scatter = 1.0 + kTolerance / std::sqrt(2.0 * (k - 5));
+    const Explained explained(points, neighborhoods, estimate.length, k + 1 - 6);
     std::vector<pcl::index_t> left;
     for (const pcl::index_t o : open) {
       const auto i = static_cast<std::size_t>(o);
       std::copy_n(&surfaces.normals[4 * i], 4, normals + 4 * i);
-      const double residual = static_cast<double>(surfaces.residuals[i]);
-      const double least = kLeastNoise * spacingAt(points, neighborhoods, i);
-      if (!(residual <= scatter * std::max(estimate.length, least))) left.push_back(o);
+      if (!explained(i, static_cast<double>(surfaces.residuals[i]))) left.push_back(o);
     }
     report.surfaces.emplace_back(k, open.size() - left.size());
     open.swap(left);
@@ -154,10 +216,12 @@ AutomaticNormalReport estimateByNoise(const PointView& points, const Neighborhoo
   report.at_edges = open.size();
   report.triangulated = noise < kTriangulationNoise;
   if (report.triangulated) {
+    open = takePlanes(points, neighborhoods, estimate.length, threads, open, normals);
+    report.planes = report.at_edges - open.size();
     LocalNormalOptions options;
+    options.threads = threads;
     options.estimator = NormalEstimator::LDT;
     options.k = report.edge_k = kTriangulationNeighbors;
-    options.threads = threads;
     estimateNormals(points, points, neighborhoods, options, normals, nullptr, &open);
   }
   for (std::size_t i = 0; i < neighborhoods.size(); ++i) {
@@ -203,8 +267,11 @@ std::string AutomaticNormalReport::text() const {
   for (const auto& [k, count] : surfaces) {
     out << ", " << count << " points by quadratic surfaces of " << k << " neighbours";
   }
-  out << ", " << at_edges << " that none of these fits, as at edges, by "
-      << (triangulated ? "local Delaunay triangulation" : "quadratic surfaces") << " of " << edge_k;
+  out << ", " << at_edges << " that none of these fits, as at edges, ";
+  if (planes > 0)
+    out << planes << " of them by planes of " << kPlaneNeighbors << " and the others ";
+  out << "by " << (triangulated ? "local Delaunay triangulation" : "quadratic surfaces") << " of "
+      << edge_k;
   if (undefined > 0) out << ", " << undefined << " without a normal";
   return out.str();
 }

@@ -21,7 +21,8 @@ struct AutomaticNormalReport {
   /// fit.
   std::vector<std::pair<int, std::size_t>> surfaces;
   std::size_t at_edges = 0;   ///< points where none of them fits
-  int edge_k = 0;             ///< neighbourhood used there
+  std::size_t planes = 0;     ///< of these, those that a plane of six neighbours does fit
+  int edge_k = 0;             ///< neighbourhood used at the others
   bool triangulated = false;  ///< by local Delaunay triangulation, else by the smallest surface
   std::size_t undefined = 0;  ///< points without a normal
 
@@ -35,8 +36,9 @@ constexpr int kMostAutomaticNeighbors = 64;
 /// Normals without a choice to make. The noise is estimated from the residuals of quadratic
 /// surfaces; every point then gets the largest neighbourhood whose residual the noise explains:
 /// large ones on noisy scans, small ones where the surface bends. Where not even the smallest is
-/// explained there is an edge; there a clean cloud gets local Delaunay triangulations, which smooth
-/// least, and a noisy one the smallest surface.
+/// explained there is an edge; there a clean cloud gets planes of six neighbours where these are
+/// all on one side of it, else local Delaunay triangulations, which smooth least, and a noisy one
+/// the smallest surface.
 ///
 /// \param points distinct points \param neighborhoods of them, the wider the table the better up to
 ///        kMostAutomaticNeighbors; with a narrow one noisy clouds are served less well
