@@ -87,7 +87,10 @@ class Grower {
         signs_(state.signs.data()),
         on_border_(state.on_border.data()),
         clusters_(state.clusters),
-        queue_(new pcl::index_t[state.nodes.size()]) {}
+        queue_(new pcl::index_t[state.nodes.size()]) {
+    for (std::size_t p = 0; p < state.nodes.size() && full_; ++p)
+      full_ = hood_.count(p) >= row_size_;
+  }
 
   void grow(std::size_t seed) {
     label_ = static_cast<std::int32_t>(clusters_.size());
@@ -95,8 +98,17 @@ class Grower {
     tail_ = 0;
     accept(seed, 1);
     for (std::size_t head = 0; head < tail_; ++head) {
-      if (head + kAhead < tail_) {
-        __builtin_prefetch(hood_.indices(static_cast<std::size_t>(queue_[head + kAhead])));
+      // Fetches ahead: rows, and the points in the farther half of a row, where growing has not
+      // been yet. Not in a function of its own, which compilers leave out as one without effects.
+      if (head + kRowsAhead < tail_) {
+        __builtin_prefetch(hood_.indices(static_cast<std::size_t>(queue_[head + kRowsAhead])));
+      }
+      if (head + kNodesAhead < tail_) {
+        const auto p = static_cast<std::size_t>(queue_[head + kNodesAhead]);
+        const pcl::index_t* row = hood_.indices(p);
+        for (int j = row_size_ / 2, end = rowSize(p); j < end; ++j) {
+          __builtin_prefetch(nodes_ + row[j]);
+        }
       }
       spread(static_cast<std::size_t>(queue_[head]));
     }
@@ -104,8 +116,14 @@ class Grower {
   }
 
  private:
-  static constexpr std::size_t kAhead = 6;  ///< rows to fetch in advance
+  static constexpr std::size_t kRowsAhead = 10;
+  static constexpr std::size_t kNodesAhead = 3;
   static constexpr float kRightAngle = 1.5707963F;
+
+  // The table of counts is looked into only where it has something to tell.
+  int rowSize(std::size_t p) const {
+    return full_ ? row_size_ : std::min(hood_.count(p), row_size_);
+  }
 
   void accept(std::size_t q, int sign) {
     Node& node = nodes_[q];
@@ -125,7 +143,7 @@ class Grower {
 
   void spread(std::size_t p) {
     const pcl::index_t* row = hood_.indices(p);
-    const int count = std::min(hood_.count(p), row_size_);
+    const int count = rowSize(p);
     const Node node = nodes_[p];
     std::uint8_t border = 0;
     for (int j = 1; j < count; ++j) {
@@ -153,6 +171,7 @@ class Grower {
   const Neighborhoods& hood_;
   PairLimits limits_;
   int row_size_;
+  bool full_ = true;  ///< no row is shorter
   float cos_alpha_;
   float cos_beta_;  ///< negative = no condition on the reference normal
   double sqr_cos_beta_;

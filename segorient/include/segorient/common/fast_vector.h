@@ -2,7 +2,9 @@
 // Copyright (c) 2026, the segorient authors
 #pragma once
 
+#include <cstddef>
 #include <memory>
+#include <new>
 #include <utility>
 #include <vector>
 
@@ -12,11 +14,17 @@ namespace segorient {
 /// written right after, where the zeros would cost as much as the table.
 template <typename T>
 struct UninitializedAllocator : std::allocator<T> {
+  static constexpr std::align_val_t kCacheLine{64};
+
   template <typename U>
   struct rebind {
     using other = UninitializedAllocator<U>;
   };
   using std::allocator<T>::allocator;
+
+  /// On a cache line: rows of 16 numbers then lie in one each.
+  T* allocate(std::size_t n) { return static_cast<T*>(::operator new(n * sizeof(T), kCacheLine)); }
+  void deallocate(T* at, std::size_t) { ::operator delete(at, kCacheLine); }
 
   template <typename U>
   void construct(U* at) {
