@@ -4,38 +4,42 @@
 // What the all-points searches have in common: points next to each other are a group, which shares
 // a block of candidates.
 
-// Appends the points of a range that are near a box to a block.
-struct GatherFromRange {
+// Appends the points that are near a box to the block of a task.
+struct Gatherer {
   const LayoutView& view;
+  const Corners& box;
+  float reach;
   GroupTask& task;
-  Vector lo[3], hi[3], limit;
   std::size_t count;
 
-  inline bool operator()(std::uint32_t begin, std::uint32_t end) {
-    if (count + (end - begin) > task.block_capacity) return false;
-    const LayoutView v = view;
+  // \return false if there may be no room for all
+  bool operator()(VectorList& list) {
+    std::size_t n = count;
+    const std::size_t vectors = list.count;
+    if (n + kWidth * vectors > task.block_capacity) return false;
+    const Vector low[3] = {broadcast(box.lo[0]), broadcast(box.lo[1]), broadcast(box.lo[2])};
+    const Vector high[3] = {broadcast(box.hi[0]), broadcast(box.hi[1]), broadcast(box.hi[2])};
+    const Vector limit = broadcast(reach);
+    const Vector zero = broadcast(0.0F);
+    const LayoutView from = view;
     float* const block[3] = {task.block[0], task.block[1], task.block[2]};
     std::uint32_t* const id = task.block_id;
-    const Vector low[3] = {lo[0], lo[1], lo[2]};
-    const Vector high[3] = {hi[0], hi[1], hi[2]};
-    const Vector bound = limit;
-    const Vector zero = broadcast(0.0F);
-    std::size_t n = count;
-    for (std::uint32_t i = begin; i < end; i += kWidth) {
-      const Vector x = load(v.x + i);
-      const Vector y = load(v.y + i);
-      const Vector z = load(v.z + i);
+    for (std::size_t v = 0; v < vectors; ++v) {
+      const std::uint32_t i = list.first[v];
+      const Vector x = load(from.x + i);
+      const Vector y = load(from.y + i);
+      const Vector z = load(from.z + i);
       const Vector dx = largestOf(largestOf(low[0] - x, x - high[0]), zero);
       const Vector dy = largestOf(largestOf(low[1] - y, y - high[1]), zero);
       const Vector dz = largestOf(largestOf(low[2] - z, z - high[2]), zero);
-      unsigned int mask = lessMask(squaredNorm(dx, dy, dz), bound);
-      if (end - i < kWidth) mask &= (1U << (end - i)) - 1U;
+      const unsigned int mask = lessMask(squaredNorm(dx, dy, dz), limit) & list.lanes[v];
       compress(x, mask, block[0] + n);
       compress(y, mask, block[1] + n);
       compress(z, mask, block[2] + n);
-      n += compressIds(v.id + i, mask, id + n);
+      n += compressIds(from.id + i, mask, id + n);
     }
     count = n;
+    list.count = 0;
     return true;
   }
 };
@@ -43,14 +47,14 @@ struct GatherFromRange {
 // Regions other than `region` that come nearer to its box than the square root of `limit`.
 std::size_t listNeighbors(const LayoutView& view, std::size_t region, float limit,
                           std::uint32_t* out) {
-  const Box& box = view.boxes[view.region_count + region];
+  const Corners box = cornersOf(view.boxes[view.region_count + region]);
   std::size_t stack[64];
   std::size_t depth = 0;
   std::size_t count = 0;
   stack[depth++] = 1;
   while (depth > 0) {
     const std::size_t i = stack[--depth];
-    if (!(squaredGap(view.boxes[i], box) < limit)) continue;
+    if (!(squaredGap(cornersOf(view.boxes[i]), box) < limit)) continue;
     if (i < view.region_count) {
       stack[depth++] = 2 * i;
       stack[depth++] = 2 * i + 1;
@@ -84,7 +88,7 @@ struct Group {
     std::size_t first;    // where they are
     float limit;          // they are nearer than this
   };
-  Box box;
+  Corners box;
   std::uint32_t waiting[2 * kGroup];  // points not yet searched for
   std::size_t waiting_count;
   Member found[2 * kGroup];
@@ -93,46 +97,41 @@ struct Group {
 
 inline void startGroup(const LayoutView& view, std::uint32_t begin, std::uint32_t end,
                        Group& group) {
-  Box box{{view.x[begin], view.y[begin], view.z[begin]},
-          {view.x[begin], view.y[begin], view.z[begin]}};
+  Quad lo{view.x[begin], view.y[begin], view.z[begin], 0.0F};
+  Quad hi = lo;
   for (std::uint32_t i = begin + 1; i < end; ++i) {
-    const float p[3] = {view.x[i], view.y[i], view.z[i]};
-    for (int a = 0; a < 3; ++a) {
-      box.lo[a] = smallest(box.lo[a], p[a]);
-      box.hi[a] = largest(box.hi[a], p[a]);
-    }
+    const Quad p{view.x[i], view.y[i], view.z[i], 0.0F};
+    lo = smallestOf(lo, p);
+    hi = largestOf(hi, p);
   }
-  group.box = box;
+  group.box = {lo, hi};
   group.waiting_count = end - begin;
   for (std::uint32_t i = begin; i < end; ++i) group.waiting[i - begin] = i;
 }
 
 // Fills the block with all points nearer to the group's box than the square root of `limit`.
 // \return false if the block does not hold them
-inline bool gather(const LayoutView& view, const Box& box, float limit, RegionState& state,
+inline bool gather(const LayoutView& view, const Corners& box, float limit, RegionState& state,
                    GroupTask& task) {
   const float reach = limit * state.prune;
-  GatherFromRange take{view,
-                       task,
-                       {broadcast(box.lo[0]), broadcast(box.lo[1]), broadcast(box.lo[2])},
-                       {broadcast(box.hi[0]), broadcast(box.hi[1]), broadcast(box.hi[2])},
-                       broadcast(reach),
-                       0};
-  if (!forRanges(view, state.region, box, reach, take)) return false;
+  Gatherer scan{view, box, reach, task, 0};
+  VectorList list;
+  if (!addRanges(view, state.region, box, reach, list, scan)) return false;
   if (!(reach <= state.listed)) {
     state.listed = 2.0F * reach;
     state.neighbors = listNeighbors(view, state.region, state.listed, task.neighbors);
   }
   for (std::size_t j = 0; j < state.neighbors; ++j) {
     const std::size_t other = task.neighbors[j];
-    if (!(squaredGap(view.boxes[view.region_count + other], box) < reach)) continue;
-    if (!forRanges(view, other, box, reach, take)) return false;
+    if (!(squaredGap(cornersOf(view.boxes[view.region_count + other]), box) < reach)) continue;
+    if (!addRanges(view, other, box, reach, list, scan)) return false;
   }
+  if (!scan(list)) return false;
   // Up to full steps, points that are never near.
-  for (std::size_t i = take.count; i < take.count + 2 * kWidth; i += kWidth) {
+  for (std::size_t i = scan.count; i < scan.count + 2 * kWidth; i += kWidth) {
     store(broadcast(kInfinity), task.block[0] + i);
   }
-  task.block_count = take.count;
+  task.block_count = scan.count;
   return true;
 }
 

@@ -7,6 +7,25 @@ constexpr std::uint32_t kWidth = 8;
 inline Vector largestOf(Vector a, Vector b) {
   return _mm256_max_ps(a, b);
 }
+inline Vector smallestOf(Vector a, Vector b) {
+  return _mm256_min_ps(a, b);
+}
+inline Vector squareRoot(Vector v) {
+  return _mm256_sqrt_ps(v);
+}
+inline Vector truncate(Vector v) {
+  return _mm256_round_ps(v, _MM_FROUND_TO_ZERO | _MM_FROUND_NO_EXC);
+}
+inline Vector counting() {
+  return Vector{0.0F, 1.0F, 2.0F, 3.0F, 4.0F, 5.0F, 6.0F, 7.0F};
+}
+// Of each lane, `yes` where a < b, otherwise `no`.
+inline Vector selectLess(Vector a, Vector b, Vector yes, Vector no) {
+  return _mm256_blendv_ps(no, yes, _mm256_cmp_ps(a, b, _CMP_LT_OQ));
+}
+inline void storeInts(Vector v, int* p) {
+  _mm256_storeu_si256(reinterpret_cast<__m256i*>(p), _mm256_cvttps_epi32(v));
+}
 inline unsigned int lessMask(Vector a, Vector b) {
   return static_cast<unsigned int>(_mm256_movemask_ps(_mm256_cmp_ps(a, b, _CMP_LT_OQ)));
 }

@@ -28,8 +28,46 @@ inline std::size_t compressIds(const std::uint32_t* ids, unsigned int mask, std:
   *out = *ids;
   return mask;
 }
+inline Vector smallestOf(Vector a, Vector b) {
+  return a < b ? a : b;
+}
 inline float squareRoot(float v) {
   return __builtin_sqrtf(v);
+}
+inline Vector truncate(Vector v) {
+  return static_cast<float>(static_cast<int>(v));
+}
+inline Vector counting() {
+  return 0.0F;
+}
+// `yes` where a < b, otherwise `no`.
+inline Vector selectLess(Vector a, Vector b, Vector yes, Vector no) {
+  return a < b ? yes : no;
+}
+inline void storeInts(Vector v, int* p) {
+  *p = static_cast<int>(v);
+}
+
+using Quad = float __attribute__((vector_size(16)));
+
+inline Quad loadQuad(const float* p) {
+  Quad q;
+  __builtin_memcpy(&q, p, sizeof(q));
+  return q;
+}
+inline void storeQuad(Quad q, float* p) {
+  __builtin_memcpy(p, &q, sizeof(q));
+}
+inline void storeInts(Quad q, int* p) {
+  for (int i = 0; i < 4; ++i) p[i] = static_cast<int>(q[i]);
+}
+inline Quad largestOf(Quad a, Quad b) {
+  for (int i = 0; i < 4; ++i) a[i] = a[i] > b[i] ? a[i] : b[i];
+  return a;
+}
+inline Quad smallestOf(Quad a, Quad b) {
+  for (int i = 0; i < 4; ++i) a[i] = a[i] < b[i] ? a[i] : b[i];
+  return a;
 }
 
 struct Keys {

@@ -6,8 +6,19 @@
 constexpr std::uint32_t kWidth = 4;
 #include "simd_vector.inl"
 
-inline Vector largestOf(Vector a, Vector b) {
-  return _mm_max_ps(a, b);
+inline Vector squareRoot(Vector v) {
+  return _mm_sqrt_ps(v);
+}
+inline Vector truncate(Vector v) {
+  return _mm_cvtepi32_ps(_mm_cvttps_epi32(v));
+}
+inline Vector counting() {
+  return Vector{0.0F, 1.0F, 2.0F, 3.0F};
+}
+// Of each lane, `yes` where a < b, otherwise `no`.
+inline Vector selectLess(Vector a, Vector b, Vector yes, Vector no) {
+  const __m128 less = _mm_cmplt_ps(a, b);
+  return _mm_or_ps(_mm_and_ps(less, yes), _mm_andnot_ps(less, no));
 }
 inline unsigned int lessMask(Vector a, Vector b) {
   return static_cast<unsigned int>(_mm_movemask_ps(_mm_cmplt_ps(a, b)));

@@ -17,6 +17,23 @@ inline void store(Vector v, float* p) {
 inline Vector broadcast(float v) {
   return Vector{} + v;
 }
+using Quad = float __attribute__((vector_size(16)));
+
+inline Quad loadQuad(const float* p) {
+  return _mm_loadu_ps(p);
+}
+inline void storeQuad(Quad q, float* p) {
+  _mm_storeu_ps(p, q);
+}
+inline void storeInts(Quad q, int* p) {
+  _mm_storeu_si128(reinterpret_cast<__m128i*>(p), _mm_cvttps_epi32(q));
+}
+inline Quad largestOf(Quad a, Quad b) {
+  return _mm_max_ps(a, b);
+}
+inline Quad smallestOf(Quad a, Quad b) {
+  return _mm_min_ps(a, b);
+}
 inline float squareRoot(float v) {
   return _mm_cvtss_f32(_mm_sqrt_ss(_mm_set_ss(v)));
 }
