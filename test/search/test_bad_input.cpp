@@ -2,14 +2,17 @@
 // Copyright (c) 2026, the segorient authors
 #include <gtest/gtest.h>
 #include <segorient/search/median_hash.h>
+#include <segorient/search/median_hash_index.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <functional>
 #include <limits>
 
 #include "bad_clouds.h"
 #include "brute_force.h"
+#include "search_clouds.h"
 
 namespace segorient::test {
 namespace {
@@ -225,6 +228,34 @@ TEST(BadInput, OddSettings) {
       EXPECT_EQ(indices, (pcl::Indices{4, 3})) << "not a tolerance: exact";
     }
   }
+}
+
+// The index below the class, which others call as well.
+TEST(BadQuery, NothingIsNearAQueryThatIsNowhere) {
+  const SearchCloud cloud = searchClouds(500)[0];
+  search::MedianHashIndex index;
+  index.build(cloud.view(), nullptr, {});
+  std::vector<float> queries;
+  for (const float bad : {kNaN, kInfinity, -kInfinity}) {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      std::array<float, 3> query{0.F, 0.F, 0.F};
+      query[axis] = bad;
+      pcl::index_t near[4];
+      float squared[4];
+      EXPECT_EQ(index.nearestK(query.data(), 4, near, squared, 0.F), 0);
+      std::vector<pcl::index_t> inside{1};
+      std::vector<float> distances{1.F};
+      EXPECT_EQ(index.radius(query.data(), 1e3, inside, distances, 0, true), 0);
+      EXPECT_TRUE(inside.empty() && distances.empty());
+      queries.insert(queries.end(), query.begin(), query.end());
+    }
+  }
+  std::vector<std::vector<pcl::index_t>> indices;
+  std::vector<std::vector<float>> distances;
+  index.nearestKBatch({queries.data(), 3, 9}, 4, indices, distances, 0.F);
+  ASSERT_EQ(indices.size(), 9U);
+  for (const auto& row : indices) EXPECT_TRUE(row.empty());
+  for (const auto& row : distances) EXPECT_TRUE(row.empty());
 }
 
 }  // namespace

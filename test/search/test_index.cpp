@@ -84,6 +84,52 @@ TEST_P(IndexOnCloud, NearestKEqualsBruteForce) {
   }
 }
 
+// Walks in steps shorter than the distance to a point's neighbours, with a jump now and then.
+std::vector<std::array<float, 3>> walk(const SearchCloud& cloud) {
+  std::vector<std::array<float, 3>> result;
+  const PointView view = cloud.view();
+  for (std::size_t i = 0; i < view.size; i += 1 + view.size / 4) {
+    const float* p = view[i];
+    if (!isFinite(p)) continue;
+    const auto near = prefix(bruteForce(view, p), 8);
+    const float step = 0.3F * std::sqrt(near.back().distance);
+    for (int j = 0; j < 25; ++j) {
+      const auto t = static_cast<float>(j);
+      const std::array<float, 3> q{p[0] + t * step, p[1] - t * step, p[2] + 0.5F * t * step};
+      if (isFinite(q.data())) result.push_back(q);
+    }
+  }
+  return result;
+}
+
+TEST_P(IndexOnCloud, QueriesNextToEachOtherEqualBruteForce) {
+  const SearchCloud& cloud = GetParam();
+  std::vector<MedianHashIndex> built(2);
+  for (std::size_t i = 0; i < built.size(); ++i) {
+    MedianHashIndex::Options options;
+    options.region_size = i == 0 ? 50 : 2048;
+    built[i].build(cloud.view(), nullptr, options);
+  }
+  const auto queries = walk(cloud);
+  std::vector<std::vector<Neighbor>> expected;
+  for (const auto& q : queries) expected.push_back(prefix(bruteForce(cloud.view(), q.data()), 60));
+  const auto check = [&](const MedianHashIndex& index, std::size_t i, int k) {
+    ASSERT_EQ(nearestK(index, queries[i].data(), k),
+              prefix(expected[i], static_cast<std::size_t>(k)))
+        << "k " << k << ", query " << i;
+  };
+  for (const int k : {1, 5, 15, 60}) {
+    for (const MedianHashIndex& index : built) {
+      for (std::size_t i = 0; i < queries.size(); ++i) check(index, i, k);
+    }
+  }
+  // In turn, so that nothing that was kept for one index or k is used for another.
+  for (std::size_t i = 0; i < queries.size(); ++i) {
+    check(built[i % 2], i, 15);
+    check(built[(i / 2) % 2], i, i % 3 == 0 ? 5 : 15);
+  }
+}
+
 TEST_P(IndexOnCloud, RadiusEqualsBruteForce) {
   const SearchCloud& cloud = GetParam();
   MedianHashIndex index;

@@ -11,9 +11,6 @@
 namespace segorient::search {
 namespace {
 
-// In the search for k nearest, how many standard deviations of the k-th squared distance, which is
-// about 1/sqrt(k) of it, are allowed for from one query to the next.
-constexpr float kMargin = 1.2F;
 // Most neighbours for which candidates are shared among queries.
 constexpr std::size_t kMostShared = 256;
 // Most points that a group of a radius search shares.
@@ -32,12 +29,12 @@ class GroupWork {
     std::size_t most = 0;
     for (const Region& r : layout.regions) most = std::max<std::size_t>(most, r.end - r.begin);
     failed_.resize(most);
-    for (std::size_t a = 0; a < 3; ++a) task.block[a] = floats_.data() + a * block_length;
+    for (std::size_t a = 0; a < 3; ++a) task.block.xyz[a] = floats_.data() + a * block_length;
     task.candidate_distance = floats_.data() + 3 * block_length;
-    task.block_id = ids_.data();
+    task.block.id = ids_.data();
     task.candidate_id = ids_.data() + block_length;
     task.neighbors = task.candidate_id + length;
-    task.block_capacity = block;
+    task.block.capacity = block;
     task.candidate_capacity = candidates;
     task.sort = sort_.scratch();
     task.failed = failed_.data();

@@ -40,6 +40,8 @@ struct MedianHashIndex::Impl {
   void nearestOfRegion(std::size_t region, GroupTask& task, Neighborhoods& out) const;
   void withinOfRegion(std::size_t region, double radius, GroupTask& task) const;
 
+  Candidates* fromShared(const LayoutView& view, const float* q, std::size_t k, Workspace& work,
+                         float& limit) const;
   Candidates* guess(const LayoutView& view, const float* q, std::size_t k, float epsilon,
                     Workspace& work, float& limit) const;
   void nearestFirst(const LayoutView& view, const float* q, std::size_t k, float epsilon,

@@ -119,12 +119,32 @@ struct RowBuffer {
   void* owner;                                     ///< for grow
 };
 
+/// Points that searches near each other pick theirs from; each array has room for
+/// Layout::kPadding entries beyond `capacity`.
+struct Block {
+  float* xyz[3];
+  std::uint32_t* id;
+  std::size_t count;
+  std::size_t capacity;
+};
+
+/// In the search for k nearest, how many standard deviations of the k-th squared distance, which is
+/// about 1/sqrt(k) of it, are allowed for from one query to the next.
+constexpr float kMargin = 1.2F;
+
+/// Where the k nearest of a point are sought, from what was found for points next to it.
+struct Guess {
+  float margin;   ///< above 1: how much more than the typical squared distance is tried first
+  float typical;  ///< squared distance to the k-th neighbour
+  float limit;    ///< output: the candidates are nearer than this
+};
+
 /// Everything that an all-points search of a region reads and writes besides the layout.
 struct GroupTask {
   std::uint32_t k;  ///< how many neighbours: at most the number of points, or of a radius search
   // nearest k
   float epsilon;
-  float margin;            ///< above 1: how much more than the last k-th distance is tried
+  float margin;            ///< of Guess
   pcl::index_t* indices;   ///< output, k entries a row
   float* distances;        ///< output, or null
   std::size_t row_length;  ///< entries from one row of the output to the next
@@ -132,10 +152,7 @@ struct GroupTask {
   float limit;  ///< squared radius
   RowBuffer* rows;
   // work space of one thread; each array with Layout::kPadding entries more
-  float* block[3];  ///< x, y, z of points that a group may have as neighbours
-  std::uint32_t* block_id;
-  std::size_t block_count;
-  std::size_t block_capacity;
+  Block block;                ///< points that a group may have as neighbours
   float* candidate_distance;  ///< of all points of a group
   std::uint32_t* candidate_id;
   std::size_t candidate_capacity;
@@ -151,6 +168,14 @@ struct Kernels {
   bool (*collect)(const LayoutView&, const Path&, const Sphere&, Candidates&);
   /// The same from one region only.
   bool (*collectRegion)(const LayoutView&, std::size_t region, const Sphere&, Candidates&);
+  /// Fills a block with all points nearer to a box than the square root of `reach`.
+  /// \return false if there was no room for all
+  bool (*gatherAround)(const LayoutView&, const Box&, float reach, Block&);
+  /// Candidates for the k nearest of q, padded, from a block that holds everything nearer than the
+  /// square root of `reach`.
+  /// \return false if there are fewer in reach
+  bool (*takeNearest)(const Block&, const float* q, float reach, std::size_t k, Guess&,
+                      Candidates&);
   /// Leaves the k nearest of `count` candidates in ascending order, ties by id, in the scratch. All
   /// are nearer than `limit`; there are at most kMostToSort, and those up to Layout::kPadding
   /// beyond the last were set by padCandidates().

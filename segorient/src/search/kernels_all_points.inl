@@ -6,42 +6,6 @@
 // ---------------------------------------------------------------------------------------------------
 // The k nearest
 
-// Candidates of one point from a block that holds everything nearer than the square root of
-// `reach`. Starting from a guess, looks for a limit that lets through k candidates and not many
-// more.
-// \return false if there are fewer in reach
-inline bool takeNearest(const float* q, float reach, std::size_t first, RegionState& state,
-                        GroupTask& task, Group::Member& member) {
-  const std::size_t k = task.k;
-  const std::size_t enough = k + k / 2 + 8;
-  float* const distance = task.candidate_distance + first;
-  std::uint32_t* const id = task.candidate_id + first;
-  float limit = smallest(task.margin * state.typical, reach);
-  float too_low = 0.0F;
-  std::size_t count = takeNear(task, q, limit, distance, id);
-  for (int attempt = 0; count < k || (count > enough && attempt < 3); ++attempt) {
-    const float factor = 1.25F * static_cast<float>(k) / static_cast<float>(count + 1);
-    if (count < k) {
-      if (limit == reach) return false;
-      too_low = limit;
-      limit = attempt > 4 ? reach : smallest(largest(factor, 1.2F) * limit, reach);
-    } else {
-      limit = largest(factor * limit, 0.5F * (too_low + limit));
-    }
-    count = takeNear(task, q, limit, distance, id);
-  }
-  if (count > 2 * enough + 64) {  // many are equally far
-    keepNearest(distance, id, count, k);
-    count = k;
-  }
-  padCandidates(distance, id, count);
-  member.first = first;
-  member.count = static_cast<std::uint32_t>(count);
-  member.limit = limit;
-  state.typical = largest(limit * static_cast<float>(k) / static_cast<float>(count), 1e-44F);
-  return true;
-}
-
 inline void writeNearest(const LayoutView& view, Group& group, RegionState& state,
                          GroupTask& task) {
   sortMembers(group, task.k, task);
@@ -66,11 +30,11 @@ inline bool nearestWithin(const LayoutView& view, float reach, Group& group, Reg
   for (std::size_t i = 0; i < group.waiting_count; ++i) {
     const std::uint32_t point = group.waiting[i];
     const float q[3] = {view.x[point], view.y[point], view.z[point]};
-    Group::Member& member = group.found[group.found_count];
-    if (takeNearest(q, reach, used, state, task, member)) {
-      member.point = point;
-      ++group.found_count;
-      used += member.count + kSortRoom;
+    Candidates found{task.candidate_distance + used, task.candidate_id + used, 0, 0};
+    if (takeNearest(task.block, q, reach, task.k, state.guess, found)) {
+      group.found[group.found_count++] = {point, static_cast<std::uint32_t>(found.count), used,
+                                          state.guess.limit};
+      used += found.count + kSortRoom;
     } else {
       group.waiting[left++] = point;
     }
@@ -131,13 +95,13 @@ void withinOfGroup(const LayoutView& view, std::uint32_t begin, std::uint32_t en
   group.found_count = 0;
   std::size_t used = 0;
   for (std::uint32_t i = begin; i < end; ++i) {
-    if (!gathered || used + task.block_count + kWidth > task.candidate_capacity) {
+    if (!gathered || used + task.block.count + kWidth > task.candidate_capacity) {
       task.failed[task.failed_count++] = i;
       continue;
     }
     const float q[3] = {view.x[i], view.y[i], view.z[i]};
-    const std::size_t count =
-        takeNear(task, q, task.limit, task.candidate_distance + used, task.candidate_id + used);
+    const std::size_t count = takeNear(task.block, q, task.limit, task.candidate_distance + used,
+                                       task.candidate_id + used);
     if (count > kMostToSort) {
       task.failed[task.failed_count++] = i;
       continue;
@@ -163,8 +127,8 @@ void nearestInRegion(const LayoutView& view, std::size_t r, GroupTask& task) {
   const float spacing = largest(region.spacing16 * relative, 1e-44F);
   task.failed_count = 0;
   if (region.flat != 0 || !(spacing < kLargest)) return failAll(region, task);
-  RegionState state{r,     spacing, spacing,
-                    -1.0F, 0,       task.epsilon > 0.0F ? 0.999999F / (bound * bound) : 1.0F};
+  const float prune = task.epsilon > 0.0F ? 0.999999F / (bound * bound) : 1.0F;
+  RegionState state{r, {task.margin, spacing, 0.0F}, spacing, -1.0F, 0, prune};
   forGroups(view, region, [&](std::uint32_t begin, std::uint32_t end) {
     nearestOfGroup(view, begin, end, state, task);
   });
@@ -174,7 +138,7 @@ void withinInRegion(const LayoutView& view, std::size_t r, GroupTask& task) {
   const Region& region = view.regions[r];
   task.failed_count = 0;
   if (!(task.limit < kInfinity)) return failAll(region, task);
-  RegionState state{r, 0.0F, 0.0F, -1.0F, 0, 1.0F};
+  RegionState state{r, {1.0F, 0.0F, 0.0F}, 0.0F, -1.0F, 0, 1.0F};
   forGroups(view, region, [&](std::uint32_t begin, std::uint32_t end) {
     withinOfGroup(view, begin, end, state, task);
   });

@@ -4,26 +4,26 @@
 // What the all-points searches have in common: points next to each other are a group, which shares
 // a block of candidates.
 
-// Appends the points that are near a box to the block of a task.
+// Appends the points that are near a box to a block.
 struct Gatherer {
   const LayoutView& view;
   const Corners& box;
   float reach;
-  GroupTask& task;
+  Block& out;
   std::size_t count;
 
   // \return false if there may be no room for all
   bool operator()(VectorList& list) {
     std::size_t n = count;
     const std::size_t vectors = list.count;
-    if (n + kWidth * vectors > task.block_capacity) return false;
+    if (n + kWidth * vectors > out.capacity) return false;
     const Vector low[3] = {broadcast(box.lo[0]), broadcast(box.lo[1]), broadcast(box.lo[2])};
     const Vector high[3] = {broadcast(box.hi[0]), broadcast(box.hi[1]), broadcast(box.hi[2])};
     const Vector limit = broadcast(reach);
     const Vector zero = broadcast(0.0F);
     const LayoutView from = view;
-    float* const block[3] = {task.block[0], task.block[1], task.block[2]};
-    std::uint32_t* const id = task.block_id;
+    float* const block[3] = {out.xyz[0], out.xyz[1], out.xyz[2]};
+    std::uint32_t* const id = out.id;
     for (std::size_t v = 0; v < vectors; ++v) {
       const std::uint32_t i = list.first[v];
       const Vector x = load(from.x + i);
@@ -44,13 +44,20 @@ struct Gatherer {
   }
 };
 
-// Regions other than `region` that come nearer to its box than the square root of `limit`.
-std::size_t listNeighbors(const LayoutView& view, std::size_t region, float limit,
-                          std::uint32_t* out) {
-  const Corners box = cornersOf(view.boxes[view.region_count + region]);
+// Fills a gathered block up to full steps of takeNear() with points that are never near.
+inline void finishBlock(const Gatherer& scan) {
+  for (std::size_t i = scan.count; i < scan.count + 2 * kWidth; i += kWidth) {
+    store(broadcast(kInfinity), scan.out.xyz[0] + i);
+  }
+  scan.out.count = scan.count;
+}
+
+// Calls visit(region) for regions that come nearer to a box than the square root of `limit`, until
+// it returns false.
+template <typename Visit>
+inline bool forRegions(const LayoutView& view, const Corners& box, float limit, Visit&& visit) {
   std::size_t stack[64];
   std::size_t depth = 0;
-  std::size_t count = 0;
   stack[depth++] = 1;
   while (depth > 0) {
     const std::size_t i = stack[--depth];
@@ -58,10 +65,34 @@ std::size_t listNeighbors(const LayoutView& view, std::size_t region, float limi
     if (i < view.region_count) {
       stack[depth++] = 2 * i;
       stack[depth++] = 2 * i + 1;
-    } else if (i - view.region_count != region) {
-      out[count++] = static_cast<std::uint32_t>(i - view.region_count);
+    } else if (!visit(i - view.region_count)) {
+      return false;
     }
   }
+  return true;
+}
+
+bool gatherAround(const LayoutView& view, const Box& around, float reach, Block& out) {
+  const Corners box = cornersOf(around);
+  Gatherer scan{view, box, reach, out, 0};
+  VectorList list;
+  const auto add = [&](std::size_t region) {
+    return addRanges(view, region, box, reach, list, scan);
+  };
+  if (!forRegions(view, box, reach, add) || !scan(list)) return false;
+  finishBlock(scan);
+  return true;
+}
+
+// Regions other than `region` that come nearer to its box than the square root of `limit`.
+std::size_t listNeighbors(const LayoutView& view, std::size_t region, float limit,
+                          std::uint32_t* out) {
+  std::size_t count = 0;
+  const Corners box = cornersOf(view.boxes[view.region_count + region]);
+  forRegions(view, box, limit, [&](std::size_t other) {
+    if (other != region) out[count++] = static_cast<std::uint32_t>(other);
+    return true;
+  });
   return count;
 }
 
@@ -73,9 +104,9 @@ constexpr std::uint32_t kMostCells = 3;
 // What is carried from group to group of a region.
 struct RegionState {
   std::size_t region;
-  float typical;  // squared distance to the k-th neighbour, lately
-  float most;     // the same, the largest of a group
-  float listed;   // reach of the list of neighbouring regions
+  Guess guess;
+  float most;    // squared distance to the k-th neighbour, the largest of a group
+  float listed;  // reach of the list of neighbouring regions
   std::size_t neighbors;
   float prune;  // factor on squared reaches, 1 where the search is exact
 };
@@ -114,7 +145,7 @@ inline void startGroup(const LayoutView& view, std::uint32_t begin, std::uint32_
 inline bool gather(const LayoutView& view, const Corners& box, float limit, RegionState& state,
                    GroupTask& task) {
   const float reach = limit * state.prune;
-  Gatherer scan{view, box, reach, task, 0};
+  Gatherer scan{view, box, reach, task.block, 0};
   VectorList list;
   if (!addRanges(view, state.region, box, reach, list, scan)) return false;
   if (!(reach <= state.listed)) {
@@ -127,27 +158,23 @@ inline bool gather(const LayoutView& view, const Corners& box, float limit, Regi
     if (!addRanges(view, other, box, reach, list, scan)) return false;
   }
   if (!scan(list)) return false;
-  // Up to full steps, points that are never near.
-  for (std::size_t i = scan.count; i < scan.count + 2 * kWidth; i += kWidth) {
-    store(broadcast(kInfinity), task.block[0] + i);
-  }
-  task.block_count = scan.count;
+  finishBlock(scan);
   return true;
 }
 
 // Copies what is nearer to a point than the square root of `limit` out of the block.
 // \return how many
-inline std::size_t takeNear(const GroupTask& task, const float* q, float limit, float* out_distance,
+inline std::size_t takeNear(const Block& from, const float* q, float limit, float* out_distance,
                             std::uint32_t* out_id) {
   const Vector qx = broadcast(q[0]);
   const Vector qy = broadcast(q[1]);
   const Vector qz = broadcast(q[2]);
   const Vector bound = broadcast(limit);
-  const float* const x = task.block[0];
-  const float* const y = task.block[1];
-  const float* const z = task.block[2];
-  const std::uint32_t* const id = task.block_id;
-  const std::size_t block = task.block_count;
+  const float* const x = from.xyz[0];
+  const float* const y = from.xyz[1];
+  const float* const z = from.xyz[2];
+  const std::uint32_t* const id = from.id;
+  const std::size_t block = from.count;
   std::size_t count = 0;
   for (std::size_t i = 0; i < block; i += 2 * kWidth) {
     const std::size_t j = i + kWidth;
@@ -161,6 +188,37 @@ inline std::size_t takeNear(const GroupTask& task, const float* q, float limit, 
     count += compressIds(id + j, next_mask, out_id + count);
   }
   return count;
+}
+
+// Candidates for the k nearest of a point from a block that holds everything nearer than the square
+// root of `reach`. Starting from a guess, looks for a limit that lets through k and not many more.
+// \return false if there are fewer in reach
+inline bool takeNearest(const Block& block, const float* q, float reach, std::size_t k,
+                        Guess& guess, Candidates& out) {
+  const std::size_t enough = k + k / 2 + 8;
+  float limit = smallest(guess.margin * guess.typical, reach);
+  float too_low = 0.0F;
+  std::size_t count = takeNear(block, q, limit, out.distance, out.id);
+  for (int attempt = 0; count < k || (count > enough && attempt < 3); ++attempt) {
+    const float factor = 1.25F * static_cast<float>(k) / static_cast<float>(count + 1);
+    if (count < k) {
+      if (limit == reach) return false;
+      too_low = limit;
+      limit = attempt > 4 ? reach : smallest(largest(factor, 1.2F) * limit, reach);
+    } else {
+      limit = largest(factor * limit, 0.5F * (too_low + limit));
+    }
+    count = takeNear(block, q, limit, out.distance, out.id);
+  }
+  if (count > 2 * enough + 64) {  // many are equally far
+    keepNearest(out.distance, out.id, count, k);
+    count = k;
+  }
+  padCandidates(out.distance, out.id, count);
+  out.count = count;
+  guess.limit = limit;
+  guess.typical = largest(limit * static_cast<float>(k) / static_cast<float>(count), 1e-44F);
+  return true;
 }
 
 template <typename From, typename To>

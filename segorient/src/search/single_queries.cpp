@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "index_impl.h"
+#include "shared_block.h"
 
 namespace segorient::search {
 
@@ -30,6 +31,8 @@ class Workspace {
   }
   SortScratch sort() { return sort_.scratch(); }
   std::vector<std::pair<float, std::uint32_t>> pairs;
+  LastQuery last;
+  SharedBlock shared;
 
  private:
   static constexpr std::size_t kMostKept = std::size_t{1} << 18;
@@ -69,19 +72,6 @@ Workspace& workspace() {
   return instance;
 }
 
-// The last query of a thread: if the next one is near, its radius is a good guess.
-struct LastQuery {
-  std::uint64_t index = 0;
-  int k = 0;
-  float point[3] = {0.0F, 0.0F, 0.0F};
-  float limit = 0.0F;
-};
-
-LastQuery& lastQuery() {
-  thread_local LastQuery instance;
-  return instance;
-}
-
 // Only a number above 0 is a tolerance.
 float pruneFactor(float epsilon) {
   if (!(epsilon > 0.0F)) return 1.0F;
@@ -102,25 +92,37 @@ float keepBest(std::vector<std::pair<float, std::uint32_t>>& best, std::size_t k
 
 }  // namespace
 
+// Candidates from the block that queries near each other share. Null if there is none for this one.
+Candidates* MedianHashIndex::Impl::fromShared(const LayoutView& view, const float* q, std::size_t k,
+                                              Workspace& work, float& limit) const {
+  if (k > SharedBlock::kMostNeighbors) return nullptr;
+  SharedBlock& shared = work.shared;
+  const LastQuery& last = work.last;
+  if (!shared.covers(number, q, k)) {
+    if (last.index != number || last.k != k || !last.isNear(q)) return nullptr;
+    if (!shared.refill(*kernels, view, number, q, last.limit, k)) return nullptr;
+  }
+  Candidates& found = work.candidates(shared.capacity());
+  return shared.take(*kernels, q, found, limit) && found.count <= kMostToSort ? &found : nullptr;
+}
+
 // Guesses a limit and collects everything below it: if that is k points or more, the nearest are
 // among them. Null if no guess was right.
 Candidates* MedianHashIndex::Impl::guess(const LayoutView& view, const float* q, std::size_t k,
                                          float epsilon, Workspace& work, float& limit) const {
+  const float prune = pruneFactor(epsilon);
+  // Not where results are approximate: they must not depend on what was asked before.
+  if (prune == 1.0F) {
+    if (Candidates* found = fromShared(view, q, k, work, limit)) return found;
+  }
+  const LastQuery& last = work.last;
+  const bool near = last.index == number && last.k == k && prune == 1.0F && last.isNear(q);
   const Path path(view, q);
   const Region& region = view.regions[path.region];
   const float outside = squaredGap(view.boxes[view.region_count + path.region], q);
-  const LastQuery& last = lastQuery();
-  const float prune = pruneFactor(epsilon);
   // Not 0, where many points are in one place.
   float step = std::max(1.3F * region.spacing16 * static_cast<float>(k) / 16.0F, kLeast);
-  limit = outside + step;
-  // Not where results are approximate: they must not depend on what was asked before.
-  if (last.index == number && last.k == static_cast<int>(k) && prune == 1.0F) {
-    const float dx = q[0] - last.point[0];
-    const float dy = q[1] - last.point[1];
-    const float dz = q[2] - last.point[2];
-    if (dx * dx + dy * dy + dz * dz < last.limit) limit = 1.3F * last.limit;
-  }
+  limit = near ? 1.3F * last.limit : outside + step;
   const std::size_t capacity = 4 * k + 4096;
   for (int attempt = 0; attempt < 8; ++attempt) {
     if (!(limit > 0.0F && limit < kInfinity)) return nullptr;
@@ -228,7 +230,7 @@ void MedianHashIndex::Impl::search(const float* q, std::size_t k, float epsilon,
       indices[i] = static_cast<pcl::index_t>(work.pairs[i].second);
     }
   }
-  lastQuery() = {number, static_cast<int>(k), {q[0], q[1], q[2]}, distances[k - 1]};
+  work.last = {number, k, {q[0], q[1], q[2]}, distances[k - 1]};
 }
 
 void putFirst(pcl::index_t self, pcl::index_t* indices, std::size_t count) {

@@ -1,0 +1,123 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the segorient authors
+//
+// What a thread remembers of its queries, so that those near the one before are answered faster.
+// What is found does not depend on it.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <vector>
+
+#include "kernels.h"
+
+namespace segorient::search {
+
+/// The last query: if the next one is near, its radius is a good guess.
+struct LastQuery {
+  std::uint64_t index = 0;  ///< number of the structure that was searched
+  std::size_t k = 0;
+  float point[3] = {0.0F, 0.0F, 0.0F};
+  float limit = 0.0F;  ///< squared distance to the k-th neighbour
+
+  bool isNear(const float* q) const {
+    const float dx = q[0] - point[0];
+    const float dy = q[1] - point[1];
+    const float dz = q[2] - point[2];
+    return dx * dx + dy * dy + dz * dz < limit;
+  }
+};
+
+/// All points in and around a cube, where queries next to each other find theirs.
+class SharedBlock {
+ public:
+  /// Most neighbours for which that pays.
+  static constexpr std::size_t kMostNeighbors = 256;
+
+  /// Whether q is in the cube and so many neighbours are sought as when it was gathered.
+  bool covers(std::uint64_t index, const float* q, std::size_t k) const {
+    bool inside = index == index_ && k == k_;
+    for (int a = 0; a < 3; ++a) inside = inside && q[a] >= box_.lo[a] && q[a] <= box_.hi[a];
+    return inside;
+  }
+
+  /// Gathers what queries around q need, where squared distances to the k-th neighbour are about
+  /// `typical`. Not every time if few queries were served lately.
+  bool refill(const Kernels& kernels, const LayoutView& view, std::uint64_t index, const float* q,
+              float typical, std::size_t k) {
+    if (waited_++ < wait_) return false;
+    wait_ = served_ < kFewServed ? std::min(2 * wait_ + 1, kLongestWait) : 0;
+    waited_ = 0;
+    served_ = 0;
+    index_ = 0;
+    k_ = k;
+    reserve(kLeastRoom + kRoomPerNeighbor * k);
+    const float deviation = 1.0F / std::sqrt(static_cast<float>(k));
+    guess_.margin = 1.0F + kMargin * deviation;
+    guess_.typical = typical;
+    reach_ = kReach * guess_.margin * typical;
+    const float half = half_edge_ * std::sqrt(typical);
+    for (int a = 0; a < 3; ++a) {
+      box_.lo[a] = q[a] - half;
+      box_.hi[a] = q[a] + half;
+    }
+    if (!(reach_ < std::numeric_limits<float>::infinity()) ||
+        !kernels.gatherAround(view, box_, reach_, block_)) {
+      return false;
+    }
+    const std::size_t wanted = kPoints + kPointsPerNeighbor * k;
+    if (block_.count > wanted) half_edge_ = std::max(0.9F * half_edge_, 0.2F);
+    if (block_.count < wanted) half_edge_ = std::min(1.1F * half_edge_, 2.0F);
+    index_ = index;
+    return true;
+  }
+
+  /// Candidates for the k nearest of a query that is covered, and below which distance they are.
+  /// \return false if the block may not have all
+  bool take(const Kernels& kernels, const float* q, Candidates& found, float& limit) {
+    ++served_;
+    const bool enough = kernels.takeNearest(block_, q, reach_, k_, guess_, found);
+    limit = guess_.limit;
+    return enough;
+  }
+
+  std::size_t capacity() const { return block_.capacity; }
+
+ private:
+  // Points of a block: more make each query longer, fewer serve fewer of them.
+  static constexpr std::size_t kPoints = 30;
+  static constexpr std::size_t kPointsPerNeighbor = 5;
+  // By how much squared radii may grow within the cube.
+  static constexpr float kReach = 1.3F;
+  // To gather takes as long as so many queries.
+  static constexpr int kFewServed = 3;
+  static constexpr int kLongestWait = 31;
+  static constexpr std::size_t kLeastRoom = 1024;
+  static constexpr std::size_t kRoomPerNeighbor = 16;
+
+  void reserve(std::size_t capacity) {
+    if (capacity <= block_.capacity) return;
+    const std::size_t length = capacity + Layout::kPadding;
+    floats_.resize(3 * length);
+    ids_.resize(length);
+    for (std::size_t a = 0; a < 3; ++a) block_.xyz[a] = floats_.data() + a * length;
+    block_.id = ids_.data();
+    block_.capacity = capacity;
+  }
+
+  std::uint64_t index_ = 0;
+  std::size_t k_ = 0;
+  float half_edge_ = 1.0F;  // of the cube, relative to the radius of a search
+  Box box_{};
+  Guess guess_{};
+  float reach_ = 0.0F;
+  int wait_ = 0;    // queries to be left alone until the next block is gathered
+  int waited_ = 0;  // how many there were
+  int served_ = 0;  // by the block
+  Block block_{};
+  std::vector<float> floats_;
+  std::vector<std::uint32_t> ids_;
+};
+
+}  // namespace segorient::search
