@@ -79,6 +79,7 @@ inline std::vector<Column> withoutSteps() {
       without("cluster flips", [](PipelineOptions& o) { o.automatic.flip_clusters = false; }),
       without("winding number", [](PipelineOptions& o) { o.automatic.wind_components = false; }),
       without("viewpoint", [](PipelineOptions& o) { o.automatic.infer_viewpoint = false; }),
+      without("wedges", [](PipelineOptions& o) { o.filter_wedges = false; }),
       without("filter", [](PipelineOptions& o) { o.filter_rounds = 0; })};
 }
 

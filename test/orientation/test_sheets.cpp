@@ -178,33 +178,6 @@ TEST(SheetFilter, RightsALoneWrongSign) {
   EXPECT_GT(shareWithin(filtered.normals, cloud.normals, 10), 0.96);
 }
 
-// Two faces at 30 degrees that look away from each other; near the edge one of them starts with the
-// normals of the other. What stays wrong lies on both planes within hundredths of a spacing.
-TEST(SheetFilter, TellsTheFacesOfAWedgeApart) {
-  constexpr float kHalf = 0.2617994F;  // 15 degrees
-  std::mt19937 random(3);
-  std::uniform_real_distribution<float> unit(0.F, 1.F);
-  std::vector<float> xyz;
-  std::vector<float> truth;
-  std::vector<float> oriented;
-  const float h = 0.0155F;  // 0.977 of the side of one point's square
-  for (int i = 0; i < 8000; ++i) {
-    const float side = i % 2 == 0 ? 1.F : -1.F;
-    const float d = unit(random);
-    const bool swapped = d < 1.5F * h && side > 0.F;
-    const std::array<float, 4> n{-std::sin(kHalf), side * std::cos(kHalf), 0.F, 0.F};
-    const std::array<float, 4> m{-std::sin(kHalf), -side * std::cos(kHalf), 0.F, 0.F};
-    xyz.insert(xyz.end(), {d * std::cos(kHalf), side * d * std::sin(kHalf), unit(random), 0.F});
-    truth.insert(truth.end(), n.begin(), n.end());
-    oriented.insert(oriented.end(), swapped ? m.begin() : n.begin(), swapped ? m.end() : n.end());
-  }
-  const std::vector<float> spacing(8000, h);
-  const FilteredNormals filtered =
-      filterOrientedNormals(viewOf(xyz), neighborsOf(xyz), oriented, spacing, 0.F);
-  EXPECT_LT(shareOutward(oriented, truth), 0.995);
-  EXPECT_GT(shareOutward(filtered.normals, truth), 0.9985);
-}
-
 TEST(SheetFilter, GivesANormalToAPointWithoutOne) {
   const LabelledCloud cloud = sample("cube", cube(), 2000, 13);
   std::vector<float> oriented = cloud.normals;

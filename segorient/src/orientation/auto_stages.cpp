@@ -114,7 +114,7 @@ AutoNormals orientPoints(const PointView& points, const Neighborhoods& neighborh
   }
   FilteredNormals filtered =
       filterOrientedNormals(points, neighborhoods, sheets.normals, sheets.spacing, sheets.residual,
-                            options.filter_rounds, options.threads);
+                            options.filter_rounds, options.filter_wedges, options.threads);
   out.normals = std::move(filtered.normals);
   for (std::size_t i = 0; i < points.size; ++i) {
     const bool has_normal = std::isfinite(out.normals[4 * i]);

@@ -7,6 +7,7 @@
 #include <array>
 #include <cmath>
 
+#include "contrary_patches.h"
 #include "sheet_choice.h"
 
 namespace segorient {
@@ -117,7 +118,7 @@ Mean meanNormal(const PointView& points, const Neighborhoods& nb, const std::vec
 FilteredNormals filterOrientedNormals(const PointView& points, const Neighborhoods& nb,
                                       const std::vector<float>& oriented,
                                       const std::vector<float>& spacing, float residual, int rounds,
-                                      int threads) {
+                                      bool wedges, int threads) {
   // A tenth of a spacing is what curvature explains at one spacing's distance, beside the noise.
   const float half_fit = 0.03F + residual;
   const Kernel kernel{1.F / std::sqrt(0.01F + residual * residual), 1.F / half_fit};
@@ -145,8 +146,9 @@ FilteredNormals filterOrientedNormals(const PointView& points, const Neighborhoo
       out.confidences[p] = static_cast<float>(std::min(l / total, 1.0));  // rounding may exceed 1
     }
     out.normals.swap(next);
+    if (wedges) detail::turnContraryPatches(points, nb, spacing, residual, t, out.normals);
   }
-  detail::chooseSheets(points, nb, spacing, residual, t, out);
+  if (wedges) detail::chooseSheets(points, nb, spacing, residual, t, out);
   return out;
 }
 

@@ -39,8 +39,9 @@ struct PipelineOptions {
   SheetNormalOptions sheet_normals;  ///< its threads is not used
   SheetSegmentationOptions sheets;
   AutoOrientationOptions automatic;  ///< its threads is not used
-  bool denoise = true;    ///< smooth positions first where the noise is above about a spacing
-  int filter_rounds = 2;  ///< of filterOrientedNormals(); 0 = off
+  bool denoise = true;        ///< smooth positions first where the noise is above about a spacing
+  int filter_rounds = 2;      ///< of filterOrientedNormals(); 0 = off
+  bool filter_wedges = true;  ///< its special care for narrow wedges
 };
 
 /// Called when a stage begins and as it goes on, from the calling thread.
