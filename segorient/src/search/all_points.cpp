@@ -22,17 +22,19 @@ class GroupWork {
   // \param block most points that a group shares
   // \param candidates most candidates that the points of a group have in all
   GroupWork(const Layout& layout, std::size_t block, std::size_t candidates) : task{} {
-    const std::size_t block_length = block + Layout::kPadding;
-    const std::size_t length = candidates + Layout::kPadding;
-    floats_.resize(3 * block_length + length);
-    ids_.resize(block_length + length + layout.regions.size());
+    const std::size_t block_length = wholeLines(block + Layout::kPadding);
+    const std::size_t length = wholeLines(candidates + Layout::kPadding);
+    floats_.resize(3 * block_length + length + kLine);
+    ids_.resize(block_length + length + layout.regions.size() + kLine);
     std::size_t most = 0;
     for (const Region& r : layout.regions) most = std::max<std::size_t>(most, r.end - r.begin);
     failed_.resize(most);
-    for (std::size_t a = 0; a < 3; ++a) task.block.xyz[a] = floats_.data() + a * block_length;
-    task.candidate_distance = floats_.data() + 3 * block_length;
-    task.block.id = ids_.data();
-    task.candidate_id = ids_.data() + block_length;
+    float* const floats = firstOfLine(floats_);
+    std::uint32_t* const ids = firstOfLine(ids_);
+    for (std::size_t a = 0; a < 3; ++a) task.block.xyz[a] = floats + a * block_length;
+    task.candidate_distance = floats + 3 * block_length;
+    task.block.id = ids;
+    task.candidate_id = ids + block_length;
     task.neighbors = task.candidate_id + length;
     task.block.capacity = block;
     task.candidate_capacity = candidates;
@@ -124,9 +126,9 @@ void MedianHashIndex::nearestKAll(int k, Neighborhoods& out, bool with_distances
   const std::size_t shared = std::min(wanted, kMostShared);
 #pragma omp parallel num_threads(threads) if (threads > 1)
   {
-    // A group has up to 31 points with up to some 3 k + 88 candidates each.
+    // A group has up to 31 points with up to some 3 k + 104 candidates each.
     const std::size_t block = 2048 + 16 * shared;
-    GroupWork work(self.layout, block, block + 32 * (3 * shared + 96));
+    GroupWork work(self.layout, block, block + 32 * (3 * shared + 112));
     GroupTask& task = work.task;
     task.k = static_cast<std::uint32_t>(wanted);
     task.epsilon = epsilon > 0.0F ? epsilon : 0.0F;

@@ -12,6 +12,7 @@
 #include <cstdint>
 #include <cstring>
 #include <limits>
+#include <vector>
 
 #include "layout.h"
 
@@ -118,6 +119,22 @@ struct RowBuffer {
   void (*grow)(RowBuffer&, std::size_t capacity);  ///< makes room for at least as many
   void* owner;                                     ///< for grow
 };
+
+/// Entries of a cache line. Arrays begin with one, so that no vector lies across two.
+constexpr std::size_t kLine = 16;
+
+/// The first element of an array of 4 byte entries that begins a cache line; there are up to
+/// kLine - 1 before it.
+template <typename T>
+T* firstOfLine(std::vector<T>& array) {
+  const auto at = reinterpret_cast<std::uintptr_t>(array.data()) / sizeof(T);
+  return array.data() + (kLine - at % kLine) % kLine;
+}
+
+/// The least multiple of kLine that is not below a length.
+inline std::size_t wholeLines(std::size_t length) {
+  return (length + kLine - 1) / kLine * kLine;
+}
 
 /// Points that searches near each other pick theirs from; each array has room for
 /// Layout::kPadding entries beyond `capacity`.

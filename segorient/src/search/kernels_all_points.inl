@@ -34,7 +34,7 @@ inline bool nearestWithin(const LayoutView& view, float reach, Group& group, Reg
     if (takeNearest(task.block, q, reach, task.k, state.guess, found)) {
       group.found[group.found_count++] = {point, static_cast<std::uint32_t>(found.count), used,
                                           state.guess.limit};
-      used += found.count + kSortRoom;
+      used += wholeLines(found.count + kSortRoom);
     } else {
       group.waiting[left++] = point;
     }
@@ -108,7 +108,7 @@ void withinOfGroup(const LayoutView& view, std::uint32_t begin, std::uint32_t en
     }
     padCandidates(task.candidate_distance + used, task.candidate_id + used, count);
     group.found[group.found_count++] = {i, static_cast<std::uint32_t>(count), used, task.limit};
-    used += count + kSortRoom;
+    used += wholeLines(count + kSortRoom);
   }
   writeWithin(view, group, state, task);
 }

@@ -221,18 +221,21 @@ inline bool takeNearest(const Block& block, const float* q, float reach, std::si
   return true;
 }
 
+// Copies in steps of kStep, the last of which goes over entries of the one before it again.
+// \param count at least kStep
+template <std::size_t kStep, typename From, typename To>
+inline void copySteps(const From* from, std::size_t count, To* to) {
+  for (std::size_t i = 0; i + kStep < count; i += kStep) {
+    __builtin_memcpy(to + i, from + i, kStep * sizeof(To));
+  }
+  __builtin_memcpy(to + count - kStep, from + count - kStep, kStep * sizeof(To));
+}
+
 template <typename From, typename To>
 inline void copyEntries(const From* from, std::size_t count, To* to) {
   if constexpr (sizeof(From) == sizeof(To)) {
-    constexpr std::size_t kStep = 8;
-    if (count >= kStep) {
-      // The last step goes over entries of the one before it again.
-      for (std::size_t i = 0; i + kStep < count; i += kStep) {
-        __builtin_memcpy(to + i, from + i, kStep * sizeof(To));
-      }
-      __builtin_memcpy(to + count - kStep, from + count - kStep, kStep * sizeof(To));
-      return;
-    }
+    if (count >= 8) return copySteps<8>(from, count, to);
+    if (count >= 4) return copySteps<4>(from, count, to);
   }
   for (std::size_t i = 0; i < count; ++i) to[i] = static_cast<To>(from[i]);
 }

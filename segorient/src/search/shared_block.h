@@ -98,11 +98,11 @@ class SharedBlock {
 
   void reserve(std::size_t capacity) {
     if (capacity <= block_.capacity) return;
-    const std::size_t length = capacity + Layout::kPadding;
-    floats_.resize(3 * length);
-    ids_.resize(length);
-    for (std::size_t a = 0; a < 3; ++a) block_.xyz[a] = floats_.data() + a * length;
-    block_.id = ids_.data();
+    const std::size_t length = wholeLines(capacity + Layout::kPadding);
+    floats_.resize(3 * length + kLine);
+    ids_.resize(length + kLine);
+    for (std::size_t a = 0; a < 3; ++a) block_.xyz[a] = firstOfLine(floats_) + a * length;
+    block_.id = firstOfLine(ids_);
     block_.capacity = capacity;
   }
 
