@@ -37,24 +37,35 @@ class Projection {
     axes_[2] = {static_cast<float>(ce * ca), static_cast<float>(ce * sa), static_cast<float>(se)};
     fit(view, scene);
   }
-  float scale() const { return scale_; }
+  float scale() const { return static_cast<float>(scale_); }
   Vec direction(const Vec& d) const {
     return {dot(axes_[0], d), dot(axes_[1], d), dot(axes_[2], d)};
   }
   Vec point(const Vec& p) const {
-    const Vec d = direction(p);
-    return {d[0] * scale_ + shift_[0], d[1] * scale_ + shift_[1], d[2] * scale_};
+    const std::array<double, 3> d = turned(p);
+    return {static_cast<float>(d[0] * scale_ + shift_[0]),
+            static_cast<float>(d[1] * scale_ + shift_[1]), static_cast<float>(d[2] * scale_)};
   }
 
  private:
+  // In double, as sums of the largest floats overflow.
+  std::array<double, 3> turned(const Vec& p) const {
+    std::array<double, 3> out{0.0, 0.0, 0.0};
+    for (std::size_t c = 0; c < 3; ++c) {
+      for (std::size_t a = 0; a < 3; ++a) {
+        out[c] += static_cast<double>(axes_[c][a]) * static_cast<double>(p[a]);
+      }
+    }
+    return out;
+  }
   void fit(const View& view, const Scene& scene) {
-    Vec low;
-    Vec high;
-    low.fill(std::numeric_limits<float>::max());
-    high.fill(std::numeric_limits<float>::lowest());
+    std::array<double, 2> low;
+    std::array<double, 2> high;
+    low.fill(std::numeric_limits<double>::max());
+    high.fill(std::numeric_limits<double>::lowest());
     const auto extend = [&](const Vec& p) {
-      const Vec d = direction(p);
-      for (std::size_t c = 0; c < 3; ++c) {
+      const std::array<double, 3> d = turned(p);
+      for (std::size_t c = 0; c < 2; ++c) {
         low[c] = std::min(low[c], d[c]);
         high[c] = std::max(high[c], d[c]);
       }
@@ -63,21 +74,17 @@ class Projection {
     for (const Vec& v : scene.vertices) extend(v);
     const std::array<double, 2> room{static_cast<double>(view.width),
                                      static_cast<double>(view.height)};
-    double scale = std::numeric_limits<double>::max();
+    scale_ = std::numeric_limits<double>::max();
     for (std::size_t c = 0; c < 2; ++c) {
-      const double extent = std::max(1e-30, static_cast<double>(high[c]) - low[c]);
-      scale = std::min(scale, room[c] * (1.0 - 2.0 * kMargin) / extent);
+      const double extent = std::max(1e-30, high[c] - low[c]);
+      scale_ = std::min(scale_, room[c] * (1.0 - 2.0 * kMargin) / extent);
     }
-    scale_ = static_cast<float>(scale);
-    for (std::size_t c = 0; c < 2; ++c) {
-      shift_[c] =
-          static_cast<float>(0.5 * room[c] - 0.5 * scale * (static_cast<double>(low[c]) + high[c]));
-    }
+    for (std::size_t c = 0; c < 2; ++c) shift_[c] = 0.5 * (room[c] - scale_ * (low[c] + high[c]));
   }
 
   std::array<Vec, 3> axes_;
-  float scale_ = 1.F;
-  std::array<float, 2> shift_{0.F, 0.F};
+  double scale_ = 1.0;
+  std::array<double, 2> shift_{0.0, 0.0};
 };
 
 class Canvas {

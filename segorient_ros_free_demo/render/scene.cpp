@@ -144,8 +144,10 @@ std::vector<float> splatRadii(const Neighborhoods& neighborhoods) {
   for (std::size_t i = 0; i < radii.size(); ++i) {
     const int count = neighborhoods.count(i);
     if (count < 2) continue;
-    radii[i] = std::sqrt(neighborhoods.sqrDistances(i)[count - 1]);
-    known.push_back(radii[i]);
+    const float radius = std::sqrt(neighborhoods.sqrDistances(i)[count - 1]);
+    if (!std::isfinite(radius)) continue;  // its square overflows; a dot does
+    radii[i] = radius;
+    known.push_back(radius);
   }
   if (known.empty()) return radii;
   const auto middle = known.begin() + static_cast<std::ptrdiff_t>(known.size() / 2);

@@ -167,6 +167,35 @@ TEST(Rasterizer, EveryDegenerateCloudGivesAPicture) {
   }
 }
 
+// Found by UndefinedBehaviorSanitizer: sums of the largest floats overflow.
+TEST(Rasterizer, CornersOfAllFloatsAreDrawnAsThoseOfAnyCube) {
+  const auto cube = [](float scale) {
+    program::Scene scene;
+    for (int i = 0; i < 8; ++i) {
+      program::Splat s;
+      s.position = {(i & 1) != 0 ? scale : -scale, (i & 2) != 0 ? scale : -scale,
+                    (i & 4) != 0 ? scale : -scale};
+      s.normal = {NAN, NAN, NAN};
+      s.front = s.back = 0xff0000U;
+      scene.splats.push_back(s);
+    }
+    return program::drawScene(scene, program::View{});
+  };
+  const Picture expected = cube(1.99F);
+  EXPECT_GT(shares(expected).drawn, 0.0);
+  EXPECT_EQ(cube(std::ldexp(1.99F, 127)).rgb, expected.rgb);
+}
+
+TEST(Rasterizer, PointsFartherApartThanFloatsCanSquareAreDots) {
+  const ScratchDirectory directory;
+  const CloudTable table = program::readCloud(
+      directory.write("far.xyz", "-3e38 -3e38 -3e38\n3e38 3e38 3e38\n3e38 -3e38 0\n"));
+  const program::LocalPoints points(table);
+  const Picture picture = program::drawScene(
+      program::makeScene(table, points, nullptr, program::Coloring::Rgb, 1), program::View{});
+  EXPECT_LT(shares(picture).drawn, 0.01);
+}
+
 TEST(HardSegments, AreReadFromAReport) {
   const ScratchDirectory directory;
   const std::string report =

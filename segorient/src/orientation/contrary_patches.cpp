@@ -22,6 +22,8 @@ constexpr int kReach = 8;
 constexpr std::size_t kMostPoints = 200;
 // Patches are turned that are smaller than this share of what they meet.
 constexpr double kShare = 0.25;
+// Confidence that one neighbour of the other sign among some tens would spoil.
+constexpr float kAgreed = 0.99F;
 // In spacings, as above: noise of a tenth leaves normals and offsets well within these limits.
 constexpr float kMostResidual = 0.1F;
 
@@ -159,12 +161,15 @@ class Patches {
 
 std::size_t turnContraryPatches(const PointView& points, const Neighborhoods& neighborhoods,
                                 const std::vector<float>& spacing, float residual, int threads,
-                                std::vector<float>& normals) {
+                                FilteredNormals& filtered) {
   if (!(residual < kMostResidual)) return 0;
-  Patches patches(points, neighborhoods, spacing, normals);
+  Patches patches(points, neighborhoods, spacing, filtered.normals);
   std::vector<std::uint8_t> contrary(points.size);
 #pragma omp parallel for num_threads(threads) schedule(static)
-  for (std::size_t p = 0; p < points.size; ++p) contrary[p] = patches.meetsContrary(p) ? 1 : 0;
+  for (std::size_t p = 0; p < points.size; ++p) {
+    const bool agreed = filtered.confidences[p] > kAgreed;
+    contrary[p] = !agreed && patches.meetsContrary(p) ? 1 : 0;
+  }
   std::size_t turned = 0;
   for (std::size_t p = 0; p < points.size; ++p) {
     if (contrary[p] != 0) turned += patches.settle(p);

@@ -4,6 +4,7 @@
 
 #include <segorient/common/neighborhoods.h>
 #include <segorient/common/point_view.h>
+#include <segorient/orientation/sheet_filter.h>
 
 #include <cstddef>
 #include <vector>
@@ -19,10 +20,11 @@ namespace segorient::detail {
 /// turned where it meets another one of the other sign that is much larger.
 /// \param residual median residual of the cloud, in spacings; where the planes of two sheets cannot
 ///        be told apart for noise, nothing is done
-/// \param normals 4 floats a point, unit length or NaN
+/// \param filtered some normals change. Where confidences say that the normals around agree, no
+///        contrary one is looked for.
 /// \return how many points were turned
 std::size_t turnContraryPatches(const PointView& points, const Neighborhoods& neighborhoods,
                                 const std::vector<float>& spacing, float residual, int threads,
-                                std::vector<float>& normals);
+                                FilteredNormals& filtered);
 
 }  // namespace segorient::detail

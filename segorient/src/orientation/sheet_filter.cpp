@@ -146,7 +146,7 @@ FilteredNormals filterOrientedNormals(const PointView& points, const Neighborhoo
       out.confidences[p] = static_cast<float>(std::min(l / total, 1.0));  // rounding may exceed 1
     }
     out.normals.swap(next);
-    if (wedges) detail::turnContraryPatches(points, nb, spacing, residual, t, out.normals);
+    if (wedges) detail::turnContraryPatches(points, nb, spacing, residual, t, out);
   }
   if (wedges) detail::chooseSheets(points, nb, spacing, residual, t, out);
   return out;

@@ -40,8 +40,10 @@ struct MedianHashIndex::Impl {
   void nearestOfRegion(std::size_t region, GroupTask& task, Neighborhoods& out) const;
   void withinOfRegion(std::size_t region, double radius, GroupTask& task) const;
 
-  Candidates* fromShared(const LayoutView& view, const float* q, std::size_t k, Workspace& work,
-                         float& limit) const;
+  bool searchShared(const float* q, std::size_t k, Workspace& work, pcl::index_t* indices,
+                    float* distances) const;
+  void searchAlone(const float* q, std::size_t k, float epsilon, Workspace& work,
+                   pcl::index_t* indices, float* distances) const;
   Candidates* guess(const LayoutView& view, const float* q, std::size_t k, float epsilon,
                     Workspace& work, float& limit) const;
   void nearestFirst(const LayoutView& view, const float* q, std::size_t k, float epsilon,

@@ -49,8 +49,8 @@ namespace scalar {
 #include "kernels_groups.inl"
 
 #include "kernels_all_points.inl"
-constexpr Kernels kKernels{"scalar",    collect,     collectRegion,   gatherAround,
-                           takeNearest, sortNearest, nearestInRegion, withinInRegion};
+constexpr Kernels kKernels{"scalar",       collect,     collectRegion,   gatherAround,
+                           nearestInBlock, sortNearest, nearestInRegion, withinInRegion};
 }  // namespace scalar
 
 #if SEGORIENT_X86
@@ -65,8 +65,8 @@ namespace sse2 {
 #include "kernels_groups.inl"
 
 #include "kernels_all_points.inl"
-constexpr Kernels kKernels{"sse2",      collect,     collectRegion,   gatherAround,
-                           takeNearest, sortNearest, nearestInRegion, withinInRegion};
+constexpr Kernels kKernels{"sse2",         collect,     collectRegion,   gatherAround,
+                           nearestInBlock, sortNearest, nearestInRegion, withinInRegion};
 }  // namespace sse2
 
 /// For each mask of eight lanes the lanes that are set, in a byte each.
@@ -102,8 +102,8 @@ namespace avx2 {
 #include "kernels_groups.inl"
 
 #include "kernels_all_points.inl"
-constexpr Kernels kKernels{"avx2",      collect,     collectRegion,   gatherAround,
-                           takeNearest, sortNearest, nearestInRegion, withinInRegion};
+constexpr Kernels kKernels{"avx2",         collect,     collectRegion,   gatherAround,
+                           nearestInBlock, sortNearest, nearestInRegion, withinInRegion};
 }  // namespace avx2
 
 #if defined(__clang__)

@@ -188,11 +188,13 @@ struct Kernels {
   /// Fills a block with all points nearer to a box than the square root of `reach`.
   /// \return false if there was no room for all
   bool (*gatherAround)(const LayoutView&, const Box&, float reach, Block&);
-  /// Candidates for the k nearest of q, padded, from a block that holds everything nearer than the
-  /// square root of `reach`.
-  /// \return false if there are fewer in reach
-  bool (*takeNearest)(const Block&, const float* q, float reach, std::size_t k, Guess&,
-                      Candidates&);
+  /// The k nearest of q, ascending, from a block that holds everything nearer than the square root
+  /// of `reach`.
+  /// \param room for as many candidates as the block has
+  /// \return false if that is not enough
+  bool (*nearestInBlock)(const Block&, const float* q, float reach, std::size_t k, Guess&,
+                         Candidates& room, const SortScratch&, pcl::index_t* indices,
+                         float* distances);
   /// Leaves the k nearest of `count` candidates in ascending order, ties by id, in the scratch. All
   /// are nearer than `limit`; there are at most kMostToSort, and those up to Layout::kPadding
   /// beyond the last were set by padCandidates().

@@ -240,6 +240,16 @@ inline void copyEntries(const From* from, std::size_t count, To* to) {
   for (std::size_t i = 0; i < count; ++i) to[i] = static_cast<To>(from[i]);
 }
 
+bool nearestInBlock(const Block& block, const float* q, float reach, std::size_t k, Guess& guess,
+                    Candidates& room, const SortScratch& scratch, pcl::index_t* indices,
+                    float* distances) {
+  if (!takeNearest(block, q, reach, k, guess, room) || room.count > kMostToSort) return false;
+  sortNearest(room.distance, room.id, room.count, k, guess.limit, scratch);
+  copyEntries(scratch.id, k, indices);
+  copyEntries(scratch.distance, k, distances);
+  return true;
+}
+
 // Copies a row of a result; it begins with the point itself, also where others are in the same
 // place and though it may not be among as many of those.
 inline void copyRow(const std::uint32_t* id, const float* distance, std::uint32_t self,

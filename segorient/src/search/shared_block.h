@@ -44,7 +44,7 @@ class SharedBlock {
 
   /// Gathers what queries around q need, where squared distances to the k-th neighbour are about
   /// `typical`. Not every time if few queries were served lately.
-  bool refill(const Kernels& kernels, const LayoutView& view, std::uint64_t index, const float* q,
+  bool refill(const Kernels& kernels, const Layout& layout, std::uint64_t index, const float* q,
               float typical, std::size_t k) {
     if (waited_++ < wait_) return false;
     wait_ = served_ < kFewServed ? std::min(2 * wait_ + 1, kLongestWait) : 0;
@@ -63,7 +63,7 @@ class SharedBlock {
       box_.hi[a] = q[a] + half;
     }
     if (!(reach_ < std::numeric_limits<float>::infinity()) ||
-        !kernels.gatherAround(view, box_, reach_, block_)) {
+        !kernels.gatherAround(LayoutView(layout), box_, reach_, block_)) {
       return false;
     }
     const std::size_t wanted = kPoints + kPointsPerNeighbor * k;
@@ -73,13 +73,11 @@ class SharedBlock {
     return true;
   }
 
-  /// Candidates for the k nearest of a query that is covered, and below which distance they are.
-  /// \return false if the block may not have all
-  bool take(const Kernels& kernels, const float* q, Candidates& found, float& limit) {
+  /// The k nearest of a query that is covered; see Kernels::nearestInBlock().
+  bool nearest(const Kernels& kernels, const float* q, Candidates& room, const SortScratch& sort,
+               pcl::index_t* indices, float* distances) {
     ++served_;
-    const bool enough = kernels.takeNearest(block_, q, reach_, k_, guess_, found);
-    limit = guess_.limit;
-    return enough;
+    return kernels.nearestInBlock(block_, q, reach_, k_, guess_, room, sort, indices, distances);
   }
 
   std::size_t capacity() const { return block_.capacity; }

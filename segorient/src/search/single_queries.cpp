@@ -92,18 +92,18 @@ float keepBest(std::vector<std::pair<float, std::uint32_t>>& best, std::size_t k
 
 }  // namespace
 
-// Candidates from the block that queries near each other share. Null if there is none for this one.
-Candidates* MedianHashIndex::Impl::fromShared(const LayoutView& view, const float* q, std::size_t k,
-                                              Workspace& work, float& limit) const {
-  if (k > SharedBlock::kMostNeighbors) return nullptr;
+// From the block that queries near each other share. \return false if that does not do
+bool MedianHashIndex::Impl::searchShared(const float* q, std::size_t k, Workspace& work,
+                                         pcl::index_t* indices, float* distances) const {
+  if (k > SharedBlock::kMostNeighbors) return false;
   SharedBlock& shared = work.shared;
   const LastQuery& last = work.last;
   if (!shared.covers(number, q, k)) {
-    if (last.index != number || last.k != k || !last.isNear(q)) return nullptr;
-    if (!shared.refill(*kernels, view, number, q, last.limit, k)) return nullptr;
+    if (last.index != number || last.k != k || !last.isNear(q)) return false;
+    if (!shared.refill(*kernels, layout, number, q, last.limit, k)) return false;
   }
-  Candidates& found = work.candidates(shared.capacity());
-  return shared.take(*kernels, q, found, limit) && found.count <= kMostToSort ? &found : nullptr;
+  return shared.nearest(*kernels, q, work.candidates(shared.capacity()), work.sort(), indices,
+                        distances);
 }
 
 // Guesses a limit and collects everything below it: if that is k points or more, the nearest are
@@ -112,9 +112,6 @@ Candidates* MedianHashIndex::Impl::guess(const LayoutView& view, const float* q,
                                          float epsilon, Workspace& work, float& limit) const {
   const float prune = pruneFactor(epsilon);
   // Not where results are approximate: they must not depend on what was asked before.
-  if (prune == 1.0F) {
-    if (Candidates* found = fromShared(view, q, k, work, limit)) return found;
-  }
   const LastQuery& last = work.last;
   const bool near = last.index == number && last.k == k && prune == 1.0F && last.isNear(q);
   const Path path(view, q);
@@ -216,6 +213,16 @@ void MedianHashIndex::Impl::addUnreachable(std::size_t k, Workspace& work) const
 void MedianHashIndex::Impl::search(const float* q, std::size_t k, float epsilon,
                                    pcl::index_t* indices, float* distances) const {
   Workspace& work = workspace();
+  const bool exact = pruneFactor(epsilon) == 1.0F;
+  if (!exact || !searchShared(q, k, work, indices, distances)) {
+    searchAlone(q, k, epsilon, work, indices, distances);
+  }
+  work.last = {number, k, {q[0], q[1], q[2]}, distances[k - 1]};
+}
+
+void MedianHashIndex::Impl::searchAlone(const float* q, std::size_t k, float epsilon,
+                                        Workspace& work, pcl::index_t* indices,
+                                        float* distances) const {
   const LayoutView view(layout);
   float limit = 0.0F;
   if (Candidates* found = guess(view, q, k, epsilon, work, limit)) {
@@ -230,7 +237,6 @@ void MedianHashIndex::Impl::search(const float* q, std::size_t k, float epsilon,
       indices[i] = static_cast<pcl::index_t>(work.pairs[i].second);
     }
   }
-  work.last = {number, k, {q[0], q[1], q[2]}, distances[k - 1]};
 }
 
 void putFirst(pcl::index_t self, pcl::index_t* indices, std::size_t count) {
