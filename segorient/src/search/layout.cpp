@@ -10,25 +10,30 @@
 namespace segorient::search {
 namespace {
 
-float squaredDistance(const BuildPoint& p, const BuildPoint& q) {
-  const float dx = p.xyz[0] - q.xyz[0];
-  const float dy = p.xyz[1] - q.xyz[1];
-  const float dz = p.xyz[2] - q.xyz[2];
-  return dx * dx + dy * dy + dz * dz;
-}
-
 // Squared distance from a point to its 16th neighbour, or to the farthest of fewer: that to the 8th
 // among every second point, which differs little and takes half the time.
 float squaredSpacing(const BuildPoint& point, const BuildPoint* points, std::size_t count) {
   constexpr std::size_t kRank = 8;
+  constexpr std::size_t kAtOnce = 64;
   std::array<float, kRank + 1> nearest;  // the point itself or a stand-in among them, ascending
+  std::array<float, kAtOnce> distance;
+  const float x = point.xyz[0];
+  const float y = point.xyz[1];
+  const float z = point.xyz[2];
   std::size_t found = 0;
-  for (std::size_t i = 0; i < count; i += 2) {
-    const float d = squaredDistance(point, points[i]);
-    if (found > kRank && !(d < nearest[kRank])) continue;
-    std::size_t at = found > kRank ? kRank : found++;
-    for (; at > 0 && d < nearest[at - 1]; --at) nearest[at] = nearest[at - 1];
-    nearest[at] = d;
+  for (std::size_t begin = 0; begin < count; begin += 2 * kAtOnce) {
+    const std::size_t size = std::min(kAtOnce, (count - begin + 1) / 2);
+    for (std::size_t i = 0; i < size; ++i) {
+      const float* const p = points[begin + 2 * i].xyz;
+      distance[i] = (x - p[0]) * (x - p[0]) + (y - p[1]) * (y - p[1]) + (z - p[2]) * (z - p[2]);
+    }
+    for (std::size_t i = 0; i < size; ++i) {
+      const float d = distance[i];
+      if (found > kRank && !(d < nearest[kRank])) continue;
+      std::size_t at = found > kRank ? kRank : found++;
+      for (; at > 0 && d < nearest[at - 1]; --at) nearest[at] = nearest[at - 1];
+      nearest[at] = d;
+    }
   }
   return nearest[found - 1];
 }

@@ -45,29 +45,35 @@ Box merged(const Box& a, const Box& b) {
   return box;
 }
 
-// What a sample tells: an interval that the element of a rank is most likely in.
+// Up to so many points, all of them are looked at instead of a sample.
+constexpr std::size_t kFewPoints = 400;
+
+// An interval that the element of a rank is most likely in; of few points, its coordinate twice.
 struct Estimate {
   float lo, hi;
 };
 
 // Every `stride`-th point is the sample.
 std::size_t sampleSize(std::size_t count) {
-  return std::min(std::max<std::size_t>(count / 16, 64), std::size_t{1024});
+  return count <= kFewPoints ? count
+                             : std::min(std::max<std::size_t>(count / 16, 64), std::size_t{1024});
 }
 
 Estimate estimate(const BuildPoint* points, std::size_t count, std::size_t rank, int axis) {
   std::array<float, 1024> sample;
   const std::size_t size = sampleSize(count);
   for (std::size_t i = 0; i < size; ++i) sample[i] = points[i * count / size].xyz[axis];
-  // 2.5 standard deviations of the rank, which is at most that of a fair coin.
-  const auto deviation = static_cast<std::size_t>(1.25 * std::sqrt(static_cast<double>(size))) + 1;
+  // 2 standard deviations of the rank, which is at most that of a fair coin.
+  const auto deviation =
+      size == count ? 0 : static_cast<std::size_t>(1.0 * std::sqrt(static_cast<double>(size))) + 1;
   const std::size_t middle = rank * size / count;
   const std::size_t low = middle - std::min(deviation, middle);
   const std::size_t high = std::min(middle + deviation, size - 1);
   float* const end = sample.data() + size;
   std::nth_element(sample.data(), sample.data() + low, end);
-  std::nth_element(sample.data() + low, sample.data() + high, end);
-  return {sample[low], sample[high]};
+  const float lo = sample[low];
+  if (high > low) std::nth_element(sample.data() + low + 1, sample.data() + high, end);
+  return {lo, sample[high]};
 }
 
 int longestAxisOfSample(const BuildPoint* points, std::size_t count) {
@@ -83,14 +89,6 @@ int longestAxisOfSample(const BuildPoint* points, std::size_t count) {
 // \return the least coordinate behind
 float divideInTwo(const BuildPoint* from, std::size_t count, BuildPoint* to, std::size_t half,
                   int axis, BuildPoint* scratch) {
-  const auto less = [axis](const BuildPoint& p, const BuildPoint& q) {
-    return p.xyz[axis] < q.xyz[axis];
-  };
-  if (count < 200) {
-    std::copy(from, from + count, to);
-    std::nth_element(to, to + half, to + count, less);
-    return to[half].xyz[axis];
-  }
   const Estimate guess = estimate(from, count, half, axis);
   BuildPoint* const inside = scratch;
   std::size_t left = 0;
@@ -108,12 +106,17 @@ float divideInTwo(const BuildPoint* from, std::size_t count, BuildPoint* to, std
     right -= above ? 1 : 0;
     middle += below || above ? 0 : 1;
   }
-  if (left <= half && half < left + middle && middle < count / 2) {
+  const bool found = left <= half && half < left + middle;
+  if (found && guess.lo < guess.hi && middle < count / 2) {
     return divideInTwo(inside, middle, to + left, half - left, axis, inside + middle + 1);
   }
-  // The estimate was wrong, or many coordinates are equal.
   std::copy(inside, inside + middle, to + left);
-  std::nth_element(to, to + half, to + count, less);
+  if (!found || guess.lo < guess.hi) {
+    // The estimate was wrong, or many coordinates are nearly equal.
+    std::nth_element(to, to + half, to + count, [axis](const BuildPoint& p, const BuildPoint& q) {
+      return p.xyz[axis] < q.xyz[axis];
+    });
+  }
   return to[half].xyz[axis];
 }
 
