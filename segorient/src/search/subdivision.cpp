@@ -60,7 +60,7 @@ std::size_t sampleSize(std::size_t count) {
 }
 
 Estimate estimate(const BuildPoint* points, std::size_t count, std::size_t rank, int axis) {
-  std::array<float, 1024> sample;
+  std::array<float, 1024> sample{};
   const std::size_t size = sampleSize(count);
   for (std::size_t i = 0; i < size; ++i) sample[i] = points[i * count / size].xyz[axis];
   // 2 standard deviations of the rank, which is at most that of a fair coin.
