@@ -69,13 +69,22 @@ void chooseGrid(const Box& box, std::size_t count, float spacing16, Region& regi
   region.inverse_edge = static_cast<float>(1.0 / edge);
 }
 
-std::size_t cellOf(const BuildPoint& p, const Box& box, const Region& region) {
-  std::size_t c[3];
-  for (int a = 0; a < 3; ++a) {
-    const float cell = (p.xyz[a] - box.lo[a]) * region.inverse_edge;
-    c[a] = static_cast<std::size_t>(std::min(cell, static_cast<float>(region.counts[a] - 1)));
+// Copies of what belongs to the region, since anything that is written could otherwise be part of
+// it.
+void findCells(const BuildPoint* points, Box box, Region region, std::uint32_t* cell) {
+  const std::size_t count = region.end - region.begin;
+  const float most[3] = {static_cast<float>(region.counts[0] - 1),
+                         static_cast<float>(region.counts[1] - 1),
+                         static_cast<float>(region.counts[2] - 1)};
+  for (std::size_t i = 0; i < count; ++i) {
+    int c[3];
+    for (int a = 0; a < 3; ++a) {
+      c[a] =
+          static_cast<int>(std::min((points[i].xyz[a] - box.lo[a]) * region.inverse_edge, most[a]));
+    }
+    cell[i] =
+        static_cast<std::uint32_t>(c[0] + region.counts[0] * (c[1] + region.counts[1] * c[2]));
   }
-  return c[0] + region.counts[0] * (c[1] + region.counts[1] * c[2]);
 }
 
 std::size_t cellCount(const Region& region) {
@@ -86,22 +95,24 @@ std::size_t cellCount(const Region& region) {
 void sortIntoCells(BuildPoint* points, const Box& box, const Region& region, Layout& layout,
                    std::vector<std::uint32_t>& cell) {
   const std::size_t count = region.end - region.begin;
-  std::uint16_t* starts = layout.starts.data() + region.first_start;
+  std::uint16_t* const starts = layout.starts.data() + region.first_start;
   const std::size_t cells = cellCount(region);
   cell.resize(count);
-  for (std::size_t i = 0; i < count; ++i) {
-    cell[i] = static_cast<std::uint32_t>(cellOf(points[i], box, region));
-    ++starts[cell[i] + 1];
-  }
+  findCells(points, box, region, cell.data());
+  for (std::size_t i = 0; i < count; ++i) ++starts[cell[i] + 1];
   for (std::size_t c = 0; c < cells; ++c) {
     starts[c + 1] = static_cast<std::uint16_t>(starts[c + 1] + starts[c]);
   }
+  float* const x = layout.x.data() + region.begin;
+  float* const y = layout.y.data() + region.begin;
+  float* const z = layout.z.data() + region.begin;
+  std::uint32_t* const id = layout.id.data() + region.begin;
   for (std::size_t i = 0; i < count; ++i) {
-    const std::size_t at = region.begin + starts[cell[i]]++;
-    layout.x[at] = points[i].xyz[0];
-    layout.y[at] = points[i].xyz[1];
-    layout.z[at] = points[i].xyz[2];
-    layout.id[at] = points[i].row;
+    const std::size_t at = starts[cell[i]]++;
+    x[at] = points[i].xyz[0];
+    y[at] = points[i].xyz[1];
+    z[at] = points[i].xyz[2];
+    id[at] = points[i].row;
   }
   // Every start has moved to the next one.
   for (std::size_t c = cells; c > 0; --c) starts[c] = starts[c - 1];
