@@ -12,20 +12,26 @@ namespace {
 
 // Squared distance from a point to its 16th neighbour, or to the farthest of fewer: that to the 8th
 // among every second point, which differs little and takes half the time.
-float squaredSpacing(const BuildPoint& point, const BuildPoint* points, std::size_t count) {
+// \param own number of the point, even
+float squaredSpacing(const BuildPoint* points, std::size_t count, std::size_t own) {
   constexpr std::size_t kRank = 8;
   constexpr std::size_t kAtOnce = 64;
   std::array<float, kRank + 1> nearest;  // the point itself or a stand-in among them, ascending
   std::array<float, kAtOnce> distance;
-  const float x = point.xyz[0];
-  const float y = point.xyz[1];
-  const float z = point.xyz[2];
+  const float* const q = points[own].xyz;
+  const std::size_t parts = (count + 2 * kAtOnce - 1) / (2 * kAtOnce);
+  std::size_t part =
+      own / (2 * kAtOnce);  // first, where neighbours are if the order is that of a curve
   std::size_t found = 0;
-  for (std::size_t begin = 0; begin < count; begin += 2 * kAtOnce) {
+  for (std::size_t turn = 0; turn < parts; ++turn, part = part + 1 < parts ? part + 1 : 0) {
+    const std::size_t begin = 2 * kAtOnce * part;
     const std::size_t size = std::min(kAtOnce, (count - begin + 1) / 2);
     for (std::size_t i = 0; i < size; ++i) {
       const float* const p = points[begin + 2 * i].xyz;
-      distance[i] = (x - p[0]) * (x - p[0]) + (y - p[1]) * (y - p[1]) + (z - p[2]) * (z - p[2]);
+      const float dx = q[0] - p[0];
+      const float dy = q[1] - p[1];
+      const float dz = q[2] - p[2];
+      distance[i] = dx * dx + dy * dy + dz * dz;
     }
     for (std::size_t i = 0; i < size; ++i) {
       const float d = distance[i];
@@ -42,7 +48,7 @@ float squaredSpacing(const BuildPoint& point, const BuildPoint* points, std::siz
 float typicalSpacing(const BuildPoint* points, std::size_t count) {
   std::array<float, 3> found{};
   for (std::size_t s = 0; s < 3; ++s) {
-    found[s] = squaredSpacing(points[(2 * s + 1) * count / 6 / 2 * 2], points, count);
+    found[s] = squaredSpacing(points, count, (2 * s + 1) * count / 6 / 2 * 2);
   }
   std::sort(found.begin(), found.end());
   return found[1];

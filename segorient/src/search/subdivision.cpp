@@ -46,7 +46,7 @@ Box merged(const Box& a, const Box& b) {
 }
 
 // Up to so many points, all of them are looked at instead of a sample.
-constexpr std::size_t kFewPoints = 400;
+constexpr std::size_t kFewPoints = 200;
 
 // An interval that the element of a rank is most likely in; of few points, its coordinate twice.
 struct Estimate {
