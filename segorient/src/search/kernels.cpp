@@ -23,6 +23,9 @@
 
 #define SEGORIENT_INLINE inline __attribute__((always_inline))
 
+// For what has registers enough only if it is compiled on its own.
+#define SEGORIENT_APART __attribute__((noinline))
+
 // Before a loop over an array that is to be in registers, at any level of optimisation.
 #if defined(__clang__)
 #define SEGORIENT_UNROLL _Pragma("clang loop unroll(full)")

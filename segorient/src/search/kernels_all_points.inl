@@ -44,8 +44,8 @@ inline bool nearestWithin(const LayoutView& view, float reach, Group& group, Reg
   return true;
 }
 
-void nearestOfGroup(const LayoutView& view, std::uint32_t begin, std::uint32_t end,
-                    RegionState& state, GroupTask& task) {
+SEGORIENT_APART void nearestOfGroup(const LayoutView& view, std::uint32_t begin, std::uint32_t end,
+                                    RegionState& state, GroupTask& task) {
   for (std::uint32_t i = begin; i < end; ++i) {
     const std::size_t row = view.row[i] * task.row_length;
     for (std::size_t j = 0; j < task.k; j += 64 / sizeof(float)) {

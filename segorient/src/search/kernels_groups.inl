@@ -13,7 +13,7 @@ struct Gatherer {
   std::size_t count;
 
   // \return false if there may be no room for all
-  bool operator()(VectorList& list) {
+  SEGORIENT_APART bool operator()(VectorList& list) {
     std::size_t n = count;
     const std::size_t vectors = list.count;
     if (n + kWidth * vectors > out.capacity) return false;
