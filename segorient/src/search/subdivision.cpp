@@ -64,9 +64,10 @@ Estimate estimate(const BuildPoint* points, std::size_t count, std::size_t rank,
   const std::size_t size = sampleSize(count);
   for (std::size_t i = 0; i < size; ++i) sample[i] = points[i * count / size].xyz[axis];
   // 2 standard deviations of the rank, which is at most that of a fair coin.
+  const bool all = size == count;
   const auto deviation =
-      size == count ? 0 : static_cast<std::size_t>(1.0 * std::sqrt(static_cast<double>(size))) + 1;
-  const std::size_t middle = rank * size / count;
+      all ? 0 : static_cast<std::size_t>(std::sqrt(static_cast<double>(size))) + 1;
+  const std::size_t middle = all ? rank : rank * size / count;
   const std::size_t low = middle - std::min(deviation, middle);
   const std::size_t high = std::min(middle + deviation, size - 1);
   float* const end = sample.data() + size;
