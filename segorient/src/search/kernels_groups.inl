@@ -46,7 +46,7 @@ struct Gatherer {
 
 // Fills a gathered block up to full steps of takeNear() with points that are never near.
 inline void finishBlock(const Gatherer& scan) {
-  for (std::size_t i = scan.count; i < scan.count + 2 * kWidth; i += kWidth) {
+  for (std::size_t i = scan.count; i < scan.count + 2 * std::size_t{kWidth}; i += kWidth) {
     store(broadcast(kInfinity), scan.out.xyz[0] + i);
   }
   scan.out.count = scan.count;
@@ -176,7 +176,7 @@ inline std::size_t takeNear(const Block& from, const float* q, float limit, floa
   const std::uint32_t* const id = from.id;
   const std::size_t block = from.count;
   std::size_t count = 0;
-  for (std::size_t i = 0; i < block; i += 2 * kWidth) {
+  for (std::size_t i = 0; i < block; i += 2 * std::size_t{kWidth}) {
     const std::size_t j = i + kWidth;
     const Vector d = squaredNorm(qx - load(x + i), qy - load(y + i), qz - load(z + i));
     const Vector e = squaredNorm(qx - load(x + j), qy - load(y + j), qz - load(z + j));

@@ -93,7 +93,7 @@ SEGORIENT_INLINE bool cellRange(const Region& region, const Box& bounds, const C
 struct VectorList {
   static constexpr std::uint32_t kAtOnce = 8;
   static constexpr std::size_t kMost = 64;
-  static constexpr std::size_t kRoom = kMost + (kWidth + 1) * kAtOnce;
+  static constexpr std::size_t kRoom = kMost + std::size_t{kWidth + 1} * kAtOnce;
   std::size_t count = 0;
   std::uint32_t first[kRoom];  // of each vector, its first point
   std::uint8_t lanes[kRoom];   // of each vector, a bit for each lane that counts
