@@ -142,7 +142,7 @@ class Patches {
     if (size(a) > size(b)) std::swap(a, b);
     if (patches_[a].large || size(a) > kShare * size(b)) return 0;
     const Patch turned = std::exchange(patches_[a], {});
-    for (const std::uint32_t i : turned.points) {
+    for (const std::size_t i : turned.points) {
       for (std::size_t c = 0; c < 3; ++c) normals_[4 * i + c] = -normals_[4 * i + c];
     }
     join(turned, b);

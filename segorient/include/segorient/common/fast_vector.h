@@ -17,7 +17,7 @@ struct UninitializedAllocator : std::allocator<T> {
   static constexpr std::align_val_t kCacheLine{64};
 
   template <typename U>
-  struct rebind {
+  struct rebind {  // NOLINT(readability-identifier-naming): the name of the standard
     using other = UninitializedAllocator<U>;
   };
   using std::allocator<T>::allocator;
