@@ -3,7 +3,9 @@
 #include <gtest/gtest.h>
 #include <segorient/search/median_hash_index.h>
 
+#include <algorithm>
 #include <array>
+#include <limits>
 #include <thread>
 
 #include "brute_force.h"
@@ -201,6 +203,25 @@ TEST_P(IndexOnCloud, ApproximateKeepsItsPromise) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Clouds, IndexOnCloud, testing::ValuesIn(searchClouds(1000)));
+
+// A thread that has not searched before has no room from earlier queries; with a point that far
+// away no radius can be guessed either.
+TEST(Index, FirstQueryOfAThread) {
+  for (std::size_t size = 1; size < 70; ++size) {
+    std::vector<float> rows{1e30F, std::numeric_limits<float>::max(), 1.0F};
+    for (std::size_t i = 0; i < size; ++i) {
+      rows.insert(rows.end(), {static_cast<float>(i % 7), static_cast<float>(i / 7), 0.0F});
+    }
+    const PointView view{rows.data(), 3, size + 1};
+    MedianHashIndex index;
+    index.build(view, nullptr, {});
+    const std::array<float, 3> query{-67.0F, -82.0F, -79.0F};
+    const std::size_t k = std::min<std::size_t>(4, size);
+    std::vector<Neighbor> found;
+    std::thread([&] { found = nearestK(index, query.data(), static_cast<int>(k)); }).join();
+    EXPECT_EQ(found, prefix(bruteForce(view, query.data()), k)) << size;
+  }
+}
 
 TEST(Index, EverySmallSize) {
   for (std::size_t n = 0; n < 40; ++n) {

@@ -175,11 +175,14 @@ void MedianHashIndex::Impl::nearestFirst(const LayoutView& view, const float* q,
       continue;
     }
     const std::size_t region = node - view.region_count;
-    Candidates& found = work.candidates(view.regions[region].end - view.regions[region].begin);
     const Sphere sphere{{q[0], q[1], q[2]}, limit, limit * prune, static_cast<std::uint32_t>(k)};
-    kernels->collectRegion(view, region, sphere, found);
-    for (std::size_t i = 0; i < found.count; ++i) {
-      best.emplace_back(found.distance[i], found.id[i]);
+    Candidates* found = &work.candidates(view.regions[region].end - view.regions[region].begin);
+    // Candidates are counted in whole vectors, which may be more than there are points.
+    while (!kernels->collectRegion(view, region, sphere, *found)) {
+      found = &work.candidates(2 * found->capacity + 1024);
+    }
+    for (std::size_t i = 0; i < found->count; ++i) {
+      best.emplace_back(found->distance[i], found->id[i]);
     }
     limit = keepBest(best, k);
   }
