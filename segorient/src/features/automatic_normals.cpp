@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026, the segorient authors
+#include <segorient/common/median.h>
 #include <segorient/features/automatic_normals.h>
 
 #include <algorithm>
@@ -97,13 +98,6 @@ std::vector<int> sizesFor(double noise, int available) {
   return sizes;
 }
 
-double median(std::vector<double>& values) {
-  if (values.empty()) return 0.0;
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
-
 // Standard deviation of the nearest neighbours, the point itself among them, from their plane.
 double planeResidual(const PointView& points, const Neighborhoods& table, std::size_t row,
                      const float* normal) {
@@ -138,17 +132,19 @@ Noise sampleNoise(const PointView& points, const Neighborhoods& neighborhoods, i
   for (std::size_t i = 0; i < points.size; i += step) rows.push_back(static_cast<pcl::index_t>(i));
   Surfaces surfaces;
   surfaces.fit(points, neighborhoods, kNoiseNeighbors, threads, rows);
-  std::vector<double> lengths;
-  std::vector<double> ratios;
+  std::vector<float> lengths;
+  std::vector<float> ratios;
   for (const pcl::index_t r : rows) {
     const auto row = static_cast<std::size_t>(r);
-    const double length = static_cast<double>(surfaces.residuals[row]);
-    const double ratio = length / spacingAt(points, neighborhoods, row);
+    const float length = surfaces.residuals[row];
+    const auto ratio =
+        static_cast<float>(static_cast<double>(length) / spacingAt(points, neighborhoods, row));
     if (!std::isfinite(ratio)) continue;
     lengths.push_back(length);
     ratios.push_back(ratio);
   }
-  return {median(lengths) / kMedianShare, median(ratios) / kMedianShare};
+  return {static_cast<double>(median(std::move(lengths))) / kMedianShare,
+          static_cast<double>(median(std::move(ratios))) / kMedianShare};
 }
 
 /// Whether noise explains what a surface leaves of a neighbourhood: its standard deviation, with
@@ -174,6 +170,19 @@ class Explained {
   double scatter_;
 };
 
+/// \param residual of a row's fit
+/// \return the rows whose residual noise does not explain
+template <typename Residual>
+std::vector<pcl::index_t> unexplained(const std::vector<pcl::index_t>& rows,
+                                      const Explained& explained, Residual residual) {
+  std::vector<pcl::index_t> left;
+  for (const pcl::index_t r : rows) {
+    const auto row = static_cast<std::size_t>(r);
+    if (!explained(row, static_cast<double>(residual(row)))) left.push_back(r);
+  }
+  return left;
+}
+
 /// Gives the rows that a plane fits its normal.
 /// \return the others
 std::vector<pcl::index_t> takePlanes(const PointView& points, const Neighborhoods& table,
@@ -184,12 +193,9 @@ std::vector<pcl::index_t> takePlanes(const PointView& points, const Neighborhood
   options.threads = threads;
   estimateNormals(points, points, table, options, normals, nullptr, &rows);
   const Explained explained(points, table, noise, kPlaneNeighbors + 1 - 3);
-  std::vector<pcl::index_t> left;
-  for (const pcl::index_t r : rows) {
-    const auto row = static_cast<std::size_t>(r);
-    if (!explained(row, planeResidual(points, table, row, normals + 4 * row))) left.push_back(r);
-  }
-  return left;
+  return unexplained(rows, explained, [&](std::size_t row) {
+    return planeResidual(points, table, row, normals + 4 * row);
+  });
 }
 
 AutomaticNormalReport estimateByNoise(const PointView& points, const Neighborhoods& neighborhoods,
@@ -203,12 +209,12 @@ AutomaticNormalReport estimateByNoise(const PointView& points, const Neighborhoo
   for (const int k : sizesFor(noise, neighborhoods.k() - 1)) {
     surfaces.fit(points, neighborhoods, k, threads, open);
     const Explained explained(points, neighborhoods, estimate.length, k + 1 - 6);
-    std::vector<pcl::index_t> left;
     for (const pcl::index_t o : open) {
       const auto i = static_cast<std::size_t>(o);
       std::copy_n(&surfaces.normals[4 * i], 4, normals + 4 * i);
-      if (!explained(i, static_cast<double>(surfaces.residuals[i]))) left.push_back(o);
     }
+    std::vector<pcl::index_t> left =
+        unexplained(open, explained, [&](std::size_t row) { return surfaces.residuals[row]; });
     report.surfaces.emplace_back(k, open.size() - left.size());
     open.swap(left);
     report.edge_k = k;

@@ -11,8 +11,6 @@
 namespace segorient::search {
 namespace {
 
-// Most neighbours for which candidates are shared among queries.
-constexpr std::size_t kMostShared = 256;
 // Most points that a group of a radius search shares.
 constexpr std::size_t kRadiusBlock = 8192;
 
@@ -96,7 +94,7 @@ void MedianHashIndex::Impl::nearestOfRegion(std::size_t region, GroupTask& task,
                                             Neighborhoods& out) const {
   const LayoutView view(layout);
   const Region& r = view.regions[region];
-  if (task.k <= kMostShared) {
+  if (task.k <= kMostNeighborsShared) {
     kernels->nearestInRegion(view, region, task);
   } else {
     task.failed_count = 0;
@@ -123,7 +121,7 @@ void MedianHashIndex::nearestKAll(int k, Neighborhoods& out, bool with_distances
   if (wanted == 0) return;
   const auto regions = static_cast<std::int64_t>(self.layout.regions.size());
   const int threads = resolveThreads(self.options.threads);
-  const std::size_t shared = std::min(wanted, kMostShared);
+  const std::size_t shared = std::min(wanted, kMostNeighborsShared);
 #pragma omp parallel num_threads(threads) if (threads > 1)
   {
     // A group has up to 31 points with up to some 3 k + 104 candidates each.

@@ -149,6 +149,9 @@ struct Block {
 /// about 1/sqrt(k) of it, are allowed for from one query to the next.
 constexpr float kMargin = 1.2F;
 
+/// Most neighbours for which it pays that queries next to each other share their candidates.
+constexpr std::size_t kMostNeighborsShared = 256;
+
 /// Where the k nearest of a point are sought, from what was found for points next to it.
 struct Guess {
   float margin;   ///< above 1: how much more than the typical squared distance is tried first

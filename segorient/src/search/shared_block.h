@@ -32,9 +32,6 @@ struct LastQuery {
 /// All points in and around a cube, where queries next to each other find theirs.
 class SharedBlock {
  public:
-  /// Most neighbours for which that pays.
-  static constexpr std::size_t kMostNeighbors = 256;
-
   /// Whether q is in the cube and so many neighbours are sought as when it was gathered.
   bool covers(std::uint64_t index, const float* q, std::size_t k) const {
     bool inside = index == index_ && k == k_;

@@ -95,7 +95,7 @@ float keepBest(std::vector<std::pair<float, std::uint32_t>>& best, std::size_t k
 // From the block that queries near each other share. \return false if that does not do
 bool MedianHashIndex::Impl::searchShared(const float* q, std::size_t k, Workspace& work,
                                          pcl::index_t* indices, float* distances) const {
-  if (k > SharedBlock::kMostNeighbors) return false;
+  if (k > kMostNeighborsShared) return false;
   SharedBlock& shared = work.shared;
   const LastQuery& last = work.last;
   if (!shared.covers(number, q, k)) {

@@ -2,6 +2,8 @@
 // Copyright (c) 2026, the segorient authors
 #include "triangle_selection.h"
 
+#include <segorient/common/median.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -17,12 +19,6 @@ constexpr float kPocketLength = 2.F;
 constexpr float kPocketDepth = 1.F;
 /// Random samples of a surface that may have a gap taken for a hole: one in so many.
 constexpr double kSamples = 20;
-
-float medianOf(std::vector<float> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
 
 /// Which triangles stay. Once the long ones are gone, triangles only come back: for points that
 /// would be in none, and where the mesh would hang together by a single point.
@@ -293,7 +289,7 @@ float criticalLength(const std::vector<float>& lengths, const TriangulationOptio
   const float low = *shortest;
   const float range = *longest - low;
   if (!(range > 0.F)) return options.critical_factor * low;
-  float width = 0.25F * medianOf(lengths);
+  float width = 0.25F * median(lengths);
   std::size_t bins = 1;
   if (options.bins > 0) {
     bins = std::min(static_cast<std::size_t>(options.bins), kMostBins);
@@ -329,7 +325,7 @@ Selection selectTriangles(const PlanarTriangulation& mesh, const std::vector<flo
   selector.takeInLoosePoints();
   selector.closePinches();
   if (!options.fill_gaps) return selection;
-  selector.fillPockets(kPocketLength * selection.critical_length, kPocketDepth * medianOf(lengths));
+  selector.fillPockets(kPocketLength * selection.critical_length, kPocketDepth * median(lengths));
   selector.fillHoles();
   return selection;
 }
