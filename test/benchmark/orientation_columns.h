@@ -77,6 +77,7 @@ inline std::vector<Column> withoutSteps() {
       without("clean-up", [](PipelineOptions& o) { o.sheets.clean_up = false; }),
       without("contraction", [](PipelineOptions& o) { o.automatic.contract_certain = false; }),
       without("cluster flips", [](PipelineOptions& o) { o.automatic.flip_clusters = false; }),
+      without("loose parts", [](PipelineOptions& o) { o.automatic.turn_loose_parts = false; }),
       without("winding number", [](PipelineOptions& o) { o.automatic.wind_components = false; }),
       without("viewpoint", [](PipelineOptions& o) { o.automatic.infer_viewpoint = false; }),
       without("wedges", [](PipelineOptions& o) { o.filter_wedges = false; }),

@@ -3,11 +3,13 @@
 // Winding numbers of spheres, components inside one another, and the sensor's place.
 #include <gtest/gtest.h>
 #include <segorient/common/compact_cloud.h>
+#include <segorient/orientation/auto_orientation.h>
 #include <segorient/orientation/auto_viewpoint.h>
 #include <segorient/orientation/winding_components.h>
 #include <segorient/orientation/winding_number.h>
 
 #include <algorithm>
+#include <limits>
 #include <numeric>
 
 #include "sheet_fixture.h"
@@ -135,6 +137,90 @@ TEST(ComponentSigns, APlaneHasNoEvidence) {
   const auto result = solveComponents(viewOf(xyz), dipoles, spacing, components, 1);
   EXPECT_LT(result[0].evidence, 0.01F);
   EXPECT_GT(result[0].residual, 0.2F);
+}
+
+// A ball in three bands, from the south: all below z = -0.5, the middle and all above z = 0.6.
+struct Bands {
+  Balls ball;
+  std::vector<std::int32_t> band;
+
+  explicit Bands(const std::array<float, 3>& signs) {
+    addBall(ball, {0, 0, 0}, 1, 4000, 1.F);
+    for (std::size_t i = 0; i < ball.spacing.size(); ++i) {
+      const float z = ball.xyz[4 * i + 2];
+      band.push_back(z < -0.5F ? 0 : (z < 0.6F ? 1 : 2));
+      for (std::size_t a = 0; a < 3; ++a) {
+        ball.dipoles[4 * i + a] *= signs[static_cast<std::size_t>(band.back())];
+      }
+    }
+  }
+};
+
+TEST(LooseParts, AreTurnedWhereTheWindingNumberWantsThem) {
+  for (int pattern = 0; pattern < 3; ++pattern) {
+    const Bands bands({1.F, pattern == 1 ? -1.F : 1.F, pattern == 2 ? -1.F : 1.F});
+    const auto turn =
+        turnParts(viewOf(bands.ball.xyz), bands.ball.dipoles, bands.ball.spacing, bands.band, 3, 1);
+    ASSERT_EQ(turn.size(), 3U);
+    EXPECT_EQ(turn[0], 1);
+    EXPECT_EQ(turn[1], pattern == 1 ? -1 : 1) << pattern;
+    EXPECT_EQ(turn[2], pattern == 2 ? -1 : 1) << pattern;
+  }
+}
+
+TEST(LooseParts, FixedOnesStay) {
+  const Bands bands({1.F, 1.F, -1.F});
+  const auto turn =
+      turnParts(viewOf(bands.ball.xyz), bands.ball.dipoles, bands.ball.spacing, bands.band, 3, 3);
+  EXPECT_EQ(turn, (std::vector<std::int8_t>{1, 1, 1}));
+}
+
+TEST(LooseParts, HalvesOfAPlaneStayAsTheyAre) {
+  std::vector<float> xyz;
+  std::vector<float> dipoles;
+  std::vector<std::int32_t> parts;
+  for (int i = 0; i < 40; ++i) {
+    for (int j = 0; j < 40; ++j) {
+      xyz.insert(xyz.end(), {static_cast<float>(i), static_cast<float>(j), 0.F, 0.F});
+      dipoles.insert(dipoles.end(), {0.F, 0.F, i < 20 ? 1.F : -1.F, 1.F});
+      parts.push_back(i < 20 ? 0 : 1);
+    }
+  }
+  const std::vector<float> spacing(1600, 1.F);
+  EXPECT_EQ(turnParts(viewOf(xyz), dipoles, spacing, parts, 2, 1),
+            (std::vector<std::int8_t>{1, 1}));
+}
+
+// Along most of a border the points have the wrong sign, so that it says the opposite of what is
+// right, though not unanimously.
+TEST(LooseParts, AreFoundByTheirBorders) {
+  const Bands bands({1.F, 1.F, 1.F});
+  const std::size_t n = bands.band.size();
+  Segmentation segmentation;
+  segmentation.labels = bands.band;
+  segmentation.signs.assign(n, 1);
+  segmentation.segments.resize(3);
+  for (std::size_t i = 0; i < n; ++i) {
+    ++segmentation.segments[static_cast<std::size_t>(bands.band[i])].size;
+    const float* p = &bands.ball.xyz[4 * i];
+    const bool at_border = p[2] >= 0.6F && p[2] < 0.75F;
+    if (at_border && std::atan2(p[1], p[0]) < 0.9F) segmentation.signs[i] = -1;
+  }
+  const std::vector<float> wall(n, std::numeric_limits<float>::max());
+  const std::vector<float> below(n, -std::numeric_limits<float>::max());
+  const std::vector<std::uint8_t> reliable(n, 1);
+  const SheetField field{bands.ball.normals.data(), bands.ball.spacing.data(), below.data(),
+                         wall.data(), reliable.data()};
+  const Neighborhoods table = neighborsOf(bands.ball.xyz);
+  for (const bool by_winding : {false, true}) {
+    AutoOrientationOptions options;
+    options.turn_loose_parts = by_winding;
+    const AutoOrientation out =
+        orientSheets(viewOf(bands.ball.xyz), table, field, segmentation, options);
+    EXPECT_EQ(out.result.segments[0].sign, 1);
+    EXPECT_EQ(out.result.segments[1].sign, 1);
+    EXPECT_EQ(out.result.segments[2].sign, by_winding ? 1 : -1);
+  }
 }
 
 std::vector<std::uint32_t> allRows(std::size_t n) {

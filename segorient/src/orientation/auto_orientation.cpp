@@ -10,6 +10,7 @@
 #include <cstddef>
 
 #include "hint_votes.h"
+#include "loose_parts.h"
 #include "segment_clusters.h"
 
 namespace segorient {
@@ -62,6 +63,10 @@ class Orienter {
 
  private:
   void numberComponents();
+  void windComponents();
+  bool turnLooseParts(const std::vector<std::int32_t>& part_of, const std::vector<bool>& looked_at,
+                      const TurnRule& rule);
+  void turnLooseParts();
   void turnComponentsOut();
   std::vector<std::int8_t> conventionalSigns() const;
   bool isClosed(std::size_t component, float residual) const;
@@ -78,6 +83,7 @@ class Orienter {
     return s < 0 ? 0.F : static_cast<float>(segmentation_.signs[i] * signs_[at(s)]);
   }
   std::vector<float> orientedNormals(bool dipoles) const;
+  std::vector<std::int32_t> ofPoints(const std::vector<std::int32_t>& of_segments) const;
 
   const PointView& points_;
   const SheetField& field_;
@@ -132,16 +138,64 @@ std::vector<float> Orienter::orientedNormals(bool dipoles) const {
   return out;
 }
 
+// What is known of segments, one a point; -1 without a segment.
+std::vector<std::int32_t> Orienter::ofPoints(const std::vector<std::int32_t>& of_segments) const {
+  std::vector<std::int32_t> out(points_.size, -1);
+  for (std::size_t i = 0; i < points_.size; ++i) {
+    if (segmentation_.labels[i] >= 0) out[i] = of_segments[at(segmentation_.labels[i])];
+  }
+  return out;
+}
+
+void Orienter::windComponents() {
+  const std::vector<float> spacing(field_.spacing, field_.spacing + points_.size);
+  winding_ = solveComponents(points_, orientedNormals(true), spacing, ofPoints(component_),
+                             winding_.size(), options_.threads);
+}
+
+// \return whether a part was turned over
+bool Orienter::turnLooseParts(const std::vector<std::int32_t>& part_of,
+                              const std::vector<bool>& looked_at, const TurnRule& rule) {
+  const detail::LooseParts loose =
+      detail::findLooseParts(segmentation_, votes_, signs_, component_, part_of, looked_at);
+  if (loose.none()) return false;
+  std::vector<float> dipoles = orientedNormals(true);
+  for (std::size_t i = 0; i < points_.size; ++i) {
+    const std::int32_t s = segmentation_.labels[i];
+    const auto sign = static_cast<float>(s < 0 ? 1 : winding_[at(component_[at(s)])].sign);
+    for (std::size_t a = 0; a < 3; ++a) dipoles[4 * i + a] *= sign;
+  }
+  const std::vector<float> spacing(field_.spacing, field_.spacing + points_.size);
+  const std::vector<std::int8_t> turn =
+      turnParts(points_, dipoles, spacing, ofPoints(loose.of), loose.count, loose.components, rule,
+                options_.threads);
+  for (std::size_t s = 0; s < signs_.size(); ++s) {
+    signs_[s] = static_cast<std::int8_t>(signs_[s] * turn[at(loose.of[s])]);
+  }
+  return std::find(turn.begin(), turn.end(), std::int8_t{-1}) != turn.end();
+}
+
+// Clusters first. Where the winding number is that of a clean closed surface nearly everywhere, it
+// is to be trusted with single segments, too; noise would mislead it. Of clusters that had to be
+// turned, the sum fell by .42 and more, of others in noise and thin walls by .24 at most.
+void Orienter::turnLooseParts() {
+  std::vector<std::int32_t> part_of(signs_.size());
+  for (std::size_t s = 0; s < part_of.size(); ++s) part_of[s] = clusters_.of(s);
+  const std::vector<bool> all(winding_.size(), true);
+  if (turnLooseParts(part_of, all, {1.0 / 3.0, 0.2})) windComponents();
+  std::vector<bool> clean(winding_.size());
+  for (std::size_t c = 0; c < clean.size(); ++c) {
+    clean[c] = winding_[c].residual <= kClosedResidual;
+  }
+  for (std::size_t s = 0; s < part_of.size(); ++s) part_of[s] = static_cast<std::int32_t>(s);
+  if (turnLooseParts(part_of, clean, {0.1, kClosedResidual})) windComponents();
+}
+
 void Orienter::turnComponentsOut() {
   const std::size_t count = winding_.size();
   if (options_.wind_components) {
-    std::vector<float> spacing(field_.spacing, field_.spacing + points_.size);
-    std::vector<std::int32_t> component(points_.size, -1);
-    for (std::size_t i = 0; i < points_.size; ++i) {
-      if (segmentation_.labels[i] >= 0) component[i] = component_[at(segmentation_.labels[i])];
-    }
-    winding_ = solveComponents(points_, orientedNormals(true), spacing, component, count,
-                               options_.threads);
+    windComponents();
+    if (options_.turn_loose_parts) turnLooseParts();
   }
   const std::vector<std::int8_t> conventional = conventionalSigns();
   std::vector<HintVotes> hinted(count);

@@ -9,9 +9,13 @@
 #include <cmath>
 #include <cstddef>
 #include <limits>
+#include <utility>
 
 namespace segorient {
 namespace {
+
+// Each turn lowers the sum; a few rounds are the rule.
+constexpr int kRounds = 20;
 
 struct Box {
   std::array<float, 3> low;
@@ -71,6 +75,28 @@ class Solver {
     insertOneByOne();
     flipWhileBetter();
     return results();
+  }
+
+  std::vector<std::int8_t> turnParts(std::size_t fixed, const TurnRule& rule) {
+    takeSamples();
+    signs_.assign(rows_.size(), 1);
+    for (std::size_t c = 0; c < rows_.size(); ++c) {
+      evaluate(c);
+      for (const Reach& r : reach_[c]) field_[r.sample] += static_cast<double>(r.w);
+    }
+    std::vector<std::pair<double, std::size_t>> order;
+    for (std::size_t c = fixed; c < rows_.size(); ++c) order.emplace_back(-gain(c), c);
+    std::sort(order.begin(), order.end());
+    bool moved = true;
+    for (int round = 0; round < kRounds && moved; ++round) {
+      moved = false;
+      for (const auto& [first_gain, c] : order) {
+        if (gain(c) <= rule.gain || turnedResidual(c) > rule.residual) continue;
+        flip(c);
+        moved = true;
+      }
+    }
+    return {signs_.begin(), signs_.end()};
   }
 
  private:
@@ -137,16 +163,45 @@ class Solver {
     return sum;
   }
 
+  void flip(std::size_t c) {
+    for (const Reach& r : reach_[c]) {
+      field_[r.sample] -= 2.0 * signs_[c] * static_cast<double>(r.w);
+    }
+    signs_[c] = -signs_[c];
+  }
+
+  double squaresAround(std::size_t c) const {
+    double sum = 0.0;
+    for (const Reach& r : reach_[c]) {
+      sum += weight_[r.sample] * field_[r.sample] * field_[r.sample];
+    }
+    return sum;
+  }
+
+  // Mean square at the points of c itself, if it were turned over.
+  double turnedResidual(std::size_t c) const {
+    double squares = 0.0;
+    double weights = 0.0;
+    for (const Reach& r : reach_[c]) {
+      if (owner_[r.sample] != c) continue;
+      const double f = field_[r.sample] - 2.0 * signs_[c] * static_cast<double>(r.w);
+      squares += weight_[r.sample] * f * f;
+      weights += weight_[r.sample];
+    }
+    return squares / weights;
+  }
+
+  // By what share flipping a part would lower the sum of squares around it.
+  double gain(std::size_t c) const {
+    return -change(c) / (squaresAround(c) + 1e-12);
+  }
+
   void flipWhileBetter() {
-    constexpr int kRounds = 20;
     for (int round = 0; round < kRounds; ++round) {
       bool moved = false;
       for (std::size_t c = 0; c < rows_.size(); ++c) {
         if (change(c) >= -1e-6) continue;
-        for (const Reach& r : reach_[c]) {
-          field_[r.sample] -= 2.0 * signs_[c] * static_cast<double>(r.w);
-        }
-        signs_[c] = -signs_[c];
+        flip(c);
         moved = true;
       }
       if (!moved) break;
@@ -165,11 +220,8 @@ class Solver {
       out[c].sign = static_cast<std::int8_t>(signs_[c]);
       if (weights[c] <= 0.0) continue;
       out[c].residual = static_cast<float>(squares[c] / weights[c]);
-      double now = 0.0;
-      for (const Reach& r : reach_[c]) {
-        now += weight_[r.sample] * field_[r.sample] * field_[r.sample];
-      }
       const double d = change(c);
+      const double now = squaresAround(c);
       out[c].evidence = static_cast<float>(std::max(0.0, d / (2.0 * now + d + 1e-12)));
     }
     return out;
@@ -190,6 +242,14 @@ class Solver {
 };
 
 }  // namespace
+
+std::vector<std::int8_t> turnParts(const PointView& points, const std::vector<float>& dipoles,
+                                   const std::vector<float>& spacing,
+                                   const std::vector<std::int32_t>& parts, std::size_t count,
+                                   std::size_t fixed, const TurnRule& rule, int threads) {
+  if (count == 0) return {};
+  return Solver(points, dipoles, spacing, parts, count, threads).turnParts(fixed, rule);
+}
 
 std::vector<ComponentWinding> solveComponents(const PointView& points,
                                               const std::vector<float>& dipoles,

@@ -21,6 +21,7 @@ struct AutoOrientationOptions {
   bool contract_certain = true;  ///< join unanimous borders first; otherwise all at once
   bool flip_clusters = true;     ///< single clusters are turned over while that agrees better
   bool wind_components = true;   ///< in and out by the winding number; otherwise by convention
+  bool turn_loose_parts = true;  ///< what borders hardly tell is left to the winding number
   bool infer_viewpoint = true;   ///< a scan from one place: what disagrees with it is turned over
   int threads = 0;               ///< see resolveThreads()
 };
@@ -52,8 +53,9 @@ struct AutoOrientation {
 /// Orients segments that do not mix sides, whatever they are part of: closed or open, nested,
 /// linked, many parts. Borders vote; certain borders are contracted, the surest first; what is left
 /// between some tens of clusters is decided by all their borders together; connected components are
-/// turned outward by the winding number, and where that says nothing (a plane), to +z; hints go
-/// before both as OrientationHints says.
+/// turned outward by the winding number, and where that says nothing (a plane), to +z; parts whose
+/// borders hardly tell are turned over where the winding number says so clearly; hints go before
+/// all that as OrientationHints says.
 AutoOrientation orientSheets(const PointView& points, const Neighborhoods& neighborhoods,
                              const SheetField& field, const Segmentation& segmentation,
                              const AutoOrientationOptions& options = {},

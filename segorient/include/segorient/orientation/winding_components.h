@@ -4,6 +4,7 @@
 
 #include <segorient/common/point_view.h>
 
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
@@ -32,5 +33,24 @@ std::vector<ComponentWinding> solveComponents(const PointView& points,
                                               const std::vector<float>& spacing,
                                               const std::vector<std::int32_t>& components,
                                               std::size_t count, int threads = 0);
+
+/// When turnParts() turns a part over.
+struct TurnRule {
+  double gain = 1.0 / 3.0;  ///< the sum of squares around the part falls by more than this share
+  double residual = 0.2;    ///< and at its own points the mean square is no more than this then
+};
+
+/// Turns over single parts where that brings the winding number much nearer to 1/2, the one that
+/// gains most first. At the points of a sheet that is all alone, (w - 1/2)^2 is 1/4: a limit below
+/// that leaves open surfaces as they are.
+///
+/// \param dipoles as above, of normals that point outward as far as known
+/// \param parts one a point: 0 to count - 1, or -1
+/// \param fixed the first so many parts stay as they are
+/// \return one a part: -1 for those to be turned over, 1 for all others
+std::vector<std::int8_t> turnParts(const PointView& points, const std::vector<float>& dipoles,
+                                   const std::vector<float>& spacing,
+                                   const std::vector<std::int32_t>& parts, std::size_t count,
+                                   std::size_t fixed, const TurnRule& rule = {}, int threads = 0);
 
 }  // namespace segorient

@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the segorient authors
+#include "loose_parts.h"
+
+namespace segorient::detail {
+namespace {
+
+// Parts that more of the votes agree with than three of four are not loose.
+constexpr float kLoose = 0.5F;
+// Points that the winding number is sampled at, see solveComponents(): fewer say too little.
+constexpr std::uint32_t kLeastPoints = 24;
+
+std::size_t at(std::int32_t i) {
+  return static_cast<std::size_t>(i);
+}
+
+// How far the borders of each part to others agree with the signs, -1 to 1; 1 without a border.
+std::vector<float> agreementOf(const std::vector<std::int32_t>& part_of,
+                               const std::vector<BorderVote>& votes,
+                               const std::vector<std::int8_t>& signs) {
+  std::vector<float> agreed(part_of.size(), 0.F);
+  std::vector<float> absolute(part_of.size(), 0.F);
+  for (const BorderVote& v : votes) {
+    const std::int32_t a = part_of[at(v.a)];
+    const std::int32_t b = part_of[at(v.b)];
+    if (a == b) continue;
+    const float w = v.weight * static_cast<float>(signs[at(v.a)] * signs[at(v.b)]);
+    for (const std::int32_t part : {a, b}) {
+      agreed[at(part)] += w;
+      absolute[at(part)] += v.absolute;
+    }
+  }
+  for (std::size_t p = 0; p < agreed.size(); ++p) {
+    agreed[p] = absolute[p] > 0.F ? agreed[p] / absolute[p] : 1.F;
+  }
+  return agreed;
+}
+
+}  // namespace
+
+LooseParts findLooseParts(const Segmentation& segmentation, const std::vector<BorderVote>& votes,
+                          const std::vector<std::int8_t>& signs,
+                          const std::vector<std::int32_t>& component,
+                          const std::vector<std::int32_t>& part_of,
+                          const std::vector<bool>& looked_at) {
+  const std::size_t n = part_of.size();
+  std::vector<std::uint32_t> size(n, 0);
+  for (std::size_t s = 0; s < n; ++s) size[at(part_of[s])] += segmentation.segments[s].size;
+  // The largest part of a component is what the others are turned against.
+  std::vector<std::int32_t> largest(looked_at.size(), -1);
+  for (std::size_t s = 0; s < n; ++s) {
+    std::int32_t& l = largest[at(component[s])];
+    if (l < 0 || size[at(part_of[s])] > size[at(l)]) l = part_of[s];
+  }
+  const std::vector<float> agreement = agreementOf(part_of, votes, signs);
+  LooseParts out;
+  out.components = out.count = looked_at.size();
+  std::vector<std::int32_t> number(n, -1);
+  for (std::size_t s = 0; s < n; ++s) {
+    const std::int32_t part = part_of[s];
+    if (number[at(part)] < 0) {
+      const bool loose = looked_at[at(component[s])] && part != largest[at(component[s])] &&
+                         size[at(part)] >= kLeastPoints && agreement[at(part)] < kLoose;
+      number[at(part)] = loose ? static_cast<std::int32_t>(out.count++) : component[s];
+    }
+    out.of.push_back(number[at(part)]);
+  }
+  return out;
+}
+
+}  // namespace segorient::detail
