@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstring>
 
 #include "contrary_patches.h"
 #include "sheet_choice.h"
@@ -27,6 +28,26 @@ struct Mean {
     return std::sqrt(square(x) + square(y) + square(z));
   }
 };
+
+using Quad = float __attribute__((vector_size(16)));
+
+Quad loadQuad(const float* from) {
+  Quad q;
+  std::memcpy(&q, from, sizeof q);
+  return q;
+}
+
+// Four rows become four columns.
+void transpose(Quad& a, Quad& b, Quad& c, Quad& d) {
+  const Quad low_ab = __builtin_shufflevector(a, b, 0, 4, 1, 5);
+  const Quad low_cd = __builtin_shufflevector(c, d, 0, 4, 1, 5);
+  const Quad high_ab = __builtin_shufflevector(a, b, 2, 6, 3, 7);
+  const Quad high_cd = __builtin_shufflevector(c, d, 2, 6, 3, 7);
+  a = __builtin_shufflevector(low_ab, low_cd, 0, 1, 4, 5);
+  b = __builtin_shufflevector(low_ab, low_cd, 2, 3, 6, 7);
+  c = __builtin_shufflevector(high_ab, high_cd, 0, 1, 4, 5);
+  d = __builtin_shufflevector(high_ab, high_cd, 2, 3, 6, 7);
+}
 
 constexpr std::size_t kLanes = 8;
 constexpr std::size_t kBlock = 40;  // a default neighbourhood and the point itself, in whole lanes
@@ -51,6 +72,35 @@ struct Block {
     nz[j] = n[2];
     fit[j] = n[3];
     used[j] = 1.F;
+  }
+  // Four neighbours at once, of rows of at least four floats. \return false where one has no normal
+  bool setFour(std::size_t j, const PointView& points, const std::vector<float>& normals,
+               std::size_t p, const pcl::index_t* row, float per_h) {
+    Quad n[4];
+    Quad q[4];
+    for (std::size_t i = 0; i < 4; ++i) {
+      const auto at = static_cast<std::size_t>(row[i]);
+      n[i] = loadQuad(normals.data() + 4 * at);
+      q[i] = loadQuad(points[at]);
+    }
+    transpose(n[0], n[1], n[2], n[3]);
+    for (int i = 0; i < 4; ++i) {
+      if (!std::isfinite(n[0][i])) return false;
+    }
+    transpose(q[0], q[1], q[2], q[3]);
+    const float* const own = points[p];
+    store((q[0] - own[0]) * per_h, dx, j);
+    store((q[1] - own[1]) * per_h, dy, j);
+    store((q[2] - own[2]) * per_h, dz, j);
+    store(n[0], nx, j);
+    store(n[1], ny, j);
+    store(n[2], nz, j);
+    store(n[3], fit, j);
+    store(Quad{1.F, 1.F, 1.F, 1.F}, used, j);
+    return true;
+  }
+  static void store(Quad q, std::array<float, kBlock>& to, std::size_t j) {
+    std::memcpy(to.data() + j, &q, sizeof q);
   }
   void clear(std::size_t j) {
     dx[j] = dy[j] = dz[j] = nx[j] = ny[j] = nz[j] = fit[j] = used[j] = 0.F;
@@ -91,17 +141,23 @@ Mean meanNormal(const PointView& points, const Neighborhoods& nb, const std::vec
   const pcl::index_t* row = nb.indices(p);
   const float per_h = h > 0.F ? 1.F / h : 0.F;
   const auto count = static_cast<std::size_t>(nb.count(p));
+  const bool fours = points.stride >= 4;
   Block block;
   Sums sums;
   for (std::size_t first = 0; first < count; first += kBlock) {
+    const std::size_t end = std::min(count, first + kBlock);
     std::size_t filled = 0;
-    for (std::size_t j = first; j < std::min(count, first + kBlock); ++j) {
+    std::size_t j = first;
+    for (; fours && j + 4 <= end; j += 4, filled += 4) {
+      if (!block.setFour(filled, points, normals, p, row + j, per_h)) break;
+    }
+    for (; j < end; ++j) {
       const auto q = static_cast<std::size_t>(row[j]);
       const float* n = normals.data() + 4 * q;
       if (std::isfinite(n[0])) block.set(filled++, points[p], points[q], per_h, n);
     }
     while (filled % kLanes != 0) block.clear(filled++);
-    for (std::size_t j = 0; j < filled; j += kLanes) sums.add(block, j, kernel);
+    for (std::size_t i = 0; i < filled; i += kLanes) sums.add(block, i, kernel);
   }
   Mean mean;
   for (std::size_t l = 0; l < kLanes; ++l) {
