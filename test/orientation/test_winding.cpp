@@ -223,6 +223,51 @@ TEST(LooseParts, AreFoundByTheirBorders) {
   }
 }
 
+// A roof over part of a floor: places above see the floor's face and the roof's back. The border
+// between them is sure, but not certain enough to make them one cluster.
+TEST(Viewpoint, AFloorDoesNotTurnTheRoof) {
+  constexpr float kStep = 1.F / 40;
+  const float angle = 0.8F;
+  std::vector<float> xyz;
+  std::vector<float> normals;
+  std::vector<std::uint8_t> reliable;
+  Segmentation segmentation;
+  segmentation.segments.resize(2);
+  const auto add = [&](std::int32_t label, float from_edge, std::array<float, 3> p,
+                       std::array<float, 3> n) {
+    for (std::size_t a = 0; a < 3; ++a) {
+      xyz.push_back(p[a]);
+      normals.push_back(n[a]);
+    }
+    xyz.push_back(0.F);
+    normals.push_back(0.F);
+    reliable.push_back(from_edge < 0.2F ? 0 : 1);
+    segmentation.labels.push_back(label);
+    ++segmentation.segments[static_cast<std::size_t>(label)].size;
+  };
+  for (int j = 0; j < 40; ++j) {
+    const float y = static_cast<float>(j) * kStep;
+    for (int i = 0; i < 60; ++i) {
+      const float x = (static_cast<float>(i) + 0.5F) * kStep;
+      add(0, x, {x, y, 0.F}, {0.F, 0.F, 1.F});
+      if (i >= 40) continue;
+      add(1, x, {x * std::cos(angle), y, x * std::sin(angle)},
+          {std::sin(angle), 0.F, -std::cos(angle)});
+    }
+  }
+  const std::size_t n = segmentation.labels.size();
+  segmentation.signs.assign(n, 1);
+  const std::vector<float> spacing(n, kStep);
+  const std::vector<float> above(n, std::numeric_limits<float>::max());
+  const std::vector<float> below(n, -std::numeric_limits<float>::max());
+  const SheetField field{normals.data(), spacing.data(), below.data(), above.data(),
+                         reliable.data()};
+  const AutoOrientation out = orientSheets(viewOf(xyz), neighborsOf(xyz), field, segmentation);
+  ASSERT_EQ(out.clusters.size(), 2U);
+  EXPECT_GT(out.viewpoint_agreement, 0.98F);
+  EXPECT_EQ(out.result.segments[0].sign, out.result.segments[1].sign);
+}
+
 std::vector<std::uint32_t> allRows(std::size_t n) {
   std::vector<std::uint32_t> rows(n);
   std::iota(rows.begin(), rows.end(), 0U);

@@ -352,12 +352,20 @@ void Orienter::turnVisibleSegments(const ViewpointFit& fit) {
     const float sign = pointSign(i) * static_cast<float>(fit.facing);
     facing[at(s)].add({sign * d > 0.F ? 1.F : -1.F, 1.F}, 1);
   }
+  // That all was seen from there is a guess from the largest cluster, and a wrong one if much of
+  // the rest speaks against it: two walls of a corner look to many places behind the third.
+  constexpr float kMostAgainst = 0.1F;
+  std::vector<std::size_t> against;
+  float points = 0.F;
   for (std::size_t s = 0; s < signs_.size(); ++s) {
     const float size = static_cast<float>(segmentation_.segments[s].size);
     const bool seen = facing[s].total > 0.5F * size;
     if (!seen || hinted_[at(clusters_.of(s))] || facing[s].share() >= -kClearly) continue;
-    signs_[s] = static_cast<std::int8_t>(-signs_[s]);
+    against.push_back(s);
+    points += size;
   }
+  if (points > kMostAgainst * static_cast<float>(points_.size)) return;
+  for (const std::size_t s : against) signs_[s] = static_cast<std::int8_t>(-signs_[s]);
 }
 
 void Orienter::findContradictions() {
