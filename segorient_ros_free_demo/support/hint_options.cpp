@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdio>
 #include <memory>
 
@@ -61,7 +62,9 @@ void HintOptions::check(const CommandLine& line, const CommonOptions& common,
   char end = 0;
   const bool three = std::sscanf(viewpoint_text_.c_str(), "%lf,%lf,%lf%c", &viewpoint_[0],
                                  &viewpoint_[1], &viewpoint_[2], &end) == 3;
-  require(viewpoint_text_.empty() || three,
+  const bool finite =
+      std::all_of(viewpoint_.begin(), viewpoint_.end(), [](double v) { return std::isfinite(v); });
+  require(viewpoint_text_.empty() || (three && finite),
           "--viewpoint takes three numbers, as in --viewpoint=1.5,0,-2");
   if (options.orientation.method == OrientationMethod::AUTO || common.quiet) return;
   for (const char* name : {"viewpoint", "closed", "open", "seeds", "keep-orientation"}) {

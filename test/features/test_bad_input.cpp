@@ -3,6 +3,7 @@
 // Every class of the module on everything that may be wrong with a cloud, its indices, its normals
 // and the settings: an error and an empty result, or NaN where there is nothing to go by.
 #include <gtest/gtest.h>
+#include <pcl/search/kdtree.h>
 #include <segorient/features/awas_normal_estimation.h>
 #include <segorient/features/lct_normal_estimation.h>
 #include <segorient/features/ldt_normal_estimation.h>
@@ -88,6 +89,53 @@ TYPED_TEST(BadInput, NoCloud) {
   estimation.setInputCloud(nullptr);
   estimation.compute(out);
   EXPECT_TRUE(out.empty());
+}
+
+// Finds points that are not there, as a tree does that was built before its cloud shrank.
+class LyingSearch : public pcl::search::KdTree<pcl::PointXYZ> {
+ public:
+  using Base = pcl::search::KdTree<pcl::PointXYZ>;
+  int nearestKSearch(const pcl::PointXYZ& p, int k, pcl::Indices& indices,
+                     std::vector<float>& distances) const override {
+    Base::nearestKSearch(p, k, indices, distances);
+    return withLies(indices, distances);
+  }
+  int radiusSearch(const pcl::PointXYZ& p, double radius, pcl::Indices& indices,
+                   std::vector<float>& distances, unsigned int max_nn) const override {
+    Base::radiusSearch(p, radius, indices, distances, max_nn);
+    return withLies(indices, distances);
+  }
+
+ private:
+  static int withLies(pcl::Indices& indices, std::vector<float>& distances) {
+    for (const pcl::index_t lie : {pcl::index_t{-1}, pcl::index_t{1 << 30}}) {
+      indices.push_back(lie);
+      distances.push_back(1.F);
+    }
+    return static_cast<int>(indices.size());
+  }
+};
+
+TYPED_TEST(BadInput, NeighborsThatAreNotThereAreLeftOut) {
+  const Cloud::Ptr cloud = curvedPatch(200).makeShared();
+  for (const bool by_k : {true, false}) {
+    Normals truth;
+    Normals out;
+    for (const bool lying : {false, true}) {
+      TypeParam estimation;
+      estimation.setInputCloud(cloud);
+      this->set(estimation, {by_k ? 9 : 0, by_k ? 0.0 : 0.4, Planes::NEARLY_ALL});
+      if (lying) estimation.setSearchMethod(pcl::make_shared<LyingSearch>());
+      if (!lying) estimation.setSearchMethod(pcl::make_shared<LyingSearch::Base>());
+      estimation.compute(lying ? out : truth);
+    }
+    ASSERT_EQ(out.size(), 200U);
+    for (std::size_t i = 0; i < out.size(); ++i) {
+      const float x = out[i].normal_x;
+      const float expected = truth[i].normal_x;
+      ASSERT_TRUE(x == expected || (std::isnan(x) && std::isnan(expected))) << i;
+    }
+  }
 }
 
 // The search method is used as it comes, on whatever it was built before.

@@ -18,9 +18,9 @@ namespace {
 using Cloud = pcl::PointCloud<pcl::PointXYZ>;
 using Normals = pcl::PointCloud<pcl::Normal>;
 
-constexpr OrientationMethod kMethods[] = {OrientationMethod::AUTO, OrientationMethod::PROPAGATION,
-                                          OrientationMethod::BOUNDARY, OrientationMethod::COMBINED,
-                                          OrientationMethod::EXTREMAL};
+constexpr OrientationMethod kMethods[] = {
+    OrientationMethod::AUTO,     OrientationMethod::PROPAGATION, OrientationMethod::BOUNDARY,
+    OrientationMethod::COMBINED, OrientationMethod::EXTREMAL,    OrientationMethod::HOPPE};
 
 class BadInput : public testing::TestWithParam<OrientationMethod> {
  protected:
@@ -69,6 +69,9 @@ TEST_P(BadInput, EstimationWithoutACloud) {
     estimation.compute(out);
     EXPECT_EQ(out.size(), 50U) << "a radius is not used: " << radius;
   }
+  estimation.setKSearch(10);
+  estimation.compute(out);
+  EXPECT_EQ(out.size(), 50U) << "nor is it with k";
   estimation.setInputCloud(nullptr);
   estimation.compute(out);
   EXPECT_TRUE(out.empty());
@@ -87,6 +90,34 @@ TEST_P(BadInput, EstimationOnSurfacesOfAllKinds) {
     estimation.compute(out);
     ASSERT_EQ(out.size(), 20U);
     for (const auto& n : out) EXPECT_TRUE(isUnitOrNan(n));
+  }
+}
+
+// Lengths whose squares a float cannot hold.
+TEST_P(BadInput, NormalsOfAnyLengthAreTurnedAlike) {
+  const Cloud::Ptr cloud = curvedPatch(400).makeShared();
+  OrientedNormalEstimation<pcl::PointXYZ, pcl::Normal> estimation;
+  estimation.setInputCloud(cloud);
+  Normals truth;
+  estimation.compute(truth);
+  SegmentOrientation<pcl::PointXYZ, pcl::Normal> orientation;
+  orientation.setMethod(GetParam());
+  orientation.setInputCloud(cloud);
+  std::vector<float> expected;
+  for (const float length : {1.F, 1e-25F, 1e-30F, 1e25F, 1e30F}) {
+    auto normals = pcl::make_shared<Normals>(truth);
+    for (std::size_t i = 0; i < normals->size(); ++i) {
+      for (float& c : (*normals)[i].normal) c *= i % 3 == 0 ? -length : length;
+    }
+    orientation.setInputNormals(normals);
+    Normals out;
+    orientation.compute(out);
+    ASSERT_EQ(out.size(), 400U);
+    for (std::size_t i = 0; i < out.size(); ++i) {
+      const float side = out[i].normal_z * truth[i].normal_z;
+      if (length == 1.F) expected.push_back(side);
+      ASSERT_EQ(side > 0.F, expected[i] > 0.F) << length << " row " << i;
+    }
   }
 }
 

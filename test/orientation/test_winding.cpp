@@ -175,6 +175,22 @@ TEST(LooseParts, FixedOnesStay) {
   EXPECT_EQ(turn, (std::vector<std::int8_t>{1, 1, 1}));
 }
 
+TEST(LooseParts, ThoseWithoutPointsChangeNothing) {
+  const Bands bands({1.F, 1.F, -1.F});
+  const Balls& ball = bands.ball;
+  EXPECT_EQ(turnParts(viewOf(ball.xyz), ball.dipoles, ball.spacing, bands.band, 5, 1),
+            (std::vector<std::int8_t>{1, 1, -1, 1, 1}));
+  Balls alone;
+  addBall(alone, {0, 0, 0}, 1, 1000, -1.F);
+  const auto components = [&](std::size_t count) {
+    return solveComponents(viewOf(alone.xyz), alone.dipoles, alone.spacing, alone.components,
+                           count);
+  };
+  EXPECT_EQ(components(3)[0].sign, -1);
+  EXPECT_EQ(components(3)[0].residual, components(1)[0].residual);
+  EXPECT_EQ(components(3)[2].evidence, 0.F);
+}
+
 TEST(LooseParts, HalvesOfAPlaneStayAsTheyAre) {
   std::vector<float> xyz;
   std::vector<float> dipoles;
@@ -212,6 +228,7 @@ TEST(LooseParts, AreFoundByTheirBorders) {
   const SheetField field{bands.ball.normals.data(), bands.ball.spacing.data(), below.data(),
                          wall.data(), reliable.data()};
   const Neighborhoods table = neighborsOf(bands.ball.xyz);
+  segmentation.segments.resize(4);  // the last one has no points
   for (const bool by_winding : {false, true}) {
     AutoOrientationOptions options;
     options.turn_loose_parts = by_winding;

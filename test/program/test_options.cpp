@@ -137,6 +137,8 @@ TEST(Hints, ThatMakeNoSenseAreRefused) {
   EXPECT_EQ(runProgram({"orient", in, out, "--open", "--closed"}).status, 2);
   EXPECT_EQ(runProgram({"orient", in, out, "--viewpoint=1,2"}).status, 2);
   EXPECT_EQ(runProgram({"orient", in, out, "--viewpoint=1,2,3,4"}).status, 2);
+  EXPECT_EQ(runProgram({"orient", in, out, "--viewpoint=nan,0,0"}).status, 2);
+  EXPECT_EQ(runProgram({"orient", in, out, "--viewpoint=0,inf,0"}).status, 2);
   for (const std::vector<std::string>& hint :
        {std::vector<std::string>{"--seeds", directory.file("missing.pcd")},
         {"--seeds", in},

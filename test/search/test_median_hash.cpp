@@ -9,6 +9,7 @@
 #include <array>
 #include <thread>
 
+#include "bad_clouds.h"
 #include "brute_force.h"
 #include "search_clouds.h"
 
@@ -275,6 +276,31 @@ TEST(MedianHash, PointRepresentationIsHonoured) {
 }
 TEST(MedianHash, FourDimensionsAreSearchedByPcl) {
   expectSameAsPcl<Lifted>();
+}
+
+TEST(MedianHash, FourDimensionsOnBadInput) {
+  const QuietPcl quiet;
+  const double infinity = std::numeric_limits<double>::infinity();
+  forEachBadInput([&](const BadCloud& bad, const IndexCase& index) {
+    OurTree tree;
+    tree.setPointRepresentation(pcl::make_shared<Lifted>());
+    tree.setInputCloud(bad.cloud, index.indices);
+    for (const pcl::PointXYZ& q : {pcl::PointXYZ(0.1F, 0.2F, 0.3F), pcl::PointXYZ(NAN, 0, 0)}) {
+      Found found;
+      for (const int k : {-1, 0, 1, 5, std::numeric_limits<int>::max()}) {
+        const int count = tree.nearestKSearch(q, k, found.indices, found.distances);
+        ASSERT_EQ(found.indices.size(), static_cast<std::size_t>(count)) << k;
+        ASSERT_LE(count, std::max(k, 0));
+        ASSERT_TRUE(count == 0 || !std::isnan(q.x));
+      }
+      for (const double radius : {-1.0, 0.0, std::nan(""), -infinity}) {
+        ASSERT_EQ(tree.radiusSearch(q, radius, found.indices, found.distances), 0) << radius;
+        ASSERT_TRUE(found.indices.empty());
+      }
+      const int count = tree.radiusSearch(q, 0.5, found.indices, found.distances);
+      ASSERT_EQ(found.indices.size(), static_cast<std::size_t>(count));
+    }
+  });
 }
 
 TEST(MedianHash, OtherPointTypes) {

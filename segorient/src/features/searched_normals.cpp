@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 
 namespace segorient {
@@ -42,9 +43,13 @@ class TableBuilder {
     counts_.clear();
     queries_.clear();
   }
-  void add(const float* query, const pcl::index_t* neighbors, std::size_t count) {
-    flat_.insert(flat_.end(), neighbors, neighbors + count);
-    counts_.push_back(count);
+  // Neighbours that a search found elsewhere than among `points` are left out.
+  void add(const float* query, const pcl::index_t* neighbors, std::size_t count,
+           std::size_t points) {
+    const std::size_t before = flat_.size();
+    std::copy_if(neighbors, neighbors + count, std::back_inserter(flat_),
+                 [&](pcl::index_t i) { return isRow(i, points); });
+    counts_.push_back(flat_.size() - before);
     queries_.insert(queries_.end(), {query[0], query[1], query[2], 0.0F});
   }
   PointView queries() const { return {queries_.data(), 4, counts_.size()}; }
@@ -146,7 +151,8 @@ void searchAndEstimateNormals(const PointView& input, const pcl::Indices& indice
             isRow(indices[i], input.size) && isFinite(input[static_cast<std::size_t>(indices[i])]);
         const int count = usable ? search(indices[i], found, sqr_distances) : 0;
         builder.add(usable ? input[static_cast<std::size_t>(indices[i])] : undefined, found.data(),
-                    static_cast<std::size_t>(std::max(count, 0)));
+                    std::min(static_cast<std::size_t>(std::max(count, 0)), found.size()),
+                    points.size);
       }
       estimateNormals(builder.queries(), points, builder.table(), block_options,
                       normals + 4 * begin, curvatures ? curvatures + begin : nullptr);
@@ -184,9 +190,9 @@ bool estimateNormalsFromTable(const PointView& input, const pcl::Indices& indice
     const std::size_t row = by_index ? i : static_cast<std::size_t>(indices[i]);
     if (usable) {
       builder.add(input[static_cast<std::size_t>(indices[i])], neighborhoods.indices(row),
-                  static_cast<std::size_t>(neighborhoods.count(row)));
+                  static_cast<std::size_t>(neighborhoods.count(row)), points.size);
     } else {
-      builder.add(undefined, nullptr, 0);
+      builder.add(undefined, nullptr, 0, points.size);
     }
   }
   estimateNormals(builder.queries(), points, builder.table(), options, normals, curvatures);

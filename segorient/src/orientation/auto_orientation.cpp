@@ -83,6 +83,7 @@ class Orienter {
     return s < 0 ? 0.F : static_cast<float>(segmentation_.signs[i] * signs_[at(s)]);
   }
   std::vector<float> orientedNormals(bool dipoles) const;
+  std::vector<std::int32_t> clusterOf() const;
   std::vector<std::int32_t> ofPoints(const std::vector<std::int32_t>& of_segments) const;
 
   const PointView& points_;
@@ -102,14 +103,18 @@ class Orienter {
 void Orienter::numberComponents() {
   const std::size_t n = clusters_.size();
   std::vector<std::uint32_t> size(n, 0);
+  std::vector<bool> is_root(n, false);
   signs_.resize(n);
   for (std::size_t s = 0; s < n; ++s) {
-    size[at(clusters_.root(clusters_.of(s)))] += segmentation_.segments[s].size;
+    const std::size_t root = at(clusters_.root(clusters_.of(s)));
+    is_root[root] = true;
+    size[root] += segmentation_.segments[s].size;
     signs_[s] = clusters_.sign(s);
   }
+  // Segments without points are components of their own, too.
   std::vector<std::int32_t> order;
   for (std::size_t s = 0; s < n; ++s) {
-    if (size[s] > 0) order.push_back(static_cast<std::int32_t>(s));
+    if (is_root[s]) order.push_back(static_cast<std::int32_t>(s));
   }
   std::stable_sort(order.begin(), order.end(),
                    [&](std::int32_t a, std::int32_t b) { return size[at(a)] > size[at(b)]; });
@@ -135,6 +140,13 @@ std::vector<float> Orienter::orientedNormals(bool dipoles) const {
     for (std::size_t a = 0; a < 3; ++a) out[4 * i + a] = sign * area * field_.normals[4 * i + a];
     out[4 * i + 3] = area;
   }
+  return out;
+}
+
+// The cluster of each segment.
+std::vector<std::int32_t> Orienter::clusterOf() const {
+  std::vector<std::int32_t> out;
+  for (std::size_t s = 0; s < clusters_.size(); ++s) out.push_back(clusters_.of(s));
   return out;
 }
 
@@ -179,8 +191,7 @@ bool Orienter::turnLooseParts(const std::vector<std::int32_t>& part_of,
 // is to be trusted with single segments, too; noise would mislead it. Of clusters that had to be
 // turned, the sum fell by .42 and more, of others in noise and thin walls by .24 at most.
 void Orienter::turnLooseParts() {
-  std::vector<std::int32_t> part_of(signs_.size());
-  for (std::size_t s = 0; s < part_of.size(); ++s) part_of[s] = clusters_.of(s);
+  std::vector<std::int32_t> part_of = clusterOf();
   const std::vector<bool> all(winding_.size(), true);
   if (turnLooseParts(part_of, all, {1.0 / 3.0, 0.2})) windComponents();
   std::vector<bool> clean(winding_.size());
@@ -263,7 +274,7 @@ bool Orienter::isClosed(std::size_t component, float residual) const {
 
 // Turns over clusters that nearly all of the ballot is against, unless their borders know better.
 void Orienter::turnClusters(const std::vector<Ballot>& ballots, float sure_borders) {
-  const std::vector<float> agreement = clusters_.agreement(0.F);
+  const std::vector<float> agreement = detail::agreementOf(clusterOf(), votes_, signs_, 0.F);
   for (std::size_t s = 0; s < signs_.size(); ++s) {
     const std::size_t c = at(clusters_.of(s));
     if (agreement[c] > sure_borders || ballots[c].share() >= -kClearly) continue;
@@ -386,7 +397,7 @@ void Orienter::findContradictions() {
 
 void Orienter::listClusters() {
   std::vector<ClusterOrientationResult> all(clusters_.size());
-  const std::vector<float> agreement = clusters_.agreement(1.F);
+  const std::vector<float> agreement = detail::agreementOf(clusterOf(), votes_, signs_, 1.F);
   for (std::size_t s = 0; s < clusters_.size(); ++s) {
     ClusterOrientationResult& cluster = all[at(clusters_.of(s))];
     cluster.points += segmentation_.segments[s].size;

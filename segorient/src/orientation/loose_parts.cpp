@@ -5,7 +5,7 @@
 namespace segorient::detail {
 namespace {
 
-// Parts that more of the votes agree with than three of four are not loose.
+// Parts that three of four votes or more agree with are not loose.
 constexpr float kLoose = 0.5F;
 // Points that the winding number is sampled at, see solveComponents(): fewer say too little.
 constexpr std::uint32_t kLeastPoints = 24;
@@ -14,10 +14,11 @@ std::size_t at(std::int32_t i) {
   return static_cast<std::size_t>(i);
 }
 
-// How far the borders of each part to others agree with the signs, -1 to 1; 1 without a border.
+}  // namespace
+
 std::vector<float> agreementOf(const std::vector<std::int32_t>& part_of,
                                const std::vector<BorderVote>& votes,
-                               const std::vector<std::int8_t>& signs) {
+                               const std::vector<std::int8_t>& signs, float without) {
   std::vector<float> agreed(part_of.size(), 0.F);
   std::vector<float> absolute(part_of.size(), 0.F);
   for (const BorderVote& v : votes) {
@@ -31,12 +32,10 @@ std::vector<float> agreementOf(const std::vector<std::int32_t>& part_of,
     }
   }
   for (std::size_t p = 0; p < agreed.size(); ++p) {
-    agreed[p] = absolute[p] > 0.F ? agreed[p] / absolute[p] : 1.F;
+    agreed[p] = absolute[p] > 0.F ? agreed[p] / absolute[p] : without;
   }
   return agreed;
 }
-
-}  // namespace
 
 LooseParts findLooseParts(const Segmentation& segmentation, const std::vector<BorderVote>& votes,
                           const std::vector<std::int8_t>& signs,
@@ -52,7 +51,7 @@ LooseParts findLooseParts(const Segmentation& segmentation, const std::vector<Bo
     std::int32_t& l = largest[at(component[s])];
     if (l < 0 || size[at(part_of[s])] > size[at(l)]) l = part_of[s];
   }
-  const std::vector<float> agreement = agreementOf(part_of, votes, signs);
+  const std::vector<float> agreement = agreementOf(part_of, votes, signs, 1.F);
   LooseParts out;
   out.components = out.count = looked_at.size();
   std::vector<std::int32_t> number(n, -1);

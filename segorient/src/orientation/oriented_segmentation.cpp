@@ -51,10 +51,17 @@ std::vector<float> compactNormals(const CompactCloud& cloud, const PointView& no
   std::vector<float> out(4 * cloud.size(), 0.F);
   for (std::size_t i = 0; i < cloud.size(); ++i) {
     const float* n = normals[static_cast<std::size_t>(cloud.source[i])];
-    const float length = std::sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
+    // In double: squares of what floats can hold neither overflow nor vanish.
+    double squares = 0.0;
+    for (std::size_t a = 0; a < 3; ++a) {
+      squares += static_cast<double>(n[a]) * static_cast<double>(n[a]);
+    }
     // A zero normal is none.
-    const float scale = length > 0.F ? 1.F / length : std::numeric_limits<float>::quiet_NaN();
-    for (std::size_t a = 0; a < 3; ++a) out[4 * i + a] = n[a] * scale;
+    const double scale =
+        squares > 0.0 ? 1.0 / std::sqrt(squares) : std::numeric_limits<double>::quiet_NaN();
+    for (std::size_t a = 0; a < 3; ++a) {
+      out[4 * i + a] = static_cast<float>(static_cast<double>(n[a]) * scale);
+    }
   }
   return out;
 }

@@ -84,20 +84,4 @@ void SegmentClusters::flip() {
   }
 }
 
-std::vector<float> SegmentClusters::agreement(float without) const {
-  std::vector<float> agreed(size(), 0.F);
-  std::vector<float> absolute(size(), 0.F);
-  for (const ClusterGraph::Edge& e : edges_) {
-    const float w = e.weight * static_cast<float>(sign_[at(e.a)] * sign_[at(e.b)]);
-    for (const std::int32_t c : {e.a, e.b}) {
-      agreed[at(c)] += w;
-      absolute[at(c)] += e.absolute;
-    }
-  }
-  for (std::size_t c = 0; c < agreed.size(); ++c) {
-    agreed[c] = absolute[c] > 0.F ? agreed[c] / absolute[c] : without;
-  }
-  return agreed;
-}
-
 }  // namespace segorient::detail

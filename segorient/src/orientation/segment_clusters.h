@@ -34,9 +34,6 @@ class SegmentClusters {
     return static_cast<std::int8_t>(inside_[segment] *
                                     sign_[static_cast<std::size_t>(of_[segment])]);
   }
-  /// How far each cluster's borders to others agree with the signs found, -1 to 1.
-  /// \param without of clusters that have none
-  std::vector<float> agreement(float without) const;
 
  private:
   void flip();

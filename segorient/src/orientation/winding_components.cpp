@@ -9,6 +9,7 @@
 #include <cmath>
 #include <cstddef>
 #include <limits>
+#include <numeric>
 #include <utility>
 
 namespace segorient {
@@ -47,6 +48,66 @@ struct Box {
 struct Reach {
   std::uint32_t sample;
   float w;
+};
+
+// Finds the samples near a box without looking at all of them.
+class SampleGrid {
+ public:
+  void build(const PointView& points, const std::vector<std::uint32_t>& samples) {
+    box_ = Box();
+    for (const std::uint32_t i : samples) box_.add(points[i]);
+    // About as many cells as samples.
+    side_ = static_cast<std::size_t>(std::ceil(std::cbrt(static_cast<double>(samples.size()))));
+    side_ = std::max<std::size_t>(side_, 1);
+    start_.assign(side_ * side_ * side_ + 1, 0);
+    std::vector<std::size_t> cells;
+    for (const std::uint32_t i : samples) {
+      cells.push_back(cellOf(points[i]));
+      ++start_[cells.back() + 1];
+    }
+    std::partial_sum(start_.begin(), start_.end(), start_.begin());
+    order_.resize(samples.size());
+    std::vector<std::uint32_t> next(start_.begin(), start_.end() - 1);
+    for (std::size_t k = 0; k < cells.size(); ++k) {
+      order_[next[cells[k]]++] = static_cast<std::uint32_t>(k);
+    }
+  }
+
+  // Calls visit(k) for each sample k that is near, and some others.
+  template <typename Visit>
+  void forEachNear(const Box& box, float margin, Visit&& visit) const {
+    std::array<std::size_t, 3> first;
+    std::array<std::size_t, 3> last;
+    for (std::size_t a = 0; a < 3; ++a) {
+      first[a] = cellAlong(a, box.low[a] - margin);
+      last[a] = cellAlong(a, box.high[a] + margin);
+    }
+    for (std::size_t z = first[2]; z <= last[2]; ++z) {
+      for (std::size_t y = first[1]; y <= last[1]; ++y) {
+        const std::size_t row = side_ * (y + side_ * z);
+        for (std::uint32_t k = start_[row + first[0]]; k < start_[row + last[0] + 1]; ++k) {
+          visit(order_[k]);
+        }
+      }
+    }
+  }
+
+ private:
+  // Monotone, so that what is between two coordinates is between their cells.
+  std::size_t cellAlong(std::size_t axis, float x) const {
+    const float extent = box_.high[axis] - box_.low[axis];
+    const float cell = (x - box_.low[axis]) / extent * static_cast<float>(side_);
+    if (!(extent > 0.F) || !(cell > 0.F)) return 0;
+    return cell < static_cast<float>(side_ - 1) ? static_cast<std::size_t>(cell) : side_ - 1;
+  }
+  std::size_t cellOf(const float* p) const {
+    return cellAlong(0, p[0]) + side_ * (cellAlong(1, p[1]) + side_ * cellAlong(2, p[2]));
+  }
+
+  Box box_;
+  std::size_t side_ = 1;
+  std::vector<std::uint32_t> start_;
+  std::vector<std::uint32_t> order_;
 };
 
 class Solver {
@@ -116,18 +177,21 @@ class Solver {
       }
     }
     field_.assign(samples_.size(), -0.5);
+    grid_.build(points_, samples_);
   }
 
   void evaluate(std::size_t c) {
+    // For a WindingNumber, no rows are all points.
+    if (rows_[c].empty()) return;
     WindingNumber winding;
     winding.build(points_, dipoles_, rows_[c]);
     auto& reach = reach_[c];
     const float margin = boxes_[c].diagonal();
-    for (std::size_t k = 0; k < samples_.size(); ++k) {
-      if (boxes_[c].contains(points_[samples_[k]], margin)) {
-        reach.push_back({static_cast<std::uint32_t>(k), 0.F});
-      }
-    }
+    grid_.forEachNear(boxes_[c], margin, [&](std::uint32_t k) {
+      if (boxes_[c].contains(points_[samples_[k]], margin)) reach.push_back({k, 0.F});
+    });
+    std::sort(reach.begin(), reach.end(),
+              [](const Reach& a, const Reach& b) { return a.sample < b.sample; });
 #pragma omp parallel for num_threads(threads_) schedule(dynamic, 64)
     for (std::size_t r = 0; r < reach.size(); ++r) {
       const std::uint32_t i = samples_[reach[r].sample];
@@ -188,7 +252,7 @@ class Solver {
       squares += weight_[r.sample] * f * f;
       weights += weight_[r.sample];
     }
-    return squares / weights;
+    return weights > 0.0 ? squares / weights : std::numeric_limits<double>::infinity();
   }
 
   // By what share flipping a part would lower the sum of squares around it.
@@ -235,6 +299,7 @@ class Solver {
   std::vector<Box> boxes_;
   std::vector<std::vector<Reach>> reach_;
   std::vector<std::uint32_t> samples_;
+  SampleGrid grid_;
   std::vector<std::uint32_t> owner_;
   std::vector<double> weight_;  // points that a sample stands for
   std::vector<double> field_;   // w - 1/2 at the samples

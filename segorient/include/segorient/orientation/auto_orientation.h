@@ -21,7 +21,8 @@ struct AutoOrientationOptions {
   bool contract_certain = true;  ///< join unanimous borders first; otherwise all at once
   bool flip_clusters = true;     ///< single clusters are turned over while that agrees better
   bool wind_components = true;   ///< in and out by the winding number; otherwise by convention
-  bool turn_loose_parts = true;  ///< what borders hardly tell is left to the winding number
+  bool turn_loose_parts = true;  ///< what borders hardly tell, the winding number does; needs
+                                 ///< wind_components
   bool infer_viewpoint = true;   ///< a scan from one place: what disagrees with it is turned over
   int threads = 0;               ///< see resolveThreads()
 };
@@ -34,7 +35,8 @@ struct Contradiction {
   std::array<float, 3> where{0.F, 0.F, 0.F};  ///< a point of the border
 };
 
-/// Segments that certain borders hold together: their relative orientation was never in doubt.
+/// Segments that certain borders hold together: their relative orientation was not in doubt, but
+/// for single ones that the winding number of a clean closed surface has turned over.
 struct ClusterOrientationResult {
   std::size_t points = 0;
   std::int32_t component = -1;  ///< into OrientationResult::components
@@ -54,8 +56,8 @@ struct AutoOrientation {
 /// linked, many parts. Borders vote; certain borders are contracted, the surest first; what is left
 /// between some tens of clusters is decided by all their borders together; connected components are
 /// turned outward by the winding number, and where that says nothing (a plane), to +z; parts whose
-/// borders hardly tell are turned over where the winding number says so clearly; hints go before
-/// all that as OrientationHints says.
+/// borders hardly tell are turned over where the winding number says so clearly; hints then go
+/// before all that as OrientationHints says.
 AutoOrientation orientSheets(const PointView& points, const Neighborhoods& neighborhoods,
                              const SheetField& field, const Segmentation& segmentation,
                              const AutoOrientationOptions& options = {},

@@ -40,9 +40,9 @@ struct TurnRule {
   double residual = 0.2;    ///< and at its own points the mean square is no more than this then
 };
 
-/// Turns over single parts where that brings the winding number much nearer to 1/2, the one that
-/// gains most first. At the points of a sheet that is all alone, (w - 1/2)^2 is 1/4: a limit below
-/// that leaves open surfaces as they are.
+/// Turns over single parts where that brings the winding number much nearer to 1/2, in the
+/// order of what they gain at first. At the points of a sheet that is all alone, (w - 1/2)^2 is
+/// 1/4: a limit below that leaves open surfaces as they are.
 ///
 /// \param dipoles as above, of normals that point outward as far as known
 /// \param parts one a point: 0 to count - 1, or -1

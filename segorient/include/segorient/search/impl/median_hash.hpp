@@ -66,9 +66,31 @@ bool MedianHash<PointT>::build(const PointCloudConstPtr& cloud, const IndicesCon
   representation_ = this->getPointRepresentation();
   access_ = chooseAccess();
   if (access_ == Access::kPcl) {
-    if (indices && indices->empty()) access_ = Access::kNone;
+    // PCL's tree reads what indices name without a check, and cannot be searched without a point.
+    const auto inCloud = [&](pcl::index_t i) {
+      return i >= 0 && static_cast<std::size_t>(i) < cloud->size();
+    };
+    const auto usable = [&](pcl::index_t i) {
+      return representation_->isValid((*cloud)[static_cast<std::size_t>(i)]);
+    };
+    bool any = false;
+    if (indices) {
+      if (!std::all_of(indices->begin(), indices->end(), inCloud)) {
+        PCL_ERROR("[segorient::MedianHash::setInputCloud] An index is out of range!\n");
+        access_ = Access::kNone;
+        return false;
+      }
+      any = std::any_of(indices->begin(), indices->end(), usable);
+    } else {
+      any = std::any_of(cloud->begin(), cloud->end(),
+                        [&](const PointT& p) { return representation_->isValid(p); });
+    }
+    if (!any) {
+      access_ = Access::kNone;
+      return false;
+    }
     this->tree_->setInputCloud(cloud, indices);
-    return access_ == Access::kPcl;
+    return true;
   }
   if (access_ == Access::kXYZ) {
     const CloudPoints<PointT> points(*cloud);
@@ -188,7 +210,7 @@ int MedianHash<PointT>::radiusSearch(const PointT& point, double radius, Indices
   k_sqr_distances.clear();
   if (access_ == Access::kNone) return 0;
   if (access_ == Access::kPcl) {
-    if (!representation_->isValid(point)) return 0;
+    if (!(radius > 0.0) || !representation_->isValid(point)) return 0;
     return this->tree_->radiusSearch(point, radius, k_indices, k_sqr_distances, max_nn);
   }
   std::array<float, 3> query{};
