@@ -41,10 +41,15 @@ TEST(BadInput, FilesThatCannotBeUsed) {
       directory.write("short_header.pcd", whole.substr(0, 100)),
       directory.write("words.txt", "once upon a time\n")};
   const std::size_t before = directory.entries();
-  for (const Command& command : kCommands) {
-    for (const std::string& input : inputs) {
-      SCOPED_TRACE(std::string(command.name) + " " + input);
-      const Outcome run = runProgram({command.name, input, directory.file(command.output)});
+  for (const std::string& input : inputs) {
+    std::vector<std::vector<std::string>> lines{
+        {"compare", input}, {"evaluate", input, fandisk()}, {"evaluate", fandisk(), input}};
+    for (const Command& command : kCommands) {
+      lines.push_back({command.name, input, directory.file(command.output)});
+    }
+    for (const std::vector<std::string>& words : lines) {
+      SCOPED_TRACE(words[0] + " " + input);
+      const Outcome run = runProgram(words);
       EXPECT_EQ(run.status, 1);
       EXPECT_TRUE(isOneLine(run.err)) << run.err;
       EXPECT_NE(run.err.find(input + ": "), std::string::npos) << run.err;

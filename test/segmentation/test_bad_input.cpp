@@ -41,6 +41,16 @@ const std::vector<NormalsCase> kNormals{
        for (auto& p : n) p.normal_z = kInfinity;
      },
      false},
+    {"huge",
+     [](Normals& n) {
+       for (auto& p : n) p.normal_z *= 1e30F;
+     },
+     true},
+    {"tiny",
+     [](Normals& n) {
+       for (auto& p : n) p.normal_z *= 1e-30F;
+     },
+     true},
     {"NaN curvature",
      [](Normals& n) {
        for (auto& p : n) p.curvature = kNaN;
@@ -105,6 +115,33 @@ TEST_F(BadInput, CloudsIndicesAndNormals) {
       }
     }
   });
+}
+
+// Also where floats cannot hold their squares.
+TEST_F(BadInput, LengthsOfNormalsDoNotMatter) {
+  auto cloud = pcl::make_shared<Cloud>();
+  for (int face = 0; face < 2; ++face) {
+    for (int i = 0; i < 400; ++i) {
+      const float u = 0.05F * (static_cast<float>(i % 20) + 0.5F);
+      const float v = 0.05F * (static_cast<float>(i / 20) + 0.5F);
+      cloud->emplace_back(face == 0 ? u : 0.F, v, face == 0 ? 0.F : u);
+    }
+  }
+  std::vector<std::int32_t> labels;
+  for (const float length : {1.F, 1e-30F, 1e-20F, 1e20F, 1e30F}) {
+    auto normals = pcl::make_shared<Normals>();
+    for (std::size_t i = 0; i < cloud->size(); ++i) {
+      normals->emplace_back(i < 400 ? 0.F : length, 0.F, i < 400 ? length : 0.F);
+    }
+    NormalSegmentation<pcl::PointXYZ, pcl::Normal> segmentation;
+    segmentation.setInputCloud(cloud);
+    segmentation.setInputNormals(normals);
+    std::vector<pcl::PointIndices> clusters;
+    segmentation.extract(clusters);
+    EXPECT_EQ(clusters.size(), 2U) << length;
+    if (labels.empty()) labels = segmentation.getLabels();
+    EXPECT_EQ(segmentation.getLabels(), labels) << length;
+  }
 }
 
 TEST_F(BadInput, SearchOfAnotherCloud) {

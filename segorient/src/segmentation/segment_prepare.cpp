@@ -90,6 +90,16 @@ float sqrSpacing(const float* sqr_distances, int count) {
   return found > 0 ? sum / static_cast<float>(found) : 0.F;
 }
 
+// Of lengths whose squares floats cannot hold. A zero normal becomes NaN: not usable.
+void setNormal(const float* m, Node& node) {
+  double squares = 0.0;
+  for (int c = 0; c < 3; ++c) squares += static_cast<double>(m[c]) * static_cast<double>(m[c]);
+  const double factor = 1.0 / std::sqrt(squares);
+  node.nx = static_cast<float>(static_cast<double>(m[0]) * factor);
+  node.ny = static_cast<float>(static_cast<double>(m[1]) * factor);
+  node.nz = static_cast<float>(static_cast<double>(m[2]) * factor);
+}
+
 void packNodes(const PointView& points, const PointView& normals, const Scaling& scaling,
                int threads, GrowthState& state) {
   const Neighborhoods& hood = *state.neighborhoods;
@@ -109,11 +119,15 @@ void packNodes(const PointView& points, const PointView& normals, const Scaling&
     node.x = (p[0] - scaling.center[0]) * scaling.scale;
     node.y = (p[1] - scaling.center[1]) * scaling.scale;
     node.z = (p[2] - scaling.center[2]) * scaling.scale;
-    // A zero normal becomes NaN: not usable.
-    const float factor = 1.F / std::sqrt(m[0] * m[0] + m[1] * m[1] + m[2] * m[2]);
-    node.nx = m[0] * factor;
-    node.ny = m[1] * factor;
-    node.nz = m[2] * factor;
+    const float squares = m[0] * m[0] + m[1] * m[1] + m[2] * m[2];
+    if (squares > 1e-30F && squares < 1e30F) {
+      const float factor = 1.F / std::sqrt(squares);
+      node.nx = m[0] * factor;
+      node.ny = m[1] * factor;
+      node.nz = m[2] * factor;
+    } else {
+      setNormal(m, node);
+    }
     node.curvature = m[3];
     if (!use_table) continue;
     const float mean = sqrSpacing(hood.sqrDistances(row), hood.count(row)) * square;
