@@ -148,6 +148,53 @@ TEST(BadInput, AFullDiskLeavesThePreviousOutput) {
   }
 }
 
+// The cloud still fits on the disk, what is said of it does not.
+TEST(BadInput, AFullDiskLeavesThePreviousReport) {
+  const ScratchDirectory directory;
+  const std::string in = directory.write("in.xyz", "0 0 0\n1 0 0\n0 1 0\n1 1 0\n0 0 1\n1 0 1\n");
+  const std::string out = directory.file("out.pcd");
+  const std::string report = directory.file("report.json");
+  ASSERT_EQ(runProgram({"orient", in, out, "--report", report}).status, 0);
+  const std::size_t size = readFile(report).size();
+  ASSERT_GT(size, readFile(out).size() + 100);
+  directory.write("report.json", "precious");
+  const std::size_t entries = directory.entries();
+  rlimit before{};
+  getrlimit(RLIMIT_FSIZE, &before);
+  const rlimit small{size - 100, before.rlim_max};
+  setrlimit(RLIMIT_FSIZE, &small);
+  const Outcome run = runProgram({"orient", in, out, "--report", report});
+  setrlimit(RLIMIT_FSIZE, &before);
+  EXPECT_EQ(run.status, 1);
+  EXPECT_TRUE(isOneLine(run.err)) << run.err;
+  EXPECT_EQ(readFile(report), "precious");
+  EXPECT_EQ(directory.entries(), entries);
+}
+
+// Two rows of points, with and without coordinates.
+TEST(BadInput, OrganisedCloudsStaySo) {
+  const ScratchDirectory directory;
+  std::string text = kPcd + "WIDTH 40\nHEIGHT 10\nPOINTS 400\nDATA ascii\n";
+  for (int y = 0; y < 10; ++y) {
+    for (int x = 0; x < 40; ++x) {
+      const bool hole = x % 7 == 3;
+      text += (hole ? "nan" : std::to_string(x)) + ' ' + std::to_string(y) + " 0\n";
+    }
+  }
+  const std::string in = directory.write("in.pcd", text);
+  for (const std::string command : {"orient", "normals", "segment"}) {
+    const std::string out = directory.file("out.pcd");
+    ASSERT_EQ(runProgram({command, in, out}).status, 0) << command;
+    const program::CloudTable table = program::readCloud(out);
+    EXPECT_EQ(table.size, 400U) << command;
+    EXPECT_EQ(table.width, 40U) << command;
+    EXPECT_EQ(table.height, 10U) << command;
+    for (std::size_t i = 0; i < table.size; ++i) {
+      EXPECT_EQ(std::isnan(table.triple(table.normals(), i)[0]), i % 40 % 7 == 3) << command;
+    }
+  }
+}
+
 TEST(BadInput, PointsWithoutCoordinatesAndRepeatedOnesKeepTheirPlace) {
   const ScratchDirectory directory;
   std::string text;

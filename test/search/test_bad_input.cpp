@@ -202,6 +202,60 @@ TEST_F(EveryCloud, RowsOfAllPointsAreThoseOfBruteForce) {
   });
 }
 
+TEST_F(EveryCloud, SpheresAroundAllPointsAreThoseOfSingleQueries) {
+  forEachBadInput([&](const BadCloud& bad, const IndexCase& index) {
+    const Cloud& cloud = *bad.cloud;
+    tree_.setInputCloud(bad.cloud, index.indices);
+    const std::size_t rows = index.indices ? index.indices->size() : cloud.size();
+    RadiusNeighborhoods table;
+    for (const double radius : {kNaN + 0.0, -1.0, 0.0, 0.3, 1e20, kInfinity + 0.0}) {
+      tree_.radiusSearchAll(radius, table);
+      if (cloud.empty()) continue;
+      ASSERT_EQ(table.size(), rows);
+      for (std::size_t row = 0; row < rows; row += 17) {
+        pcl::Indices single;
+        std::vector<float> distances;
+        if (pointOf(cloud, index.indices, row) != nullptr) {
+          tree_.radiusSearch(static_cast<pcl::index_t>(row), radius, single, distances);
+        }
+        pcl::Indices found(table.indices(row), table.indices(row) + table.count(row));
+        std::sort(single.begin(), single.end());
+        std::sort(found.begin(), found.end());
+        ASSERT_EQ(found, single) << "radius " << radius << " row " << row;
+      }
+    }
+  });
+}
+
+TEST_F(EveryCloud, BatchesAreManySingleQueries) {
+  forEachBadInput([&](const BadCloud& bad, const IndexCase& index) {
+    const Cloud& cloud = *bad.cloud;
+    tree_.setInputCloud(bad.cloud, index.indices);
+    const pcl::Indices asked{0, -1, 3, 0, std::numeric_limits<pcl::index_t>::max(), 149};
+    std::vector<pcl::Indices> found;
+    std::vector<std::vector<float>> distances;
+    pcl::Indices single;
+    std::vector<float> single_distances;
+    for (const int k : {-5, 0, 7, 1000}) {
+      tree_.nearestKSearch(cloud, asked, k, found, distances);
+      ASSERT_EQ(found.size(), asked.size());
+      for (std::size_t i = 0; i < asked.size(); ++i) {
+        tree_.nearestKSearch(cloud, asked[i], k, single, single_distances);
+        ASSERT_EQ(found[i], single) << "k " << k;
+        ASSERT_EQ(distances[i], single_distances) << "k " << k;
+      }
+    }
+    for (const double radius : {kNaN + 0.0, -1.0, 0.3, kInfinity + 0.0}) {
+      tree_.radiusSearch(cloud, asked, radius, found, distances);
+      ASSERT_EQ(found.size(), asked.size());
+      for (std::size_t i = 0; i < asked.size(); ++i) {
+        tree_.radiusSearch(cloud, asked[i], radius, single, single_distances);
+        ASSERT_EQ(found[i], single) << "radius " << radius;
+      }
+    }
+  });
+}
+
 TEST(BadInput, ClosestWithinWideRadii) {
   Tree tree;
   tree.setInputCloud(smallCloud());
