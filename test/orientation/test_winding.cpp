@@ -191,6 +191,16 @@ TEST(LooseParts, ThoseWithoutPointsChangeNothing) {
   EXPECT_EQ(components(3)[2].evidence, 0.F);
 }
 
+TEST(LooseParts, ThoseOfUnknownAreaStay) {
+  Bands bands({1.F, 1.F, -1.F});
+  for (std::size_t i = 0; i < bands.band.size(); i += 5) {
+    bands.ball.dipoles[4 * i] = std::numeric_limits<float>::quiet_NaN();
+  }
+  EXPECT_EQ(
+      turnParts(viewOf(bands.ball.xyz), bands.ball.dipoles, bands.ball.spacing, bands.band, 3, 1),
+      (std::vector<std::int8_t>{1, 1, 1}));
+}
+
 TEST(LooseParts, HalvesOfAPlaneStayAsTheyAre) {
   std::vector<float> xyz;
   std::vector<float> dipoles;

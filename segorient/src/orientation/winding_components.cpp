@@ -152,7 +152,7 @@ class Solver {
     for (int round = 0; round < kRounds && moved; ++round) {
       moved = false;
       for (const auto& [first_gain, c] : order) {
-        if (gain(c) <= rule.gain || turnedResidual(c) > rule.residual) continue;
+        if (!(gain(c) > rule.gain && turnedResidual(c) <= rule.residual)) continue;
         flip(c);
         moved = true;
       }
@@ -257,7 +257,8 @@ class Solver {
 
   // By what share flipping a part would lower the sum of squares around it.
   double gain(std::size_t c) const {
-    return -change(c) / (squaresAround(c) + 1e-12);
+    const double share = -change(c) / (squaresAround(c) + 1e-12);
+    return std::isfinite(share) ? share : 0.0;
   }
 
   void flipWhileBetter() {
