@@ -152,6 +152,48 @@ TEST_P(BadInput, OrientationOfCloudsNormalsAndIndices) {
   });
 }
 
+// Seeds that are no place or no direction and viewpoints that are nowhere change nothing.
+TEST_P(BadInput, HintsThatSayNothing) {
+  const auto seed = [](float x, float normal) {
+    pcl::PointNormal out;
+    out.x = x;
+    out.y = out.z = 0.F;
+    out.normal_x = out.normal_y = 0.F;
+    out.normal_z = normal;
+    return out;
+  };
+  const auto seeds = pcl::make_shared<pcl::PointCloud<pcl::PointNormal>>();
+  for (const float x : {kNaN, kInfinity}) seeds->push_back(seed(x, -1.F));
+  for (const float normal : {kNaN, -kInfinity, 0.F}) seeds->push_back(seed(0.F, normal));
+  const auto cloud = curvedPatch(150).makeShared();
+  const auto expectUnchanged = [&](auto& object, auto& out) {
+    object.setMethod(GetParam());
+    object.setInputCloud(cloud);
+    object.compute(out);
+    const Normals without = out;
+    for (const float x : {0.F, kNaN, kInfinity, -kInfinity}) {
+      if (x != 0.F) object.setViewPoint(x, 0.F, -1.F);
+      object.setSeeds(seeds);
+      object.compute(out);
+      ASSERT_EQ(out.size(), cloud->size());
+      for (std::size_t i = 0; i < out.size(); ++i) {
+        ASSERT_EQ(out[i].getNormalVector3fMap(), without[i].getNormalVector3fMap()) << i;
+      }
+    }
+    seeds->push_back(seed(0.F, -1.F));
+    object.compute(out);
+    seeds->erase(seeds->end() - 1);
+    EXPECT_TRUE(GetParam() != OrientationMethod::AUTO || out[0].normal_z < 0.F);
+  };
+  Normals out;
+  OrientedNormalEstimation<pcl::PointXYZ, pcl::Normal> estimation;
+  expectUnchanged(estimation, out);
+  const auto normals = pcl::make_shared<Normals>(out);
+  SegmentOrientation<pcl::PointXYZ, pcl::Normal> orientation;
+  orientation.setInputNormals(normals);
+  expectUnchanged(orientation, out);
+}
+
 TEST_P(BadInput, OrientationOfMismatchedInput) {
   SegmentOrientation<pcl::PointXYZ, pcl::Normal> orientation;
   orientation.setMethod(GetParam());

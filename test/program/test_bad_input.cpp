@@ -171,6 +171,27 @@ TEST(BadInput, AFullDiskLeavesThePreviousReport) {
   EXPECT_EQ(directory.entries(), entries);
 }
 
+// What was compared is said all the same.
+TEST(BadInput, AFullDiskLeavesThePreviousPictures) {
+  const ScratchDirectory directory;
+  const std::string picture = directory.write("compare.png", "precious");
+  const std::string poisson = directory.write("poisson.png", "precious");
+  rlimit before{};
+  getrlimit(RLIMIT_FSIZE, &before);
+  for (const auto& [option, name] :
+       {std::pair{"--picture", picture}, std::pair{"--poisson", directory.file("poisson")}}) {
+    const rlimit small{4096, before.rlim_max};
+    setrlimit(RLIMIT_FSIZE, &small);
+    const Outcome run = runProgram({"compare", fandisk(), option, name, "--depth", "4"});
+    setrlimit(RLIMIT_FSIZE, &before);
+    EXPECT_EQ(run.status, 1) << option;
+    EXPECT_TRUE(isOneLine(run.err)) << run.err;
+    EXPECT_EQ(directory.entries(), 2U) << option;
+  }
+  EXPECT_EQ(readFile(picture), "precious");
+  EXPECT_EQ(readFile(poisson), "precious");
+}
+
 // Two rows of points, with and without coordinates.
 TEST(BadInput, OrganisedCloudsStaySo) {
   const ScratchDirectory directory;

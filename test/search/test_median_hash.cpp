@@ -352,5 +352,57 @@ TEST(MedianHash, ConcurrentQueriesOnOneObject) {
   EXPECT_EQ(wrong, (std::array<int, 4>{}));
 }
 
+// Two threads ask for the rows of all points, two for lists of points, each all of it.
+TEST(MedianHash, ConcurrentBatchesOnOneObject) {
+  const auto cloud = toPcl(searchClouds(4000).at(1));
+  OurTree tree;
+  tree.setNumberOfThreads(2);
+  tree.setInputCloud(cloud);
+  constexpr double kRadius = 0.05;
+  Neighborhoods rows;
+  RadiusNeighborhoods spheres;
+  tree.nearestKSearchAll(9, rows);
+  tree.radiusSearchAll(kRadius, spheres);
+  std::vector<pcl::Indices> nearest;
+  std::vector<pcl::Indices> within;
+  std::vector<std::vector<float>> distances;
+  tree.nearestKSearch(*cloud, {}, 9, nearest, distances);
+  tree.radiusSearch(*cloud, {}, kRadius, within, distances);
+  std::vector<std::thread> threads;
+  std::array<int, 4> wrong{};
+  for (std::size_t t = 0; t < wrong.size(); ++t) {
+    threads.emplace_back([&, t] {
+      for (int round = 0; round < 3; ++round) {
+        if (t % 2 == 0) {
+          Neighborhoods own_rows;
+          RadiusNeighborhoods own_spheres;
+          tree.nearestKSearchAll(9, own_rows);
+          tree.radiusSearchAll(kRadius, own_spheres);
+          for (std::size_t i = 0; i < cloud->size(); ++i) {
+            wrong[t] += std::equal(own_rows.indices(i), own_rows.indices(i) + own_rows.count(i),
+                                   rows.indices(i), rows.indices(i) + rows.count(i))
+                            ? 0
+                            : 1;
+            wrong[t] +=
+                std::equal(own_spheres.indices(i), own_spheres.indices(i) + own_spheres.count(i),
+                           spheres.indices(i), spheres.indices(i) + spheres.count(i))
+                    ? 0
+                    : 1;
+          }
+        } else {
+          std::vector<pcl::Indices> found;
+          std::vector<std::vector<float>> own_distances;
+          tree.nearestKSearch(*cloud, {}, 9, found, own_distances);
+          wrong[t] += found == nearest ? 0 : 1;
+          tree.radiusSearch(*cloud, {}, kRadius, found, own_distances);
+          wrong[t] += found == within ? 0 : 1;
+        }
+      }
+    });
+  }
+  for (auto& thread : threads) thread.join();
+  EXPECT_EQ(wrong, (std::array<int, 4>{}));
+}
+
 }  // namespace
 }  // namespace segorient::test

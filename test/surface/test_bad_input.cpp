@@ -88,6 +88,38 @@ TEST_F(BadInput, CloudsIndicesNormalsAndSegmentations) {
   });
 }
 
+// A grid with holes, as a depth camera sees it, gives the mesh of the same points in a list.
+TEST_F(BadInput, OrganisedCloudsWithHoles) {
+  constexpr std::uint32_t kWidth = 20;
+  constexpr std::uint32_t kHeight = 15;
+  pcl::PointCloud<pcl::PointXYZ> grid;
+  for (std::uint32_t i = 0; i < kWidth * kHeight; ++i) {
+    const float x = i % 7 == 3 ? kNaN : static_cast<float>(i % kWidth);
+    grid.emplace_back(x, static_cast<float>(i / kWidth), 0.F);
+  }
+  grid.is_dense = false;
+  const Cloud::Ptr list = withNormals(grid);
+  const Cloud::Ptr organised = withNormals(grid);
+  organised->width = kWidth;
+  organised->height = kHeight;
+  for (const Segmentation& segmentation : {Segmentation{}, oneSegment(grid.size())}) {
+    triangulation_.setSegmentation(segmentation);
+    triangulation_.setInputCloud(list);
+    pcl::PolygonMesh expected;
+    triangulation_.reconstruct(expected);
+    triangulation_.setInputCloud(organised);
+    pcl::PolygonMesh mesh;
+    triangulation_.reconstruct(mesh);
+    EXPECT_GT(trianglesOf(grid), 200U);
+    ASSERT_EQ(mesh.polygons.size(), expected.polygons.size());
+    for (std::size_t i = 0; i < mesh.polygons.size(); ++i) {
+      EXPECT_EQ(mesh.polygons[i].vertices, expected.polygons[i].vertices);
+    }
+    EXPECT_EQ(mesh.cloud.width, kWidth);
+    EXPECT_EQ(mesh.cloud.height, kHeight);
+  }
+}
+
 TEST_F(BadInput, NoCloud) {
   EXPECT_EQ(trianglesOf({}), 0U);
   triangulation_.setInputCloud(withNormals(curvedPatch(100)));

@@ -294,16 +294,16 @@ TEST(CriticalLength, IsTheEndOfTheLastFullBin) {
   options.bins = 4;
   options.critical_factor = 2.F;
   options.kappa1 = 0.1F;
-  EXPECT_FLOAT_EQ(surface::criticalLength(lengths, options), 2 * 3.F);
+  EXPECT_FLOAT_EQ(surface::criticalLength(lengths, 1.F, options), 2 * 3.F);
   options.kappa1 = 0.2F;
-  EXPECT_FLOAT_EQ(surface::criticalLength(lengths, options), 2 * 1.5F);
+  EXPECT_FLOAT_EQ(surface::criticalLength(lengths, 1.F, options), 2 * 1.5F);
   // Bins of a quarter of the median length, the ninth of which is the last with an edge.
   options.bins = 0;
   options.kappa1 = 0.1F;
-  EXPECT_FLOAT_EQ(surface::criticalLength(lengths, options), 2 * 3.25F);
-  EXPECT_FLOAT_EQ(surface::criticalLength({4.F, 4.F}, options), 2 * 4.F);
+  EXPECT_FLOAT_EQ(surface::criticalLength(lengths, 1.F, options), 2 * 3.25F);
+  EXPECT_FLOAT_EQ(surface::criticalLength({4.F, 4.F}, 4.F, options), 2 * 4.F);
   const float infinity = std::numeric_limits<float>::infinity();
-  EXPECT_EQ(surface::criticalLength({4.F, infinity, infinity}, options), infinity);
+  EXPECT_EQ(surface::criticalLength({4.F, infinity, infinity}, infinity, options), infinity);
 }
 
 }  // namespace

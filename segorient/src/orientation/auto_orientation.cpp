@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <numeric>
 
 #include "hint_votes.h"
 #include "loose_parts.h"
@@ -198,7 +199,7 @@ void Orienter::turnLooseParts() {
   for (std::size_t c = 0; c < clean.size(); ++c) {
     clean[c] = winding_[c].residual <= kClosedResidual;
   }
-  for (std::size_t s = 0; s < part_of.size(); ++s) part_of[s] = static_cast<std::int32_t>(s);
+  std::iota(part_of.begin(), part_of.end(), 0);
   if (turnLooseParts(part_of, clean, {0.1, kClosedResidual})) windComponents();
 }
 
@@ -423,25 +424,20 @@ void Orienter::listClusters() {
 // A segment's confidence: how far its borders agree with the signs that were found.
 void Orienter::judge() {
   const std::size_t n = signs_.size();
-  std::vector<float> agreed(n, 0.F);
-  std::vector<float> absolute(n, 0.F);
-  for (const BorderVote& v : votes_) {
-    const float w = v.weight * static_cast<float>(signs_[at(v.a)] * signs_[at(v.b)]);
-    for (const std::int32_t s : {v.a, v.b}) {
-      agreed[at(s)] += w;
-      absolute[at(s)] += v.absolute;
-    }
-  }
+  std::vector<std::int32_t> itself(n);
+  std::iota(itself.begin(), itself.end(), 0);
+  constexpr float kNone = 2.F;  // without borders
+  const std::vector<float> agreement = detail::agreementOf(itself, votes_, signs_, kNone);
   out_.result.segments.resize(n);
   for (std::size_t s = 0; s < n; ++s) {
     SegmentOrientationResult& r = out_.result.segments[s];
     r.sign = signs_[s];
     r.by = DecidedBy::GLOBAL;
     r.component = component_[s];
-    const float component_confidence = out_.result.components[at(component_[s])].confidence;
-    r.confidence =
-        absolute[s] > 0.F ? std::clamp(agreed[s] / absolute[s], 0.F, 1.F) : component_confidence;
-    r.hard = absolute[s] > 0.F ? agreed[s] <= 0.F : component_confidence <= 0.F;
+    const float known =
+        agreement[s] == kNone ? out_.result.components[at(component_[s])].confidence : agreement[s];
+    r.confidence = std::clamp(known, 0.F, 1.F);
+    r.hard = known <= 0.F;
   }
   findContradictions();
   listClusters();

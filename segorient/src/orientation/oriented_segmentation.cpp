@@ -2,13 +2,13 @@
 // Copyright (c) 2026, the segorient authors
 #include <segorient/common/compact_cloud.h>
 #include <segorient/common/neighborhoods.h>
+#include <segorient/common/unit_vector.h>
 #include <segorient/features/sheet_normals.h>
 #include <segorient/orientation/oriented_segmentation.h>
 #include <segorient/search/median_hash_index.h>
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <vector>
 
 #include "segment_members.h"
@@ -50,18 +50,7 @@ bool labelsInRange(const Segmentation& segmentation, std::size_t rows) {
 std::vector<float> compactNormals(const CompactCloud& cloud, const PointView& normals) {
   std::vector<float> out(4 * cloud.size(), 0.F);
   for (std::size_t i = 0; i < cloud.size(); ++i) {
-    const float* n = normals[static_cast<std::size_t>(cloud.source[i])];
-    // In double: squares of what floats can hold neither overflow nor vanish.
-    double squares = 0.0;
-    for (std::size_t a = 0; a < 3; ++a) {
-      squares += static_cast<double>(n[a]) * static_cast<double>(n[a]);
-    }
-    // A zero normal is none.
-    const double scale =
-        squares > 0.0 ? 1.0 / std::sqrt(squares) : std::numeric_limits<double>::quiet_NaN();
-    for (std::size_t a = 0; a < 3; ++a) {
-      out[4 * i + a] = static_cast<float>(static_cast<double>(n[a]) * scale);
-    }
+    unitVector(normals[static_cast<std::size_t>(cloud.source[i])], &out[4 * i]);
   }
   return out;
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026, the segorient authors
 #include <segorient/common/threads.h>
+#include <segorient/common/unit_vector.h>
 
 #include <array>
 #include <limits>
@@ -90,16 +91,6 @@ float sqrSpacing(const float* sqr_distances, int count) {
   return found > 0 ? sum / static_cast<float>(found) : 0.F;
 }
 
-// Of lengths whose squares floats cannot hold. A zero normal becomes NaN: not usable.
-void setNormal(const float* m, Node& node) {
-  double squares = 0.0;
-  for (int c = 0; c < 3; ++c) squares += static_cast<double>(m[c]) * static_cast<double>(m[c]);
-  const double factor = 1.0 / std::sqrt(squares);
-  node.nx = static_cast<float>(static_cast<double>(m[0]) * factor);
-  node.ny = static_cast<float>(static_cast<double>(m[1]) * factor);
-  node.nz = static_cast<float>(static_cast<double>(m[2]) * factor);
-}
-
 void packNodes(const PointView& points, const PointView& normals, const Scaling& scaling,
                int threads, GrowthState& state) {
   const Neighborhoods& hood = *state.neighborhoods;
@@ -126,7 +117,11 @@ void packNodes(const PointView& points, const PointView& normals, const Scaling&
       node.ny = m[1] * factor;
       node.nz = m[2] * factor;
     } else {
-      setNormal(m, node);
+      float unit[3];  // of what is zero NaN: not usable
+      unitVector(m, unit);
+      node.nx = unit[0];
+      node.ny = unit[1];
+      node.nz = unit[2];
     }
     node.curvature = m[3];
     if (!use_table) continue;

@@ -284,12 +284,13 @@ class Selector {
 
 }  // namespace
 
-float criticalLength(const std::vector<float>& lengths, const TriangulationOptions& options) {
+float criticalLength(const std::vector<float>& lengths, float typical,
+                     const TriangulationOptions& options) {
   const auto [shortest, longest] = std::minmax_element(lengths.begin(), lengths.end());
   const float low = *shortest;
   const float range = *longest - low;
   if (!(range > 0.F)) return options.critical_factor * low;
-  float width = 0.25F * median(lengths);
+  float width = 0.25F * typical;
   std::size_t bins = 1;
   if (options.bins > 0) {
     bins = std::min(static_cast<std::size_t>(options.bins), kMostBins);
@@ -318,14 +319,15 @@ Selection selectTriangles(const PlanarTriangulation& mesh, const std::vector<flo
                           std::size_t points, const TriangulationOptions& options) {
   Selection selection;
   if (mesh.triangles.empty()) return selection;
-  selection.critical_length = criticalLength(lengths, options);
+  const float typical = median(lengths);
+  selection.critical_length = criticalLength(lengths, typical, options);
   Selector selector(mesh, lengths, points, selection.kept);
   selector.keepShort(selection.critical_length);
   selector.peel(options.kappa2 * selection.critical_length);
   selector.takeInLoosePoints();
   selector.closePinches();
   if (!options.fill_gaps) return selection;
-  selector.fillPockets(kPocketLength * selection.critical_length, kPocketDepth * median(lengths));
+  selector.fillPockets(kPocketLength * selection.critical_length, kPocketDepth * typical);
   selector.fillHoles();
   return selection;
 }

@@ -17,7 +17,9 @@ struct Selection {
 };
 
 /// Last maximum of the histogram of lengths, times the factor.
-float criticalLength(const std::vector<float>& lengths, const TriangulationOptions& options);
+/// \param typical their median
+float criticalLength(const std::vector<float>& lengths, float typical,
+                     const TriangulationOptions& options);
 
 /// \param lengths of the edges, in space
 /// \param points number of points, duplicates included
