@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 
 namespace segorient {
 namespace {
@@ -121,8 +122,9 @@ class Voter {
     const Vec3 chord{other.mean[0] - own.mean[0], other.mean[1] - own.mean[1],
                      other.mean[2] - own.mean[2]};
     // A quarter of a squared spacing: chords shorter than that have no direction.
-    return cosine -
-           2.F * dot(own.normal, chord) * dot(other.normal, chord) / (dot(chord, chord) + 0.25F);
+    const float square = dot(chord, chord) + 0.25F;
+    if (!(square < std::numeric_limits<float>::max())) return 0.F;  // as many spacings long
+    return cosine - 2.F * dot(own.normal, chord) * dot(other.normal, chord) / square;
   }
 
   const PointView& points_;

@@ -63,6 +63,7 @@ class SheetChoice {
   static constexpr float kSameSheet = 0.94F;  // 20 degrees: curvature over a neighbourhood
   static constexpr float kOpposite = -0.7F;   // a wedge; at other edges a mean is not wrong
   static constexpr float kOnSheet = 0.1F;     // what curvature explains, as in the mean
+  static constexpr float kFar2 = 1e6F;        // a thousand spacings away, where weights vanish
 
   std::size_t listSheets(std::size_t p, float h, std::array<Sheet, kSheets>& sheets) const {
     const pcl::index_t* row = nb_.indices(p);
@@ -78,6 +79,7 @@ class SheetChoice {
         off += d * n[a];
         far2 += d * d;
       }
+      if (!(far2 < kFar2)) continue;
       std::size_t s = 0;
       while (s < count && sheets[s].along(n) < kSameSheet * sheets[s].length()) ++s;
       if (s == kSheets) continue;

@@ -139,7 +139,8 @@ struct Sums {
 Mean meanNormal(const PointView& points, const Neighborhoods& nb, const std::vector<float>& normals,
                 float h, std::size_t p, const Kernel& kernel) {
   const pcl::index_t* row = nb.indices(p);
-  const float per_h = h > 0.F ? 1.F / h : 0.F;
+  constexpr float kMost = 1e36F;  // finite, and so is what distances in the cloud's unit give by it
+  const float per_h = h > 0.F ? std::min(1.F / h, kMost) : 0.F;
   const auto count = static_cast<std::size_t>(nb.count(p));
   const bool fours = points.stride >= 4;
   Block block;
