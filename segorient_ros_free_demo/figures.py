@@ -86,7 +86,7 @@ def figures(build):
 
     points, truth = read_fandisk(np)
     for picture, rounds in (("normals_plane.png", 0), ("normals_recomputed.png", 1)):
-        normals = segorient.normals(points, recompute=rounds).normals
+        normals = segorient.normals(points, normals="plane", recompute=rounds).normals
         cosine = np.abs((normals * truth).sum(axis=1)).clip(0.0, 1.0)
         angle = np.degrees(np.arccos(cosine))
         colored(program, points, truth, angle / 30.0, PICTURES / picture, np)

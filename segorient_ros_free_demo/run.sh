@@ -53,6 +53,8 @@ for name in "${results[@]}"; do
   echo "  ${name}_oriented.pcd   the cloud with oriented normals, segment labels and colours"
   echo "  ${name}_segments.png   segments in colours, from two sides"
   echo "  ${name}_normals.png    shaded by normal; what faces the wrong way is red"
-  echo "  to look at it:  pcl_viewer -normals 10 -normals_scale 0.1 $PWD/build/demo/${name}_oriented.pcd"
-  echo "            or:   build/bin/segorient view build/demo/${name}_oriented.pcd"
+  echo "  to look at it:  build/bin/segorient view build/demo/${name}_oriented.pcd"
+  if command -v pcl_viewer >/dev/null; then
+    echo "            or:   pcl_viewer -normals 10 -normals_scale 0.1 $PWD/build/demo/${name}_oriented.pcd"
+  fi
 done

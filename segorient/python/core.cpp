@@ -11,6 +11,7 @@
 #include <segorient/orientation/pipeline.h>
 #include <segorient/search/median_hash_index.h>
 
+#include <array>
 #include <cmath>
 #include <memory>
 #include <stdexcept>
@@ -65,13 +66,18 @@ py::tuple normalArrays(std::vector<float> normals) {
                         view({rows}, {4 * kFloat}, owner->data() + 3, owner));
 }
 
+constexpr std::array<std::pair<const char*, NormalEstimator>, 6> kEstimators{
+    {{"auto", NormalEstimator::Automatic},
+     {"plane", NormalEstimator::Plane},
+     {"lct", NormalEstimator::LCT},
+     {"ldt", NormalEstimator::LDT},
+     {"awas", NormalEstimator::AwASQuadratic},
+     {"awas3", NormalEstimator::AwASCubic}}};
+
 NormalEstimator estimatorNamed(const std::string& name) {
-  if (name == "auto") return NormalEstimator::Automatic;
-  if (name == "plane") return NormalEstimator::Plane;
-  if (name == "lct") return NormalEstimator::LCT;
-  if (name == "ldt") return NormalEstimator::LDT;
-  if (name == "awas") return NormalEstimator::AwASQuadratic;
-  if (name == "awas3") return NormalEstimator::AwASCubic;
+  for (const auto& [known, estimator] : kEstimators) {
+    if (name == known) return estimator;
+  }
   throw std::invalid_argument(
       "normals must be 'auto', 'plane', 'lct', 'ldt', 'awas' or 'awas3', not '" + name + "'");
 }
@@ -92,7 +98,8 @@ PipelineOptions optionsFrom(const py::dict& given) {
   if (given.contains("method") &&
       !fromString(given["method"].cast<std::string>(), options.orientation.method)) {
     throw std::invalid_argument(
-        "method must be 'auto', 'propagation', 'boundary', 'combined' or 'extremal', not '" +
+        "method must be 'auto', 'propagation', 'boundary', 'combined', 'extremal' or 'hoppe', not "
+        "'" +
         given["method"].cast<std::string>() + "'");
   }
   setAngle(given, "alpha", options.segmentation.alpha);
@@ -144,14 +151,47 @@ PipelineProgress progressTo(const py::object& callback) {
   };
 }
 
+const char* nameOf(NormalEstimator estimator) {
+  for (const auto& [name, known] : kEstimators) {
+    if (estimator == known) return name;
+  }
+  return "auto";
+}
+
+void addSegments(const OrientedCloud& cloud, py::dict& out) {
+  static constexpr std::array<const char*, 3> kKinds{"regular", "connected", "isolated"};
+  py::list segments;
+  py::list hard;
+  for (std::size_t i = 0; i < cloud.segments.size(); ++i) {
+    const Segment& s = cloud.segmentation.segments[i];
+    const SegmentOrientationResult& r = cloud.segments[i];
+    py::dict segment;
+    segment["label"] = i;
+    segment["kind"] = kKinds[static_cast<std::size_t>(s.kind)];
+    segment["points"] = s.size;
+    segment["component"] = r.component;
+    segment["sign"] = static_cast<int>(r.sign);
+    segment["oriented_by"] = toString(r.by);
+    segment["confidence"] = r.confidence;
+    segment["extremal_agreement"] = r.extremal_agreement;
+    segment["hard"] = r.hard;
+    segments.append(segment);
+    if (r.hard) hard.append(i);
+  }
+  out["segments"] = segments;
+  out["hard_segments"] = hard;
+}
+
 // The same names and values as --report.
-py::dict reportOf(const PipelineReport& report) {
+py::dict reportOf(const OrientedCloud& cloud) {
+  const PipelineReport& report = cloud.report;
   py::dict out;
   out["points"] = report.points;
   out["non_finite"] = report.non_finite;
   out["duplicates"] = report.duplicates;
   out["without_normal"] = report.without_normal;
   out["k"] = report.k;
+  out["normals"] = nameOf(report.estimator);
   out["normals_chosen"] = report.normals_chosen;
   out["method"] = toString(report.method);
   out["spacing"] = report.spacing;
@@ -180,6 +220,15 @@ py::dict reportOf(const PipelineReport& report) {
     components.append(component);
   }
   out["components"] = components;
+  py::list clusters;
+  for (const ClusterOrientationResult& c : report.clusters) {
+    py::dict cluster;
+    cluster["points"] = c.points;
+    cluster["component"] = c.component;
+    cluster["confidence"] = c.confidence;
+    clusters.append(cluster);
+  }
+  out["clusters"] = clusters;
   py::list contradictions;
   for (const Contradiction& c : report.contradictions) {
     py::dict contradiction;
@@ -190,6 +239,7 @@ py::dict reportOf(const PipelineReport& report) {
     contradictions.append(contradiction);
   }
   out["contradictions"] = contradictions;
+  addSegments(cloud, out);
   return out;
 }
 
@@ -203,10 +253,11 @@ py::tuple orient(const FloatArray& points, const py::dict& given, const py::obje
     const py::gil_scoped_release unlocked;
     cloud = orientCloud(rows, nullptr, options, callback);
   }
+  const py::dict report = reportOf(cloud);
   const py::tuple normals = normalArrays(std::move(cloud.normals));
   return py::make_tuple(normals[0], normals[1], column(std::move(cloud.segmentation.labels)),
                         column(std::move(cloud.confidences)), column(std::move(cloud.components)),
-                        reportOf(cloud.report));
+                        report);
 }
 
 py::tuple normals(const FloatArray& points, const py::dict& given, const py::object& progress) {

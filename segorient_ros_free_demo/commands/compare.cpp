@@ -164,7 +164,7 @@ int runCompare(const std::vector<std::string>& words) {
   std::string poisson_prefix;
   int depth = 0;
   line.arguments({"IN"});
-  stages.add(line);
+  stages.add(line, true);
   hints.add(line);
   line.options()("picture", po::value(&picture_path), "PNG: PCL left, ours right")(
       "poisson", po::value(&poisson_prefix),
@@ -180,7 +180,7 @@ int runCompare(const std::vector<std::string>& words) {
   PipelineOptions options;
   stages.apply(line, common, options);
   hints.check(line, common, options);
-  StageOptions::warnOfUnused(line, common, options);
+  stages.warnOfUnused(line, common, options);
   std::optional<OutputFile> picture;
   if (!picture_path.empty()) {
     requireEnding(picture_path, {".png"});

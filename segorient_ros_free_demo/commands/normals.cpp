@@ -2,7 +2,6 @@
 // Copyright (c) 2026, the segorient authors
 #include <segorient/orientation/first_stages.h>
 
-#include <cmath>
 #include <cstdio>
 
 #include "commands/commands.h"
@@ -18,13 +17,12 @@ namespace {
 
 void printSummary(const FirstStages& stages, const std::vector<float>& normals,
                   const PipelineOptions& options, const std::string& path) {
-  std::size_t without = 0;
-  for (std::size_t i = 0; i < normals.size(); i += 4) without += std::isfinite(normals[i]) ? 0 : 1;
   std::printf(
       "points          %zu\nwithout normal  %zu\nneighbours      %d, %s\nnormals         %s\n"
       "seconds         %s\nwritten         %s\n",
-      normals.size() / 4, without, stages.k(), estimatorName(options.normals.estimator),
-      stages.normalsChosen().c_str(), timesText(stages.times()).c_str(), path.c_str());
+      normals.size() / 4, countWithoutNormal(normals), stages.k(),
+      estimatorName(options.normals.estimator), stages.normalsChosen().c_str(),
+      timesText(stages.times()).c_str(), path.c_str());
 }
 
 }  // namespace
@@ -38,12 +36,13 @@ int runNormals(const std::vector<std::string>& words) {
   CommonOptions common;
   StageOptions stage_options;
   line.arguments({"IN", "OUT"});
-  stage_options.add(line);
+  stage_options.add(line, false);
   common.add(line);
   if (!line.parse(words)) return 0;
   common.check();
   PipelineOptions options;
   stage_options.apply(line, common, options);
+  stage_options.warnOfUnused(line, common, options);
   requireEnding(line.argument("OUT"), {".pcd", ".ply"});
 
   OutputFile file(line.argument("OUT"));

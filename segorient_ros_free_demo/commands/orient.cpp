@@ -160,7 +160,7 @@ int runOrient(const std::vector<std::string>& words) {
   HintOptions hints;
   std::string report_path;
   line.arguments({"IN", "OUT"});
-  stages.add(line);
+  stages.add(line, true);
   hints.add(line);
   line.options()("report", po::value(&report_path), "what was done, as JSON");
   common.add(line);
@@ -169,7 +169,7 @@ int runOrient(const std::vector<std::string>& words) {
   PipelineOptions options;
   stages.apply(line, common, options);
   hints.check(line, common, options);
-  StageOptions::warnOfUnused(line, common, options);
+  stages.warnOfUnused(line, common, options);
   requireEnding(line.argument("OUT"), {".pcd", ".ply"});
 
   if (report_path == line.argument("OUT")) throw UsageError("--report and OUT are the same file");

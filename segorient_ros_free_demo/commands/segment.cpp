@@ -22,15 +22,15 @@ namespace po = boost::program_options;
 namespace {
 
 void printSummary(const FirstStages& stages, const Segmentation& segmentation,
-                  const std::string& path) {
+                  std::size_t without_normal, const std::string& path) {
   std::array<std::size_t, 3> count{0, 0, 0};
   std::array<std::size_t, 3> points{0, 0, 0};
   for (const Segment& s : segmentation.segments) {
     ++count[static_cast<std::size_t>(s.kind)];
     points[static_cast<std::size_t>(s.kind)] += s.size;
   }
-  std::printf("points     %zu, %zu not finite, %zu duplicates\n", segmentation.labels.size(),
-              stages.nonFinite(), stages.duplicates());
+  std::printf("points     %zu, %zu not finite, %zu duplicates; %zu without normal\n",
+              segmentation.labels.size(), stages.nonFinite(), stages.duplicates(), without_normal);
   for (const SegmentKind kind :
        {SegmentKind::Regular, SegmentKind::Connected, SegmentKind::Isolated}) {
     std::printf("%-10s %zu segments of %zu points\n", kindName(kind),
@@ -41,15 +41,22 @@ void printSummary(const FirstStages& stages, const Segmentation& segmentation,
 }
 
 std::string reportText(const FirstStages& stages, const StageMemory& memory,
-                       const Segmentation& segmentation, const std::array<double, 3>& origin) {
+                       const Segmentation& segmentation, std::size_t without_normal,
+                       const std::array<double, 3>& origin) {
   JsonWriter json;
   json.field("points", segmentation.labels.size());
   json.field("non_finite", stages.nonFinite());
   json.field("duplicates", stages.duplicates());
+  json.field("without_normal", without_normal);
   json.field("k", stages.k());
   json.field("normals_chosen", stages.normalsChosen());
   json.beginObject("seconds");
-  for (const StageTime& s : stages.times()) json.field(s.stage, s.seconds);
+  double total = 0.0;
+  for (const StageTime& s : stages.times()) {
+    json.field(s.stage, s.seconds);
+    total += s.seconds;
+  }
+  json.field("total", total);
   json.endObject();
   json.field("peak_memory_bytes", memory.most());
   addTo(json, memory);
@@ -92,7 +99,7 @@ int runSegment(const std::vector<std::string>& words) {
   bool split = false;
   std::string report_path;
   line.arguments({"IN", "OUT"});
-  stage_options.add(line);
+  stage_options.add(line, false);
   line.options()("split", po::bool_switch(&split),
                  "leave round faces cut up by --beta, as triangulate and orient use them")(
       "report", po::value(&report_path), "a table of the segments, as JSON");
@@ -101,6 +108,7 @@ int runSegment(const std::vector<std::string>& words) {
   common.check();
   PipelineOptions options;
   stage_options.apply(line, common, options);
+  stage_options.warnOfUnused(line, common, options);
   requireEnding(line.argument("OUT"), {".pcd", ".ply"});
 
   if (report_path == line.argument("OUT")) throw UsageError("--report and OUT are the same file");
@@ -126,10 +134,12 @@ int runSegment(const std::vector<std::string>& words) {
   memory.begin("writing");
   writeResults(table, results, file);
   memory.end();
-  if (report) report->write(reportText(stages, memory, segmentation, points.origin()));
+  const std::size_t without_normal = countWithoutNormal(normals);
+  if (report)
+    report->write(reportText(stages, memory, segmentation, without_normal, points.origin()));
   file.commit();
   if (report) report->commit();
-  if (!common.quiet) printSummary(stages, segmentation, file.path());
+  if (!common.quiet) printSummary(stages, segmentation, without_normal, file.path());
   return 0;
 }
 

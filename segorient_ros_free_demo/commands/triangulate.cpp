@@ -44,11 +44,12 @@ int runTriangulate(const std::vector<std::string>& words) {
   TriangulationOptions triangulation;
   bool all = false;
   line.arguments({"IN", "OUT"});
-  stages.add(line);
+  stages.add(line, true);
   hints.add(line);
-  line.options()("kappa1", po::value(&triangulation.kappa1)->default_value(triangulation.kappa1),
+  line.options()("kappa1",
+                 po::value(&triangulation.kappa1)->default_value(triangulation.kappa1, "0.1"),
                  "share of the fullest bin of edge lengths that counts as a maximum")(
-      "kappa2", po::value(&triangulation.kappa2)->default_value(triangulation.kappa2),
+      "kappa2", po::value(&triangulation.kappa2)->default_value(triangulation.kappa2, "0.7"),
       "share of the critical length that edges on the boundary may have")(
       "all", po::bool_switch(&all), "connected and isolated segments, too");
   common.add(line);
@@ -59,7 +60,7 @@ int runTriangulate(const std::vector<std::string>& words) {
   PipelineOptions options;
   stages.apply(line, common, options);
   hints.check(line, common, options);
-  StageOptions::warnOfUnused(line, common, options);
+  stages.warnOfUnused(line, common, options);
   requireEnding(line.argument("OUT"), {".ply", ".vtk"});
 
   OutputFile file(line.argument("OUT"));
@@ -86,7 +87,8 @@ int runTriangulate(const std::vector<std::string>& words) {
   writeResults(table, results, file);
   file.commit();
   if (common.quiet) return 0;
-  std::printf("points     %zu\nsegments   %zu regular, %zu connected, %zu isolated\n", table.size,
+  std::printf("points     %zu, %zu without normal\n", table.size, cloud.report.without_normal);
+  std::printf("segments   %zu regular, %zu connected, %zu isolated\n",
               cloud.report.regular_segments, cloud.report.connected_segments,
               cloud.report.isolated_segments);
   std::printf("triangles  %zu\nwritten    %s\n", triangles.size(), file.path().c_str());

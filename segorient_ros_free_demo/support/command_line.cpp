@@ -72,7 +72,7 @@ void requireEnding(const std::string& path, const std::vector<std::string>& endi
 void CommonOptions::add(CommandLine& line) {
   line.options()("threads", po::value(&threads)->default_value(0), "threads; 0 = all cores")(
       "quiet,q", po::bool_switch(&quiet), "no summary and no progress")(
-      "verbose,v", po::bool_switch(&verbose), "a summary of every detail");
+      "verbose,v", po::bool_switch(&verbose), "a summary of every detail (orient: all components)");
 }
 
 void CommonOptions::check() const {

@@ -2,6 +2,8 @@
 // Copyright (c) 2026, the segorient authors
 #include "support/result_columns.h"
 
+#include <cmath>
+
 #include "support/colors.h"
 
 namespace segorient::program {
@@ -29,6 +31,12 @@ struct SegmentColumns {
 };
 
 }  // namespace
+
+std::size_t countWithoutNormal(const std::vector<float>& normals) {
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < normals.size(); i += 4) count += std::isfinite(normals[i]) ? 0 : 1;
+  return count;
+}
 
 void writeResults(const CloudTable& table, const Results& results, OutputFile& file) {
   OutputCloud out(table);

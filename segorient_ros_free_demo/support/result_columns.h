@@ -4,6 +4,7 @@
 
 #include <segorient/segmentation/segmentation.h>
 
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
@@ -19,6 +20,10 @@ struct Results {
   bool keep_colors = false;  ///< whether colours that the input has come before the segments'
   const std::vector<Triangle>* triangles = nullptr;  ///< null: no mesh
 };
+
+/// \param normals 4 floats a point
+/// \return points whose normal is NaN
+std::size_t countWithoutNormal(const std::vector<float>& normals);
 
 /// Writes x, y, z, the results as normal_x, normal_y, normal_z, curvature, rgb, label (4294967295
 /// where there is none) and segment_kind (0 regular, 1 connected, 2 isolated), and all other fields

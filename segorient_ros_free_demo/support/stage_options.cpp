@@ -49,28 +49,37 @@ const char* kindName(SegmentKind kind) {
   return "regular";
 }
 
-void StageOptions::add(CommandLine& line) {
-  line.options()("neighbors,k", po::value(&k_),
-                 "neighbours of a point; left out: from the cloud's noise")(
-      "method", po::value(&method_)->default_value("auto"),
-      "of orientation: auto (the best known), propagation, boundary, combined or extremal\n"
-      "(the paper's), hoppe (the classical tree over points)")(
+void StageOptions::addMethod(CommandLine& line, bool orients) {
+  auto options = orients ? line.options() : line.unlisted();
+  options("method", po::value(&method_)->default_value("auto"),
+          "of orientation: auto (the best known), propagation, boundary, combined or extremal\n"
+          "(the paper's), hoppe (the classical tree over points)")(
+      "gamma", po::value(&gamma_),
+      "degrees: angles between segments up to this decide; 35 (methods propagation, combined, "
+      "extremal)");
+}
+
+void StageOptions::add(CommandLine& line, bool orients) {
+  const std::string k = orients ? "32 for method auto, else 12, 18 or 30 by the cloud's noise"
+                                : "12, and more for --normals auto where there is noise";
+  const std::string normals =
+      orients ? "; method auto has its own way and does not look at this" : "";
+  const std::string recompute = orients ? "; method auto does so in its own way" : "";
+  orients_ = orients;
+  line.options()("neighbors,k", po::value(&k_), ("neighbours of a point; left out: " + k).c_str());
+  addMethod(line, orients);
+  line.options()(
       "normals", po::value(&normals_)->default_value("auto"),
-      "auto (chosen from the cloud itself), plane, lct, ldt, awas or awas3; method auto has its "
-      "own "
-      "way and does not look at this")(
+      ("auto (chosen from the cloud itself), plane, lct, ldt, awas or awas3" + normals).c_str())(
       "alpha", po::value(&alpha_),
       "degrees: largest angle between normals of neighbours in a segment; about 20")(
       "beta", po::value(&beta_), "degrees: largest angle between a normal and its segment's; 30")(
-      "gamma", po::value(&gamma_),
-      "degrees: angles between segments up to this decide; 35 (methods propagation, combined, "
-      "extremal)")(
       "delta", po::value(&delta_),
       "degrees: normals that differ so much across a border make it a sharp one for --recompute, "
       "which then follows the paper's rule instead of fitting surfaces to one side")(
       "epsilon", po::value(&epsilon_), "degrees: by how much the clean-up may exceed beta; 10")(
       "recompute", po::value(&recomputations_)->default_value(0),
-      "rounds of finding the normals at sharp edges again; method auto does so in its own way")(
+      ("rounds of finding the normals at sharp edges again" + recompute).c_str())(
       "seed", po::value(&seed_)->default_value(0),
       "of random choices; no stage makes any, so results do not depend on it");
 }
@@ -107,9 +116,9 @@ void StageOptions::apply(const CommandLine& line, const CommonOptions& common,
 }
 
 void StageOptions::warnOfUnused(const CommandLine& line, const CommonOptions& common,
-                                const PipelineOptions& options) {
+                                const PipelineOptions& options) const {
   if (common.quiet) return;
-  if (options.orientation.method == OrientationMethod::AUTO) {
+  if (orients_ && options.orientation.method == OrientationMethod::AUTO) {
     for (const char* name : {"normals", "gamma", "delta", "recompute"}) {
       if (!line.given(name)) continue;
       warn("--" + std::string(name) +

@@ -15,16 +15,21 @@ namespace segorient::program {
 /// all of them, whether or not they come to the stage that an option is for.
 class StageOptions {
  public:
-  void add(CommandLine& line);
+  /// \param orients whether the command comes to the orientation: otherwise what only that looks at
+  /// is taken but not listed
+  void add(CommandLine& line, bool orients);
 
   /// Checks the values and sets those that were given; the others keep the library's defaults.
   void apply(const CommandLine& line, const CommonOptions& common, PipelineOptions& options);
 
-  /// For commands that orient: names those of the options given that the method does not look at.
-  static void warnOfUnused(const CommandLine& line, const CommonOptions& common,
-                           const PipelineOptions& options);
+  /// Names those of the options given that nothing looks at.
+  void warnOfUnused(const CommandLine& line, const CommonOptions& common,
+                    const PipelineOptions& options) const;
 
  private:
+  void addMethod(CommandLine& line, bool orients);
+
+  bool orients_ = true;
   int k_ = 0;
   int recomputations_ = 0;
   std::string normals_;

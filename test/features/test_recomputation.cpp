@@ -252,6 +252,7 @@ TEST(NormalRecomputation, IsTheCoreInRounds) {
   EXPECT_GT(recomputation.getReport().recomputed, 0U);
   s.recompute({}, recomputation.getNumberOfRounds());
   EXPECT_EQ(recomputation.getLabels(), s.labels);
+  EXPECT_EQ(recomputation.getRegular(), s.regular);
   ASSERT_EQ(with_table.size(), 6000U);
   for (std::size_t i = 0; i < 6000; ++i) {
     const Eigen::Map<const Eigen::Vector3f> expected(&s.normals[4 * i]);

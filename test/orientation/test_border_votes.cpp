@@ -45,13 +45,14 @@ Wedge makeWedge(double degrees, unsigned seed) {
   return w;
 }
 
-BorderVote voteOn(const Wedge& w) {
+// \param reach how far along its normal a point's own sheet reaches
+BorderVote voteOn(const Wedge& w, float reach = std::numeric_limits<float>::infinity(),
+                  float h = 0.03F) {
   const Neighborhoods table = neighborsOf(w.xyz);
   const std::size_t n = w.xyz.size() / 4;
-  const float far = std::numeric_limits<float>::infinity();
-  const std::vector<float> spacing(n, 0.03F);
-  const std::vector<float> below(n, -far);
-  const std::vector<float> above(n, far);
+  const std::vector<float> spacing(n, h);
+  const std::vector<float> below(n, -reach);
+  const std::vector<float> above(n, reach);
   const std::vector<std::uint8_t> reliable(n, 1);
   SheetField field;
   field.normals = w.normals.data();
@@ -78,6 +79,31 @@ TEST_P(DihedralAngle, ConsistentNormalsGetAPositiveVote) {
 // 0 is flat, positive bends up (concave seen from the normals), negative down.
 INSTANTIATE_TEST_SUITE_P(BorderVotes, DihedralAngle,
                          testing::Values(-150, -135, -90, -60, -30, 0, 30, 60, 90, 135, 150));
+
+// The two sides of a plate one spacing thick, which have no border but the wall between them.
+TEST(BorderVotes, NormalsOnBothSidesOfAWallPointApart) {
+  Wedge plate = makeWedge(0, 23);
+  for (std::size_t i = 0; i < plate.xyz.size(); i += 8) {
+    plate.xyz[i] += 0.5F;  // below the other half
+    plate.xyz[i + 2] -= 0.03F;
+    plate.normals[i + 2] = -1.F;
+  }
+  const BorderVote apart = voteOn(plate, 0.01F);
+  EXPECT_GT(apart.weight, 0.F);
+  EXPECT_GT(apart.unanimity(), 0.99F);
+  for (std::size_t i = 1; i < plate.segmentation.signs.size(); i += 2) {
+    plate.segmentation.signs[i] = -1;
+  }
+  EXPECT_FLOAT_EQ(voteOn(plate, 0.01F).weight, -apart.weight);
+}
+
+// Lengths in spacings that a float cannot hold.
+TEST(BorderVotes, PointsTooFarApartSayNothing) {
+  const BorderVote vote = voteOn(makeWedge(30, 24), std::numeric_limits<float>::infinity(), 1e-40F);
+  EXPECT_EQ(vote.weight, 0.F);
+  EXPECT_EQ(vote.absolute, 0.F);
+  EXPECT_GT(vote.count, 0U);
+}
 
 TEST(ClusterGraph, RecoversPlantedSigns) {
   std::mt19937 rng(22);

@@ -218,6 +218,10 @@ TEST_F(SegmentOrientationTest, GettersReturnWhatWasSet) {
   orientation.setTurnOutward(false);
   orientation.setNumberOfThreads(2);
   orientation.setKSearch(9);
+  TriangulationOptions triangulation;
+  triangulation.critical_factor = 1.F;
+  orientation.setTriangulationOptions(triangulation);
+  EXPECT_EQ(orientation.getTriangulationOptions().critical_factor, 1.F);
   EXPECT_EQ(orientation.getMethod(), Orientation::EXTREMAL);
   EXPECT_EQ(orientation.getGamma(), 0.5F);
   EXPECT_EQ(orientation.getSegmentAngle(), SegmentAngle::REFERENCE_NORMALS);

@@ -79,6 +79,17 @@ TEST(Wedges, LargePatchesStay) {
   EXPECT_NEAR(wedge.shareRight(true), before, 0.01);
 }
 
+// Points that lie closer together than a float can invert.
+TEST(Wedges, SpacingsWithoutAnInverse) {
+  const Wedge wedge([](float, float, float) -> std::array<float, 2> { return {1.F, 0.F}; });
+  const std::vector<float> spacing(wedge.xyz.size() / 4, 1e-40F);
+  const FilteredNormals filtered = filterOrientedNormals(viewOf(wedge.xyz), neighborsOf(wedge.xyz),
+                                                         wedge.oriented, spacing, 0.F, 2, true);
+  for (std::size_t i = 0; i < filtered.normals.size(); i += 4) {
+    ASSERT_NEAR(dot3(&filtered.normals[i], &filtered.normals[i]), 1.F, 1e-4F) << i / 4;
+  }
+}
+
 TEST(Wedges, WallsOfAThinPlateAreTwoSurfaces) {
   const LabelledCloud cloud = sample("plate", plate(1, 8000), 8000, 4);
   const std::vector<float> spacing(cloud.size(), static_cast<float>(cloud.spacing));

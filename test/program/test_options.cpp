@@ -6,8 +6,10 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <boost/property_tree/json_parser.hpp>
 #include <chrono>
 #include <cmath>
+#include <functional>
 #include <regex>
 #include <set>
 #include <thread>
@@ -61,6 +63,9 @@ TEST(Options, ThoseWithoutEffectAreNamed) {
     EXPECT_NE(run.err.find(name), std::string::npos) << run.err;
   }
   EXPECT_NE(runProgram({"orient", fandisk(), out, "--normals", "ldt"}).err, "");
+  EXPECT_NE(runProgram({"segment", fandisk(), out, "--delta", "30"}).err, "");
+  EXPECT_EQ(runProgram({"segment", fandisk(), out, "--normals", "ldt", "--recompute", "1"}).err,
+            "");
   EXPECT_NE(runProgram({"orient", fandisk(), out, "--method", "combined", "--open"}).err, "");
   EXPECT_EQ(runProgram({"orient", fandisk(), out, "--method", "combined", "--normals", "ldt",
                         "--recompute", "1", "--delta", "40"})
@@ -152,6 +157,20 @@ TEST(Hints, ThatMakeNoSenseAreRefused) {
   EXPECT_EQ(directory.entries(), 1U);
 }
 
+// Parsers keep one of two values of the same name, and nobody sees the other.
+void expectEachOnce(const std::string& path) {
+  boost::property_tree::ptree report;
+  boost::property_tree::read_json(path, report);
+  const std::function<void(const boost::property_tree::ptree&)> check =
+      [&](const boost::property_tree::ptree& object) {
+        for (const auto& [key, value] : object) {
+          EXPECT_TRUE(key.empty() || object.count(key) == 1) << key;
+          check(value);
+        }
+      };
+  check(report);
+}
+
 std::set<std::string> keys(const std::string& json) {
   std::set<std::string> out;
   const std::regex key("\"([a-z0-9_]+)\":");
@@ -184,10 +203,12 @@ TEST(Report, EveryFieldIsExplained) {
   for (const std::vector<std::string>& words :
        {std::vector<std::string>{"orient", strip, out},
         {"orient", fandisk(), out, "--method", "combined", "--recompute", "1"},
+        {"segment", fandisk(), out, "--recompute", "1"},
         {"evaluate", fandisk(), out}}) {
     std::vector<std::string> all = words;
     all.insert(all.end(), {"--report", report, "--quiet"});
     ASSERT_EQ(runProgram(all).status, 0);
+    expectEachOnce(report);
     for (const std::string& key : keys(readFile(report))) written.insert(key);
   }
   EXPECT_GT(written.size(), 35U);

@@ -358,6 +358,7 @@ class AsTheProgram(unittest.TestCase):
             np.testing.assert_array_equal(by_module.labels, by_program["label"].astype(np.int32))
             with open(report_path) as file:
                 report = json.load(file)
+            self.assertEqual(set(report) - set(by_module.report), {"peak_memory_bytes_by_stage"})
             for key, value in by_module.report.items():
                 self.assertIn(key, report)
                 if key not in ("seconds", "peak_memory_bytes"):

@@ -50,7 +50,7 @@ class Orientation(NamedTuple):
     labels: npt.NDArray[np.int32]  #: (n,) segment, the largest first; -1 without a normal
     confidences: Floats  #: (n,) of the orientation: 0 a guess, 1 all evidence agrees
     components: npt.NDArray[np.int32]  #: (n,) connected component, the largest first; -1 as above
-    report: Dict[str, Any]  #: what was done, as the program's ``--report`` has it
+    report: Dict[str, Any]  #: what was done, as ``--report`` of the program has it, but for memory by stage
 
 
 class Normals(NamedTuple):
@@ -276,7 +276,7 @@ def normals(
     :param normals: estimator: ``auto`` (it and its neighbours chosen from the cloud itself),
         ``plane``, ``lct`` and ``ldt`` (local triangulations), ``awas`` and ``awas3`` (quadratic and
         cubic surfaces)
-    :param k: neighbours of a point; None: 12
+    :param k: neighbours of a point; None: 12, or more where `normals` is ``auto`` and there is noise
     :param alpha, beta, epsilon: degrees, of the segments that `recompute` goes by; see :func:`segment`
     :param delta: degrees, what makes a border a sharp one for `recompute`, which then follows the
         paper's rule instead of fitting surfaces to one side
@@ -308,7 +308,7 @@ def segment(
     :param points: (n, 3)
     :param split: leave round faces cut up by `beta`, as triangulation and orientation use them
     :param normals: estimator, see :func:`normals`
-    :param k: neighbours of a point; None: 12
+    :param k: neighbours of a point; None: 12, or more where `normals` is ``auto`` and there is noise
     :param alpha: degrees, largest angle between normals of neighbours in a segment; about 20
     :param beta: degrees, largest angle between a normal and its segment's; 30
     :param delta: degrees, see :func:`normals`

@@ -14,15 +14,20 @@
 
 namespace segorient {
 
-// Says which stage begins, and adds the time from its construction to its end.
+// Says which stage begins, and adds the time from its construction to its end, also where a stage
+// comes twice.
 class FirstStages::Timer {
  public:
   Timer(FirstStages& stages, const char* stage, double fraction) : stages_(stages), stage_(stage) {
     if (stages_.progress_) stages_.progress_(stage, fraction);
   }
   ~Timer() {
-    const auto passed = std::chrono::steady_clock::now() - begin_;
-    stages_.times_.push_back({stage_, std::chrono::duration<double>(passed).count()});
+    const std::chrono::duration<double> passed = std::chrono::steady_clock::now() - begin_;
+    std::vector<StageTime>& times = stages_.times_;
+    auto own = std::find_if(times.begin(), times.end(),
+                            [&](const StageTime& time) { return time.stage == stage_; });
+    if (own == times.end()) own = times.insert(own, {stage_, 0.0});
+    own->seconds += passed.count();
   }
   Timer(const Timer&) = delete;
   Timer& operator=(const Timer&) = delete;

@@ -11,7 +11,7 @@ namespace segorient {
 /// consecutive floats at `data + i * stride`.
 ///
 /// This is what every stage computes on. A PCL cloud whose point type has x, y, z in a row is
-/// viewed without a copy (see `pointView` in common/cloud_access.h).
+/// viewed without a copy (see CloudPoints in common/cloud_access.h).
 struct PointView {
   const float* data = nullptr;  ///< first row
   std::size_t stride = 4;       ///< floats from one row to the next

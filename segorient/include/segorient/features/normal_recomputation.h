@@ -19,13 +19,13 @@ namespace segorient {
 /// segorient::NormalRecomputation<pcl::PointXYZ, pcl::Normal> recomputation;
 /// recomputation.setInputCloud(cloud);
 /// recomputation.setInputNormals(normals);
-/// recomputation.setLabels(labels, regular);  // from NormalSegmentation
+/// recomputation.setLabels(labels, regular);  // from NormalSegmentation::getSegmentation()
 /// recomputation.compute(*sharper);
 /// @endcode
 ///
-/// Points without a label or a normal, and those with NaN coordinates, keep their normal as it is.
-/// Without a cloud, or with normals or labels of another size, there is an error message and an
-/// empty output.
+/// Neighbours come from a ready table or an all-points search of its own. Points without a label or
+/// a normal, and those with NaN coordinates, keep their normal as it is. Without a cloud, or with
+/// normals, labels or a table of another size: PCL_ERROR and an empty output.
 template <typename PointT, typename NormalT>
 class NormalRecomputation : public pcl::PCLBase<PointT> {
  public:
@@ -50,6 +50,7 @@ class NormalRecomputation : public pcl::PCLBase<PointT> {
   }
   /// As set, and after compute() as moved.
   const std::vector<std::int32_t>& getLabels() const { return labels_; }
+  const std::vector<std::uint8_t>& getRegular() const { return regular_; }
 
   /// Uses this table, one row a point of the input cloud, instead of searching. Null: search.
   void setNeighborhoods(const NeighborhoodsConstPtr& neighborhoods) {
@@ -57,31 +58,33 @@ class NormalRecomputation : public pcl::PCLBase<PointT> {
   }
   NeighborhoodsConstPtr getNeighborhoods() const { return neighborhoods_; }
 
+  /// Default OneSided.
   void setRule(RecomputationRule rule) { options_.rule = rule; }
   RecomputationRule getRule() const { return options_.rule; }
 
   /// How often the rule is applied; each round starts from the labels and normals of the last one.
-  /// Default 2: a third changes next to nothing.
+  /// Default 2: a third changes next to nothing. 0 or less: normals stay as they are.
   void setNumberOfRounds(int rounds) { rounds_ = rounds; }
   int getNumberOfRounds() const { return rounds_; }
 
-  /// Neighbours of each point, itself not counted. Default 20.
+  /// Neighbours of each point; unlike elsewhere the point itself is not counted. Default 20. 0 or
+  /// less: one, or all that a ready table has.
   void setKSearch(int k) { options_.k = k; }
   int getKSearch() const { return options_.k; }
 
-  /// \param angle see RecomputationOptions::edge_angle, radians
+  /// \param angle see RecomputationOptions::edge_angle, radians; default 20 degrees
   void setEdgeAngle(float angle) { options_.edge_angle = angle; }
   float getEdgeAngle() const { return options_.edge_angle; }
 
-  /// \param delta see RecomputationOptions::delta, radians
+  /// \param delta see RecomputationOptions::delta, radians; default 30 degrees
   void setDelta(float delta) { options_.delta = delta; }
   float getDelta() const { return options_.delta; }
 
-  /// \param between see RecomputationOptions::delta_between_references
+  /// \param between see RecomputationOptions::delta_between_references; default false
   void setDeltaBetweenReferences(bool between) { options_.delta_between_references = between; }
   bool getDeltaBetweenReferences() const { return options_.delta_between_references; }
 
-  /// \param estimator for modified neighbourhoods
+  /// \param estimator for modified neighbourhoods; default Plane, which Automatic is as well
   void setEstimator(NormalEstimator estimator) { options_.estimator = estimator; }
   NormalEstimator getEstimator() const { return options_.estimator; }
 

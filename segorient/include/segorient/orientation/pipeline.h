@@ -23,13 +23,16 @@ namespace segorient {
 
 /// Settings of orientCloud(). The defaults need no tuning.
 struct PipelineOptions {
-  int k = 0;  ///< neighbours of a point, itself not counted; <= 0 = from the cloud's noise
+  /// Neighbours of a point, itself not counted; <= 0 = 32 for OrientationMethod::AUTO, 12 for
+  /// FirstStages, and 12, 18 or 30 by the cloud's noise for the paper's methods.
+  int k = 0;
   /// How normals are estimated, by default as the cloud asks for; its k and threads are not used.
   LocalNormalOptions normals{NormalEstimator::Automatic};
-  /// Its threads and neighbors are not used, and settle_edges only by AUTO.
+  /// Its threads are not used, its neighbors only by FirstStages, and its settle_edges only there
+  /// and by OrientationMethod::AUTO.
   SegmentationOptions segmentation;
-  /// How often normals near sharp edges are found anew and the cloud segmented again
-  /// (paper, 2.3.1). Not for OrientationMethod::AUTO.
+  /// How often normals near sharp edges are found anew (paper, 2.3.1); the cloud is segmented
+  /// again after that. Not for OrientationMethod::AUTO.
   int recomputations = 0;
   RecomputationOptions recomputation;  ///< its estimator, k and threads are not used
   OrientationOptions orientation;      ///< its threads are not used

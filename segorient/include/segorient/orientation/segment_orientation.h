@@ -26,13 +26,18 @@ namespace segorient {
 /// @endcode
 ///
 /// With setSegmentAngle (SegmentAngle::REFERENCE_NORMALS), setBoundaryTest (BoundaryTest::
-/// TRIANGULATED) and setCheckBorders (false), the rules are the paper's to the letter; the defaults
+/// TRIANGULATED), setCheckBorders (false), setTurnOutward (false) and triangulation options whose
+/// critical_factor is 1 and fill_gaps false, the rules are the paper's to the letter; the defaults
 /// are ours.
 ///
 /// Segments are those of setSegmentation(), such as NormalSegmentation finds them, or made anew.
+/// AUTO orients by segments and normals of its own, which keep the sides of thin walls apart, and
+/// brings the result over to these: the settings of segments and of the paper's methods do not
+/// change its signs. It does not smooth noisy positions, as OrientedNormalEstimation does.
+///
 /// Every point that has a normal is oriented; NaN stays NaN. With indices, output i belongs to
-/// index i; the whole cloud is oriented all the same. No cloud, or normals of another size:
-/// PCL_ERROR and an empty output.
+/// index i; the whole cloud is oriented all the same. No cloud, normals of another size, segments
+/// of another cloud or a negative k: PCL_ERROR and an empty output.
 template <typename PointT, typename NormalT>
 class SegmentOrientation : public pcl::PCLBase<PointT> {
  public:
@@ -93,6 +98,12 @@ class SegmentOrientation : public pcl::PCLBase<PointT> {
   /// How boundaries are told: from neighbours (default) or from triangulations (the paper's).
   void setBoundaryTest(BoundaryTest test) { options_.boundary = test; }
   BoundaryTest getBoundaryTest() const { return options_.boundary; }
+
+  /// How segments are triangulated for BoundaryTest::TRIANGULATED; its threads are not used.
+  void setTriangulationOptions(const TriangulationOptions& options) {
+    options_.triangulation = options;
+  }
+  const TriangulationOptions& getTriangulationOptions() const { return options_.triangulation; }
 
   /// Beyond the paper: segments that are not one-sided are dissolved, and angle and boundary of a
   /// border must not contradict each other, see OrientationOptions; default true.

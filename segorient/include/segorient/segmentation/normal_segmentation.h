@@ -169,6 +169,7 @@ class NormalSegmentation : public pcl::PCLBase<PointT> {
   /// Face of each point of the cloud, -1 = none; empty before extract().
   const std::vector<std::int32_t>& getLabels() const { return result_.faces().labels; }
   /// The faces by label: kind, size, reference normal, centroid, area, rms; empty before extract().
+  /// Their `first` does not refer to the members of getSegmentation(): extract() has the points.
   const std::vector<Segment>& getSegments() const { return result_.faces().segments; }
   /// How surely each point of the cloud is in its face: the share of its neighbours that are in the
   /// same one, 0 without a face; empty before extract().
