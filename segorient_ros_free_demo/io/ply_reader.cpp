@@ -198,19 +198,32 @@ int colourByte(const Property& p) {
   return -1;
 }
 
+// What is written beside `label` for CloudCompare says nothing new. If it differs it is somebody's
+// own and stays.
+void dropTwinOfLabel(CloudTable& table) {
+  const Field* label = table.find("label");
+  const Field* twin = table.find("scalar_label");
+  const bool comparable = label != nullptr && label->type == 'U' && label->size == 4 &&
+                          twin != nullptr && twin->type == 'F' && twin->size == 4;
+  if (!comparable) return;
+  for (std::size_t row = 0; row < table.size; ++row) {
+    std::int32_t own = 0;
+    float other = 0.F;
+    std::memcpy(&own, table.at(*label, row), sizeof(own));
+    std::memcpy(&other, table.at(*twin, row), sizeof(other));
+    if (static_cast<float>(own) != other) return;
+  }
+  table.fields.erase(table.fields.begin() + (twin - table.fields.data()));
+}
+
 void readVertices(InputFile& file, Body& body, const Element& element, bool ascii,
                   CloudTable& table) {
   const auto& properties = element.properties;
-  const auto has = [&](const char* name) {
-    return std::any_of(properties.begin(), properties.end(),
-                       [&](const Property& p) { return p.name == name; });
-  };
   // Where each property goes; npos: it is dropped. Lists have no place in a table.
   std::vector<std::size_t> offsets;
   const bool colours = std::count_if(properties.begin(), properties.end(),
                                      [](const Property& p) { return colourByte(p) >= 0; }) == 3;
   for (const Property& p : properties) {
-    const bool twin = p.name == "scalar_label" && has("label");  // written for CloudCompare
     const int byte = colours ? colourByte(p) : -1;
     if (p.is_list) {
       table.dropped.push_back(p.name);
@@ -218,8 +231,6 @@ void readVertices(InputFile& file, Body& body, const Element& element, bool asci
     } else if (byte >= 0) {
       if (table.find("rgb") == nullptr) table.addField("rgb", 'F', 4);
       offsets.push_back(table.find("rgb")->offset + static_cast<std::size_t>(byte));
-    } else if (twin) {
-      offsets.push_back(std::string::npos);
     } else {
       offsets.push_back(table.row_bytes);
       table.addField(pclName(p.name), p.value.type, p.value.size);
@@ -264,6 +275,7 @@ CloudTable readPly(InputFile& file) {
       if (has_vertices) file.fail("has two elements of vertices");
       has_vertices = true;
       readVertices(file, body, element, header.ascii, table);
+      dropTwinOfLabel(table);
     } else if (element.name == "face" && has_vertices) {
       readFaces(file, body, element, table);
     } else {

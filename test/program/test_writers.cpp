@@ -116,6 +116,29 @@ TEST_F(Writers, WeReadOurOwnFilesBackToTheLastBit) {
   EXPECT_EQ(pcd.find("h")->count, 2U);
 }
 
+// A field of the name that CloudCompare wants for the label, with or without news in it.
+TEST_F(Writers, AScalarLabelOfOnesOwnStays) {
+  const std::string header =
+      "ply\nformat ascii 1.0\nelement vertex 2\nproperty float x\nproperty float y\n"
+      "property float z\nproperty uint label\nproperty float scalar_label\n"
+      "property float w\nend_header\n";
+  const CloudTable same =
+      readCloud(directory_.write("same.ply", header + "1 2 3 7 7 8\n4 5 6 4294967295 -1 9\n"));
+  EXPECT_EQ(same.find("scalar_label"), nullptr);
+  EXPECT_EQ(same.value(*same.find("w"), 1), 9.0);
+  const CloudTable own =
+      readCloud(directory_.write("own.ply", header + "1 2 3 7 7 8\n4 5 6 4294967295 0.5 9\n"));
+  ASSERT_NE(own.find("scalar_label"), nullptr);
+  for (const std::string name : {"out.pcd", "out.ply"}) {
+    write(own, directory_.file(name));
+    const CloudTable back = readCloud(directory_.file(name));
+    ASSERT_NE(back.find("scalar_label"), nullptr) << name;
+    EXPECT_EQ(back.value(*back.find("scalar_label"), 0), 7.0);
+    EXPECT_EQ(back.value(*back.find("scalar_label"), 1), 0.5);
+    EXPECT_EQ(back.value(*back.find("w"), 1), 9.0);
+  }
+}
+
 TEST_F(Writers, PlyIsWhatCloudCompareTakes) {
   writeSampleFiles(directory_, 3);
   write(readCloud(directory_.file("binary.pcd")), directory_.file("out.ply"));
