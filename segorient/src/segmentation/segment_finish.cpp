@@ -17,15 +17,18 @@ struct Moments {
   double area = 0;
 
   void add(const float* point) {
-    std::array<double, 3> d;
-    for (std::size_t c = 0; c < 3; ++c) {
-      d[c] = static_cast<double>(point[c]) - origin[c];
-      sum[c] += d[c];
-    }
-    std::size_t at = 0;
-    for (std::size_t r = 0; r < 3; ++r) {
-      for (std::size_t c = r; c < 3; ++c) products[at++] += d[r] * d[c];
-    }
+    const double x = static_cast<double>(point[0]) - origin[0];
+    const double y = static_cast<double>(point[1]) - origin[1];
+    const double z = static_cast<double>(point[2]) - origin[2];
+    sum[0] += x;
+    sum[1] += y;
+    sum[2] += z;
+    products[0] += x * x;
+    products[1] += x * y;
+    products[2] += x * z;
+    products[3] += y * y;
+    products[4] += y * z;
+    products[5] += z * z;
   }
 };
 

@@ -118,6 +118,7 @@ class Grower {
  private:
   static constexpr std::size_t kRowsAhead = 10;
   static constexpr std::size_t kNodesAhead = 3;
+  static constexpr int kMaskBits = 32;
   static constexpr float kRightAngle = 1.5707963F;
 
   // The table of counts is looked into only where it has something to tell.
@@ -146,13 +147,30 @@ class Grower {
     const int count = rowSize(p);
     const Node node = nodes_[p];
     std::uint8_t border = 0;
-    for (int j = 1; j < count; ++j) {
-      const auto q = static_cast<std::size_t>(row[j]);
-      const std::int32_t label = labels_[q];
-      if (label == label_) continue;
-      if (label >= 0 || !tryAccept(node, q)) border = 1;
+    for (int first = 1; first < count; first += kMaskBits) {
+      const int last = std::min(count, first + kMaskBits);
+      for (std::uint32_t others = othersAmong(row + first, last - first); others != 0;
+           others &= others - 1) {
+        const auto q = static_cast<std::size_t>(row[first + __builtin_ctz(others)]);
+        if (labels_[q] >= 0 || !tryAccept(node, q)) border = 1;
+      }
     }
     on_border_[p] = border;
+  }
+
+  // Bit j is set if neighbour j is not in this segment. Nearly all are, and which are not is
+  // nothing that a processor could guess: no branches.
+  std::uint32_t othersAmong(const pcl::index_t* neighbors, int count) const {
+    std::uint32_t others = 0;
+    const auto other = [&](int j) {
+      return static_cast<std::uint32_t>(labels_[neighbors[j]] != label_);
+    };
+    int j = 0;
+    for (; j + 4 <= count; j += 4) {
+      others |= (other(j) | other(j + 1) << 1 | other(j + 2) << 2 | other(j + 3) << 3) << j;
+    }
+    for (; j < count; ++j) others |= other(j) << j;
+    return others;
   }
 
   // Without signs the angle to the neighbour is |cos|; the sign that it gives must also bring the

@@ -43,8 +43,11 @@ struct Candidate {
   Vector center;
   Vector normal;
 
+  bool wants(float value) const {
+    return (count < kWitnesses) | (value < curvature[kWitnesses - 1]);
+  }
   void offer(std::int32_t point, float value) {
-    if (count == kWitnesses && !(value < curvature[count - 1])) return;
+    if (!wants(value)) return;
     for (std::size_t i = 0; i < count; ++i) {
       if (points[i] == point) return;
     }
@@ -143,18 +146,30 @@ class Settler {
     for (std::size_t c = 0; c < count; ++c) setPlane(candidates[c]);
   }
 
-  // The neighbours of `middle` as witnesses.
+  // The neighbours of `middle` as witnesses. Near a border nobody can guess which neighbour is in
+  // which segment: what each candidate may take is found without branches.
   void offerRow(std::size_t p, std::size_t middle, std::array<Candidate, kCandidates>& candidates,
                 std::size_t count) const {
     const pcl::index_t* row = state_.neighborhoods->indices(middle);
     const int size = reach(middle);
+    std::array<std::int32_t, kReach + 1> labels;
+    std::array<float, kReach + 1> curvatures;
     for (int i = 0; i < size; ++i) {
       const auto q = static_cast<std::size_t>(row[i]);
-      if (q == p) continue;
-      for (std::size_t c = 0; c < count; ++c) {
-        if (candidates[c].label != state_.labels[q]) continue;
-        candidates[c].offer(static_cast<std::int32_t>(q), state_.nodes[q].curvature);
-        break;
+      labels[static_cast<std::size_t>(i)] = state_.labels[q];
+      curvatures[static_cast<std::size_t>(i)] = state_.nodes[q].curvature;
+    }
+    for (std::size_t c = 0; c < count; ++c) {
+      Candidate& candidate = candidates[c];
+      std::uint32_t wanted = 0;
+      for (int i = 0; i < size; ++i) {
+        const auto at = static_cast<std::size_t>(i);
+        const bool wants = (labels[at] == candidate.label) & candidate.wants(curvatures[at]);
+        wanted |= static_cast<std::uint32_t>(wants) << i;
+      }
+      for (; wanted != 0; wanted &= wanted - 1) {
+        const auto i = static_cast<std::size_t>(__builtin_ctz(wanted));
+        if (static_cast<std::size_t>(row[i]) != p) candidate.offer(row[i], curvatures[i]);
       }
     }
   }

@@ -316,8 +316,9 @@ std::size_t uniteSmooth(const SegmentationOptions& options, GrowthState& state) 
                    [](const Border& s, const Border& t) { return s.pairs > t.pairs; });
   for (const Border& border : smooth) sets.unite(border);
   std::size_t united = 0;
+  std::vector<std::pair<std::int32_t, bool>> roots(state.clusters.size());
   for (std::size_t s = 0; s < state.clusters.size(); ++s) {
-    const auto [root, flipped] = sets.find(static_cast<std::int32_t>(s));
+    const auto [root, flipped] = roots[s] = sets.find(static_cast<std::int32_t>(s));
     if (root == static_cast<std::int32_t>(s)) continue;
     Cluster& into = state.clusters[static_cast<std::size_t>(root)];
     into.normal.add(state.clusters[s].normal, flipped ? -1.0 : 1.0);
@@ -327,7 +328,7 @@ std::size_t uniteSmooth(const SegmentationOptions& options, GrowthState& state) 
   }
   for (std::size_t p = 0; p < state.labels.size(); ++p) {
     if (state.labels[p] < 0) continue;
-    const auto [root, flipped] = sets.find(state.labels[p]);
+    const auto [root, flipped] = roots[static_cast<std::size_t>(state.labels[p])];
     state.labels[p] = root;
     if (flipped) state.signs[p] = static_cast<std::int8_t>(-state.signs[p]);
   }
