@@ -138,7 +138,7 @@ TEST_P(AnyEstimator, ScaleDoesNotMatter) {
   const Sample sample = torus(3000, 8);
   const Neighborhoods table = neighborsOf(sample.view(), 12);
   const std::vector<float> reference = normalsOf(sample.view(), table, options());
-  for (const float scale : {1e-30F, 1e-18F, 1e-10F, 1e10F, 1e18F, 1e30F}) {
+  for (const float scale : {1e-40F, 1e-30F, 1e-18F, 1e-10F, 1e10F, 1e18F, 1e30F}) {
     Sample scaled;
     for (std::size_t i = 0; i < sample.normals.size(); ++i) {
       scaled.add(scale * sample.points[i].getVector3fMap(), sample.normals[i]);
@@ -146,7 +146,8 @@ TEST_P(AnyEstimator, ScaleDoesNotMatter) {
     const std::vector<float> normals = normalsOf(scaled.view(), table, options());
     for (std::size_t i = 0; i < sample.normals.size(); ++i) {
       const Eigen::Vector3f n(reference[4 * i], reference[4 * i + 1], reference[4 * i + 2]);
-      ASSERT_LT(angleBetween(n, &normals[4 * i]), 1e-3) << scale;
+      // Below 1e-38 floats have few digits: other triangles may be the Delaunay ones.
+      ASSERT_LT(angleBetween(n, &normals[4 * i]), scale < 1e-38F ? 0.1 : 1e-3) << scale;
     }
   }
 }

@@ -12,9 +12,21 @@ typedef float Lanes __attribute__((vector_size(4 * SEGORIENT_LANES)));
 typedef std::int32_t Mask __attribute__((vector_size(4 * SEGORIENT_LANES)));
 typedef float Quad __attribute__((vector_size(16)));
 
-struct Lanes3 {
-  Lanes x, y, z;
+/// Two registers, computed in turn: while a quotient or root of one is on its way, the other gets
+/// on.
+struct Twice {
+  Lanes first, second;
 };
+struct TwiceMask {
+  Mask first, second;
+};
+
+template <typename V>
+struct Vector3 {
+  V x, y, z;
+};
+using Lanes3 = Vector3<Lanes>;
+using Twice3 = Vector3<Twice>;
 
 inline Lanes all(float value) {
   return Lanes{} + value;
@@ -43,6 +55,57 @@ inline Lanes squareRoot(Lanes a) {
 #endif
 }
 
+#define SEGORIENT_TWICE(result, op)                           \
+  inline result operator op(const Twice& a, const Twice& b) { \
+    return {a.first op b.first, a.second op b.second};        \
+  }                                                           \
+  inline result operator op(const Twice& a, float b) {        \
+    return {a.first op b, a.second op b};                     \
+  }
+SEGORIENT_TWICE(Twice, +)
+SEGORIENT_TWICE(Twice, -)
+SEGORIENT_TWICE(Twice, *)
+SEGORIENT_TWICE(Twice, /)
+SEGORIENT_TWICE(TwiceMask, <)
+SEGORIENT_TWICE(TwiceMask, >)
+SEGORIENT_TWICE(TwiceMask, >=)
+SEGORIENT_TWICE(TwiceMask, ==)
+SEGORIENT_TWICE(TwiceMask, !=)
+#undef SEGORIENT_TWICE
+inline Twice operator+(float a, const Twice& b) {
+  return {a + b.first, a + b.second};
+}
+inline Twice operator-(float a, const Twice& b) {
+  return {a - b.first, a - b.second};
+}
+inline Twice operator*(float a, const Twice& b) {
+  return {a * b.first, a * b.second};
+}
+inline Twice operator/(float a, const Twice& b) {
+  return {a / b.first, a / b.second};
+}
+inline Twice operator-(const Twice& a) {
+  return {-a.first, -a.second};
+}
+inline TwiceMask operator&(const TwiceMask& a, const TwiceMask& b) {
+  return {a.first & b.first, a.second & b.second};
+}
+inline TwiceMask operator|(const TwiceMask& a, const TwiceMask& b) {
+  return {a.first | b.first, a.second | b.second};
+}
+inline Twice select(const TwiceMask& condition, const Twice& yes, const Twice& no) {
+  return {select(condition.first, yes.first, no.first),
+          select(condition.second, yes.second, no.second)};
+}
+inline Twice larger(const Twice& a, const Twice& b) {
+  return {larger(a.first, b.first), larger(a.second, b.second)};
+}
+inline Twice smaller(const Twice& a, const Twice& b) {
+  return {smaller(a.first, b.first), smaller(a.second, b.second)};
+}
+inline Twice squareRoot(const Twice& a) {
+  return {squareRoot(a.first), squareRoot(a.second)};
+}
 inline bool any(Mask m) {
 #if SEGORIENT_LANES == 8
   return _mm256_movemask_ps(reinterpret_cast<__m256>(m)) != 0;
@@ -104,31 +167,47 @@ inline Lanes3 loadPoints(const float* const* p) {
 #endif
 }
 
-inline Lanes dot(const Lanes3& a, const Lanes3& b) {
+template <typename V>
+inline V dot(const Vector3<V>& a, const Vector3<V>& b) {
   return a.x * b.x + a.y * b.y + a.z * b.z;
 }
-inline Lanes3 cross(const Lanes3& a, const Lanes3& b) {
+template <typename V>
+inline Vector3<V> cross(const Vector3<V>& a, const Vector3<V>& b) {
   return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
 }
-inline Lanes3 scaled(const Lanes3& a, Lanes s) {
+template <typename V>
+inline Vector3<V> sum(const Vector3<V>& a, const Vector3<V>& b) {
+  return {a.x + b.x, a.y + b.y, a.z + b.z};
+}
+template <typename V>
+inline Vector3<V> difference(const Vector3<V>& a, const Vector3<V>& b) {
+  return {a.x - b.x, a.y - b.y, a.z - b.z};
+}
+template <typename V>
+inline Vector3<V> scaled(const Vector3<V>& a, V s) {
   return {a.x * s, a.y * s, a.z * s};
 }
-inline Lanes3 select(Mask condition, const Lanes3& yes, const Lanes3& no) {
+template <typename M, typename V>
+inline Vector3<V> select(M condition, const Vector3<V>& yes, const Vector3<V>& no) {
   return {select(condition, yes.x, no.x), select(condition, yes.y, no.y),
           select(condition, yes.z, no.z)};
 }
-inline Lanes3 unit(const Lanes3& a) {
-  return scaled(a, all(1.0F) / squareRoot(dot(a, a)));
+template <typename V>
+inline Vector3<V> unit(const Vector3<V>& a) {
+  return scaled(a, 1.0F / squareRoot(dot(a, a)));
 }
 
 /// Orthonormal vectors that with n are a right-handed frame (Duff et al., Building an orthonormal
 /// basis, revisited, JCGT 2017).
+template <typename V>
 struct Frame {
-  Lanes3 u, v, n;
+  Vector3<V> u, v, n;
 };
-inline Frame frameOf(const Lanes3& n) {
-  const Lanes sign = select(n.z < 0.0F, all(-1.0F), all(1.0F));
-  const Lanes a = -1.0F / (sign + n.z);
-  const Lanes b = n.x * n.y * a;
+template <typename V>
+inline Frame<V> frameOf(const Vector3<V>& n) {
+  const V zero{};
+  const V sign = select(n.z < 0.0F, zero - 1.0F, zero + 1.0F);
+  const V a = -1.0F / (sign + n.z);
+  const V b = n.x * n.y * a;
   return {{1.0F + sign * n.x * n.x * a, sign * b, -sign * n.x}, {b, sign + n.y * n.y * a, -n.y}, n};
 }

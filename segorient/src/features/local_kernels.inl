@@ -8,26 +8,27 @@
 #include "surface_lanes.inl"
 #include "triangulation_lanes.inl"
 
-inline void storeNormals(const LocalFitJob& job, const Batch& batch, std::size_t used,
+inline void storeNormals(const LocalFitJob& job, const std::size_t* rows, std::size_t used,
                          const Lanes3& normal, Lanes curvature) {
   for (std::size_t l = 0; l < used; ++l) {
-    storeQuad(job.normals + 4 * batch.rows[l],
-              Quad{normal.x[l], normal.y[l], normal.z[l], curvature[l]});
+    storeQuad(job.normals + 4 * rows[l], Quad{normal.x[l], normal.y[l], normal.z[l], curvature[l]});
   }
 }
 
 /// Normals from the surfaces, and what depends on single points: cubic surfaces and curvatures.
-inline Lanes3 surfaceNormals(const LocalFitJob& job, const Batch& batch, std::size_t used,
-                             const Plane& plane, const Lanes3& guess) {
-  const Frame frame = frameOf(guess);
-  const Quadratic q = fitQuadratics(batch, plane, frame);
-  const Lanes3 fitted = unit({frame.n.x - q.c[1] * frame.u.x - q.c[2] * frame.v.x,
-                              frame.n.y - q.c[1] * frame.u.y - q.c[2] * frame.v.y,
-                              frame.n.z - q.c[1] * frame.u.z - q.c[2] * frame.v.z});
+inline Lanes3 surfaceNormals(const LocalFitJob& job, const Batch& batch, std::size_t half,
+                             std::size_t used, const Plane& plane, const Lanes3& guess) {
+  const std::size_t* rows = batch.rows + half * kWidth;
+  const double* units = batch.unit + half * kWidth;
+  const Frame<Lanes> frame = frameOf(guess);
+  const Quadratic q = fitQuadratics(batch, half, plane, frame);
+  const Lanes3 fitted = unit(Lanes3{frame.n.x - q.c[1] * frame.u.x - q.c[2] * frame.v.x,
+                                    frame.n.y - q.c[1] * frame.u.y - q.c[2] * frame.v.y,
+                                    frame.n.z - q.c[1] * frame.u.z - q.c[2] * frame.v.z});
   Lanes3 normal = select(q.valid, fitted, guess);
   for (std::size_t l = 0; job.residuals && l < used; ++l) {
-    const float length = plane.size[l] * static_cast<float>(batch.unit[l]);
-    job.residuals[batch.rows[l]] =
+    const float length = plane.size[l] * static_cast<float>(units[l]);
+    job.residuals[rows[l]] =
         q.valid[l] ? q.residual[l] * length : std::numeric_limits<float>::infinity();
   }
   const bool cubic = job.estimator == NormalEstimator::AwASCubic;
@@ -35,7 +36,7 @@ inline Lanes3 surfaceNormals(const LocalFitJob& job, const Batch& batch, std::si
   for (std::size_t l = 0; l < used; ++l) {
     SurfaceFit fit;
     fit.valid = q.valid[l] != 0;
-    fit.size = static_cast<double>(plane.size[l]) * batch.unit[l];
+    fit.size = static_cast<double>(plane.size[l]) * units[l];
     for (std::size_t i = 0; i < 6; ++i) fit.c[i] = static_cast<double>(q.c[i][l]);
     const Lanes3* axes[3] = {&frame.u, &frame.v, &frame.n};
     for (std::size_t a = 0; a < 3; ++a) {
@@ -43,14 +44,14 @@ inline Lanes3 surfaceNormals(const LocalFitJob& job, const Batch& batch, std::si
       fit.axes[a][1] = static_cast<double>(axes[a]->y[l]);
       fit.axes[a][2] = static_cast<double>(axes[a]->z[l]);
     }
-    if (cubic && fit.valid && fitCubic(job, batch.rows[l], fit)) {
+    if (cubic && fit.valid && fitCubic(job, rows[l], fit)) {
       float n[3];
       fit.normal(n);
       normal.x[l] = n[0];
       normal.y[l] = n[1];
       normal.z[l] = n[2];
     }
-    if (job.curvatures) job.curvatures[batch.rows[l]] = fit.curvature();
+    if (job.curvatures) job.curvatures[rows[l]] = fit.curvature();
   }
   return normal;
 }
@@ -61,21 +62,30 @@ void estimateRows(const LocalFitJob& job, std::size_t begin, std::size_t end) {
                        job.estimator == NormalEstimator::AwASCubic;
   const NormalEstimator first = surface ? job.first_guess : job.estimator;
   const auto entries = static_cast<std::size_t>(job.entries);
-  Batch batch(entries, first == NormalEstimator::LCT);
+  Batch batch(entries);
   SortingNetwork network;
-  std::vector<float> scratch(first == NormalEstimator::Plane ? 0 : 3 * entries * kWidth);
-  for (std::size_t i = begin; i < end; i += kWidth) {
+  std::vector<float> scratch(first == NormalEstimator::Plane ? 0 : 3 * entries * kBatchRows);
+  for (std::size_t i = begin; i < end; i += kBatchRows) {
     loadBatch(job, i, end, batch);
-    const std::size_t used = end - i < kWidth ? end - i : kWidth;
-    const Plane plane = fitPlanes(job, batch);
-    Lanes3 normal = plane.normal;
-    if (first == NormalEstimator::LCT) normal = fanNormals(batch, plane, network, scratch.data());
-    if (first == NormalEstimator::LDT) normal = starNormals(batch, plane, scratch.data());
-    if (surface) normal = surfaceNormals(job, batch, used, plane, normal);
-    storeNormals(job, batch, used, normal, plane.curvature);
-    if (job.curvatures && !surface) {
-      for (std::size_t l = 0; l < used; ++l)
-        job.curvatures[batch.rows[l]] = SurfaceFit().curvature();
+    Plane planes[2];
+    fitPlanes(job, batch, planes);
+    Lanes3 normals[2] = {planes[0].normal, planes[1].normal};
+    for (std::size_t half = 0; half < 2 && i + half * kWidth < end; ++half) {
+      const std::size_t left = end - i - half * kWidth;
+      const std::size_t used = left < kWidth ? left : kWidth;
+      const Plane& plane = planes[half];
+      Lanes3& normal = normals[half];
+      if (first == NormalEstimator::LCT) {
+        normal = fanNormals(job, batch, half, plane, network, scratch.data());
+      }
+      if (first == NormalEstimator::LDT) normal = starNormals(batch, half, plane, scratch.data());
+      if (surface) normal = surfaceNormals(job, batch, half, used, plane, normal);
+      storeNormals(job, batch.rows + half * kWidth, used, normal, plane.curvature);
+      if (job.curvatures && !surface) {
+        for (std::size_t l = 0; l < used; ++l) {
+          job.curvatures[batch.rows[half * kWidth + l]] = SurfaceFit().curvature();
+        }
+      }
     }
   }
 }

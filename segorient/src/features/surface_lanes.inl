@@ -41,18 +41,19 @@ struct Quadratic {
   Mask valid;
 };
 
-inline Quadratic fitQuadratics(const Batch& batch, const Plane& plane, const Frame& frame) {
+inline Quadratic fitQuadratics(const Batch& batch, std::size_t half, const Plane& plane,
+                               const Frame<Lanes>& frame) {
   const Lanes zero{};
   const Lanes unit_length = 1.0F / plane.size;
-  const Frame scaled_frame{scaled(frame.u, unit_length), scaled(frame.v, unit_length),
-                           scaled(frame.n, unit_length)};
+  const Frame<Lanes> scaled_frame{scaled(frame.u, unit_length), scaled(frame.v, unit_length),
+                                  scaled(frame.n, unit_length)};
   Lanes x1 = zero, y1 = zero, x2 = zero, xy = zero, y2 = zero, x3 = zero, x2y = zero, xy2 = zero,
         y3 = zero, x4 = zero, x3y = zero, x2y2 = zero, xy3 = zero, y4 = zero;
   Lanes z2 = zero;
   Quadratic q;
   for (Lanes& c : q.c) c = zero;
-  for (int j = 0; j < batch.count; ++j) {
-    const Lanes3 d = batch.offset(j);
+  for (int j = batch.first; j < batch.count; ++j) {
+    const Lanes3 d = batch.offset(j, half);
     const Lanes x = dot(d, scaled_frame.u);
     const Lanes y = dot(d, scaled_frame.v);
     const Lanes z = dot(d, scaled_frame.n);
@@ -81,8 +82,7 @@ inline Quadratic fitQuadratics(const Batch& batch, const Plane& plane, const Fra
     q.c[4] += xy_ * z;
     q.c[5] += yy * z;
   }
-  Lanes count{};
-  for (std::size_t l = 0; l < kWidth; ++l) count[l] = static_cast<float>(batch.counts[l]);
+  const Lanes count = batch.countsOf(half);
   Lanes m[6][6] = {{count},
                    {x1, x2},
                    {y1, xy, y2},

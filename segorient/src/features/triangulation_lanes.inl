@@ -49,15 +49,17 @@ inline Mask isNeighbor(const Lanes3& d) {
 /// Local centre triangulation. The fan's triangles, weighted by their areas, sum up to the vector
 /// area of the polygon through the neighbours, whatever the centre: only their angular order
 /// depends on it.
-inline Lanes3 fanNormals(Batch& batch, const Plane& plane, SortingNetwork& network, float* keys) {
-  const Frame frame = frameOf(plane.normal);
+inline Lanes3 fanNormals(const LocalFitJob& job, const Batch& batch, std::size_t half,
+                         const Plane& plane, SortingNetwork& network, float* keys) {
+  const Frame<Lanes> frame = frameOf(plane.normal);
+  const int first = batch.first;
   const int count = batch.count < 4096 ? batch.count : 4096;
-  if (count == 0) return plane.normal;  // no neighbours in any lane, and no plane
+  if (count == first) return plane.normal;  // no neighbours in any lane, and no plane
   Lanes3 center{};
   Lanes neighbors{};
-  for (int j = 0; j < count; ++j) {
-    const Lanes3 d = batch.offset(j);
-    center = {center.x + d.x, center.y + d.y, center.z + d.z};
+  for (int j = first; j < count; ++j) {
+    const Lanes3 d = batch.offset(j, half);
+    center = sum(center, d);
     neighbors += select(isNeighbor(d), all(1.0F), Lanes{});
   }
   center = scaled(center, 1.0F / larger(neighbors, all(1.0F)));
@@ -69,38 +71,55 @@ inline Lanes3 fanNormals(Batch& batch, const Plane& plane, SortingNetwork& netwo
   int number_bits = 1;
   while ((1 << number_bits) < count) ++number_bits;
   const std::int32_t number_mask = (1 << number_bits) - 1;
-  for (int j = 0; j < count; ++j) {
-    const Lanes3 d = batch.offset(j);
+  for (int j = first; j < count; ++j) {
+    const Lanes3 d = batch.offset(j, half);
     const Lanes x = dot(d, frame.u) - center_u;
     const Lanes y = dot(d, frame.v) - center_v;
     const Lanes size = absolute(x) + absolute(y);
     const Lanes slope = y / select(size > 0.0F, size, all(1.0F));
     const Lanes angle = select(x < 0.0F, 2.0F - slope, select(y < 0.0F, 4.0F + slope, slope));
-    const Lanes key = select(isNeighbor(d), 1.0F + 0.125F * angle, all(1.75F));
-    const Mask numbered = (reinterpret_cast<Mask>(key) & ~number_mask) | j;
-    store(keys + static_cast<std::size_t>(j) * kWidth, reinterpret_cast<Lanes>(numbered));
+    const Mask present = isNeighbor(d);
+    const Lanes key = select(present, 1.0F + 0.125F * angle, all(1.75F));
+    // What is no neighbour goes last, and is the first entry: rows may be shorter than the longest.
+    const Mask numbered = (reinterpret_cast<Mask>(key) & ~number_mask) | (present & j);
+    store(keys + static_cast<std::size_t>(j - first) * kWidth, reinterpret_cast<Lanes>(numbered));
   }
-  network.sort(keys, count);
+  const int sorted = count - first;
+  network.sort(keys, sorted);
 
-  const auto vertex = [&](int j) __attribute__((always_inline)) {
-    const float* vectors[kWidth];
-    for (std::size_t l = 0; l < kWidth; ++l) {
-      std::int32_t key;
-      __builtin_memcpy(&key, keys + static_cast<std::size_t>(j) * kWidth + l, sizeof(key));
-      vectors[l] = batch.vector(static_cast<std::size_t>(key & number_mask), l);
-    }
-    return loadPoints(vectors);
+  // Corners come from the points anew: that costs less than offsets that can be had lane by lane.
+  const double* units = batch.unit + half * kWidth;
+  bool rescaled = false;
+  for (std::size_t l = 0; l < kWidth; ++l) rescaled = rescaled || units[l] != 1.0;
+  const auto numberAt = [&](int j, std::size_t l) __attribute__((always_inline)) {
+    std::int32_t key;
+    __builtin_memcpy(&key, keys + static_cast<std::size_t>(j) * kWidth + l, sizeof(key));
+    return static_cast<std::size_t>(key & number_mask);
   };
-  const Lanes3 first = vertex(0);
-  Lanes3 previous = first;
-  Lanes3 area{};
-  for (int j = 1; j <= count; ++j) {
-    const Mask inside = all(static_cast<float>(j)) < neighbors;
-    const Lanes3 next = j < count ? select(inside, vertex(j), first) : first;
-    const Lanes3 triangle = cross(previous, next);
-    area = {area.x + triangle.x, area.y + triangle.y, area.z + triangle.z};
-    previous = next;
-  }
+  const auto areaOf = [&](auto&& vertex) __attribute__((always_inline)) {
+    const Lanes3 start = vertex(0);
+    Lanes3 previous = start;
+    Lanes3 area{};
+    for (int j = 1; j <= sorted; ++j) {
+      const Mask inside = all(static_cast<float>(j)) < neighbors;
+      const Lanes3 next = j < sorted ? select(inside, vertex(j), start) : start;
+      area = sum(area, cross(previous, next));
+      previous = next;
+    }
+    return area;
+  };
+  const auto corner = [&](int j) __attribute__((always_inline)) {
+    const float* points[kWidth];
+    for (std::size_t l = 0; l < kWidth; ++l) {
+      const pcl::index_t* row = batch.neighbors[half * kWidth + l];
+      points[l] = job.xyz + 4 * static_cast<std::size_t>(row[numberAt(j, l)]);
+    }
+    return difference(loadPoints(points), batch.centers[half]);
+  };
+  const auto rescaledCorner = [&](int j) {
+    return batch.offsetsAt([&](std::size_t l) { return numberAt(j, l); }, half);
+  };
+  Lanes3 area = rescaled ? areaOf(rescaledCorner) : areaOf(corner);
   // In units of the neighbourhood: squares of areas leave float's range early.
   area = scaled(area, 1.0F / (plane.size * plane.size));
   // Collinear in projection: no area, no normal of its own.
@@ -111,8 +130,9 @@ inline Lanes3 fanNormals(Batch& batch, const Plane& plane, SortingNetwork& netwo
 /// inversion about the point its Delaunay neighbours become the vertices of the convex hull of all
 /// inverted neighbours, together with the origin where the point lies on the neighbours' hull. All
 /// lanes walk around their hulls in step (Jarvis), from the nearest neighbour on.
-inline Lanes3 starNormals(const Batch& batch, const Plane& plane, float* inverted) {
-  const Frame frame = frameOf(plane.normal);
+inline Lanes3 starNormals(const Batch& batch, std::size_t half, const Plane& plane,
+                          float* inverted) {
+  const Frame<Lanes> frame = frameOf(plane.normal);
   const Lanes unit_length = 1.0F / plane.size;
   const auto at = [inverted](int j) __attribute__((always_inline)) {
     return inverted + 3 * static_cast<std::size_t>(j) * kWidth;
@@ -120,8 +140,8 @@ inline Lanes3 starNormals(const Batch& batch, const Plane& plane, float* inverte
   // Inverted x, y in the frame, and the height as it is.
   Lanes3 start{};
   Lanes start_norm{};
-  for (int j = 0; j < batch.count; ++j) {
-    const Lanes3 d = scaled(batch.offset(j), unit_length);
+  for (int j = batch.first; j < batch.count; ++j) {
+    const Lanes3 d = scaled(batch.offset(j, half), unit_length);
     const Lanes x = dot(d, frame.u);
     const Lanes y = dot(d, frame.v);
     const Lanes norm = x * x + y * y;
@@ -143,7 +163,7 @@ inline Lanes3 starNormals(const Batch& batch, const Plane& plane, float* inverte
     const Lanes inverse = 1.0F / norm;
     return select(real, Lanes3{image.x * inverse, image.y * inverse, image.z}, Lanes3{});
   };
-  Lanes3 sum{};
+  Lanes3 total{};
   Lanes3 current = start;
   Lanes3 corner_now = corner(start);
   Mask walking = start_norm > 0.0F;
@@ -151,24 +171,29 @@ inline Lanes3 starNormals(const Batch& batch, const Plane& plane, float* inverte
     // The origin is a candidate like the others, except where the walk stands on it.
     const Mask at_origin = (current.x == 0.0F) & (current.y == 0.0F);
     Lanes3 next = select(at_origin, start, Lanes3{});
-    for (int j = 0; j < batch.count; ++j) {
+    // The way to it is kept beside it: it is what the next comparison waits for.
+    Lanes way_x = next.x - current.x;
+    Lanes way_y = next.y - current.y;
+    for (int j = batch.first; j < batch.count; ++j) {
       const Lanes3 image{load(at(j)), load(at(j) + kWidth), load(at(j) + 2 * kWidth)};
-      const Mask right = (next.x - current.x) * (image.y - current.y) <
-                         (next.y - current.y) * (image.x - current.x);
+      const Lanes x = image.x - current.x;
+      const Lanes y = image.y - current.y;
+      const Mask right = way_x * y < way_y * x;
+      way_x = select(right, x, way_x);
+      way_y = select(right, y, way_y);
       next = select(right, image, next);
     }
     const Lanes3 corner_next = corner(next);
     const Lanes3 triangle = cross(corner_now, corner_next);
     const Lanes doubled_area = squareRoot(dot(triangle, triangle));
     const Mask counts = walking & (doubled_area > 0.0F);
-    const Lanes3 added = select(counts, scaled(triangle, 1.0F / doubled_area), Lanes3{});
-    sum = {sum.x + added.x, sum.y + added.y, sum.z + added.z};
+    total = sum(total, select(counts, scaled(triangle, 1.0F / doubled_area), Lanes3{}));
     walking &= (next.x != start.x) | (next.y != start.y);
     current = next;
     corner_now = corner_next;
   }
-  const Lanes3 normal{sum.x * frame.u.x + sum.y * frame.v.x + sum.z * frame.n.x,
-                      sum.x * frame.u.y + sum.y * frame.v.y + sum.z * frame.n.y,
-                      sum.x * frame.u.z + sum.y * frame.v.z + sum.z * frame.n.z};
-  return select(sum.z > 1e-3F, unit(normal), plane.normal);
+  const Lanes3 normal{total.x * frame.u.x + total.y * frame.v.x + total.z * frame.n.x,
+                      total.x * frame.u.y + total.y * frame.v.y + total.z * frame.n.y,
+                      total.x * frame.u.z + total.y * frame.v.z + total.z * frame.n.z};
+  return select(total.z > 1e-3F, unit(normal), plane.normal);
 }
