@@ -31,9 +31,10 @@ bool OneSidedFit::findFrame(const NearPoint* points, std::size_t count) {
   double mean[3] = {0, 0, 0};
   double farthest = 0;
   for (std::size_t j = 0; j < count; ++j) {
-    for (int a = 0; a < 3; ++a) mean[a] += points[j].offset[a] / static_cast<double>(count);
+    for (int a = 0; a < 3; ++a) mean[a] += points[j].offset[a];
     farthest = std::max(farthest, points[j].sqr_distance);
   }
+  for (double& m : mean) m /= static_cast<double>(count);
   SymmetricMatrix3 c{};
   for (std::size_t j = 0; j < count; ++j) {
     const double d[3] = {points[j].offset[0] - mean[0], points[j].offset[1] - mean[1],
@@ -58,8 +59,9 @@ bool OneSidedFit::findFrame(const NearPoint* points, std::size_t count) {
 }
 
 std::array<double, 3> OneSidedFit::inFrame(const double* offset) const {
-  const double d[3] = {(offset[0] - origin_[0]) / reach_, (offset[1] - origin_[1]) / reach_,
-                       (offset[2] - origin_[2]) / reach_};
+  const double scale = 1.0 / reach_;
+  const double d[3] = {(offset[0] - origin_[0]) * scale, (offset[1] - origin_[1]) * scale,
+                       (offset[2] - origin_[2]) * scale};
   std::array<double, 3> local{};
   for (std::size_t i = 0; i < 3; ++i) {
     local[i] = d[0] * axes_[i][0] + d[1] * axes_[i][1] + d[2] * axes_[i][2];

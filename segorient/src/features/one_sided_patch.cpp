@@ -20,8 +20,10 @@ void OneSidedPatch::collect(std::size_t middle) {
   const float* center = scene_.points[middle];
   for (int j = 0; j < scene_.count(middle); ++j) {
     const std::size_t q = scene_.neighbor(middle, j);
-    for (int k = 0; k < scene_.count(q); ++k) {
-      const std::size_t r = scene_.neighbor(q, k);
+    const pcl::index_t* row = scene_.neighborhoods.indices(q);
+    const int count = scene_.count(q);
+    for (int k = 0; k < count; ++k) {
+      const auto r = static_cast<std::size_t>(row[k]);
       if (!seen_.insert(r)) continue;
       Candidate candidate{{}, r, scene_.labels[r]};
       for (std::size_t a = 0; a < 3; ++a) {

@@ -47,10 +47,16 @@ struct RecomputationScene {
   bool meetsBorder(std::size_t i, double flat) const {
     // Nearly all points are far from any border: what each of them costs is this loop.
     const pcl::index_t* row = neighborhoods.indices(i);
-    const std::int32_t label = labels[i];
+    const std::int32_t* label_of = labels.data();
+    const std::int32_t label = label_of[i];
+    const int end = count(i);
     std::int32_t difference = 0;
-    for (int j = 1; j < count(i); ++j)
-      difference |= labels[static_cast<std::size_t>(row[j])] ^ label;
+    int first = 1;
+    for (; first + 4 <= end; first += 4) {
+      difference |= (label_of[row[first]] ^ label) | (label_of[row[first + 1]] ^ label) |
+                    (label_of[row[first + 2]] ^ label) | (label_of[row[first + 3]] ^ label);
+    }
+    for (; first < end; ++first) difference |= label_of[row[first]] ^ label;
     if (difference == 0 && isRegular(label)) return false;
     bool bent = false;
     for (int j = 1; j < count(i) && !bent; ++j) bent = !(cosine(i, neighbor(i, j)) > flat);
