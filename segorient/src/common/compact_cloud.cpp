@@ -62,6 +62,11 @@ class Source {
   Source(const PointView& points, const std::vector<pcl::index_t>* indices)
       : points_(points), indices_(indices) {}
   std::size_t size() const { return indices_ != nullptr ? indices_->size() : points_.size; }
+  // A row that is known to be in range.
+  const float* known(pcl::index_t i) const {
+    const auto at = static_cast<std::size_t>(i);
+    return points_[indices_ != nullptr ? static_cast<std::size_t>((*indices_)[at]) : at];
+  }
   // Null where the row is out of range or not finite.
   const float* at(std::size_t i) const {
     if (indices_ != nullptr) {
@@ -109,7 +114,7 @@ std::vector<Keyed> zOrder(const Source& source) {
   for (std::size_t a = 0; a < 3 && !items.empty(); ++a) extent = std::max(extent, high[a] - low[a]);
   const double scale = extent > 0.0 ? ((1 << 21) - 1) / extent : 0.0;
   for (Keyed& item : items) {
-    const float* p = source.at(static_cast<std::size_t>(item.row));
+    const float* p = source.known(item.row);
     for (std::size_t a = 0; a < 3; ++a) {
       const auto cell = static_cast<std::uint64_t>((static_cast<double>(p[a]) - low[a]) * scale);
       item.key |= spreadBits(cell) << a;
@@ -128,8 +133,8 @@ void sortWithinCells(const Source& source, std::vector<Keyed>& items) {
       std::sort(items.begin() + static_cast<std::ptrdiff_t>(i),
                 items.begin() + static_cast<std::ptrdiff_t>(j),
                 [&](const Keyed& a, const Keyed& b) {
-                  const float* p = source.at(static_cast<std::size_t>(a.row));
-                  const float* q = source.at(static_cast<std::size_t>(b.row));
+                  const float* p = source.known(a.row);
+                  const float* q = source.known(b.row);
                   return equalXyz(p, q) ? a.row < b.row : lessXyz(p, q);
                 });
     }
@@ -151,8 +156,16 @@ CompactCloud compactCloud(const PointView& points, const std::vector<pcl::index_
   out.source.reserve(items.size());
   out.xyz.reserve(4 * items.size());
   const float* last = nullptr;
-  for (const Keyed& item : items) {
-    const float* p = source.at(static_cast<std::size_t>(item.row));
+  // The input may be in any order.
+  constexpr std::size_t kAhead = 16;
+  for (std::size_t i = 0; i < items.size(); ++i) {
+    if (i + kAhead < items.size()) {
+      const pcl::index_t next = items[i + kAhead].row;
+      __builtin_prefetch(source.known(next));
+      __builtin_prefetch(&out.row_of[static_cast<std::size_t>(next)], 1);
+    }
+    const Keyed& item = items[i];
+    const float* p = source.known(item.row);
     if (last == nullptr || !equalXyz(p, last)) {
       out.source.push_back(item.row);
       out.xyz.insert(out.xyz.end(), {p[0], p[1], p[2], 0.0F});

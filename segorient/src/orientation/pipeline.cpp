@@ -201,9 +201,19 @@ void scatter(const Working& work, OrientedCloud& out) {
   out.components.assign(rows, -1);
   out.segmentation.labels.assign(rows, -1);
   out.segmentation.signs.assign(rows, 0);
+  const pcl::index_t* row_of = work.cloud.row_of.data();
+  constexpr std::size_t kAhead = 16;  // the input may be in any order
   for (std::size_t row = 0; row < rows; ++row) {
-    if (work.cloud.row_of[row] < 0) continue;
-    const auto i = static_cast<std::size_t>(work.cloud.row_of[row]);
+    if (row + kAhead < rows && row_of[row + kAhead] >= 0) {
+      const auto next = static_cast<std::size_t>(row_of[row + kAhead]);
+      __builtin_prefetch(&work.normals[4 * next]);
+      __builtin_prefetch(&work.orientation.point_confidences[next]);
+      __builtin_prefetch(&work.orientation.point_components[next]);
+      __builtin_prefetch(&work.segmentation.labels[next]);
+      __builtin_prefetch(&work.segmentation.signs[next]);
+    }
+    if (row_of[row] < 0) continue;
+    const auto i = static_cast<std::size_t>(row_of[row]);
     std::copy_n(&work.normals[4 * i], 4, &out.normals[4 * row]);
     out.confidences[row] = work.orientation.point_confidences[i];
     out.components[row] = work.orientation.point_components[i];

@@ -119,7 +119,26 @@ void SheetGrower::grow(pcl::index_t seed, bool reliable_only) {
   segments_.emplace_back();
   add(at(seed), label, 1);
   queue_.assign(1, seed);
-  for (std::size_t head = 0; head < queue_.size(); ++head) visit(at(queue_[head]), reliable_only);
+  for (std::size_t head = 0; head < queue_.size(); ++head) {
+    // Fetches ahead: rows, and the rows and normals of the points in the farther half of a row,
+    // where growing has not been yet. Not in a function of its own, which compilers leave out.
+    constexpr std::size_t kRowsAhead = 10;
+    constexpr std::size_t kPointsAhead = 3;
+    if (head + kRowsAhead < queue_.size()) {
+      __builtin_prefetch(neighbors(at(queue_[head + kRowsAhead])));
+      __builtin_prefetch(&admissible_[at(queue_[head + kRowsAhead])]);
+    }
+    if (head + kPointsAhead < queue_.size()) {
+      const std::size_t p = at(queue_[head + kPointsAhead]);
+      const pcl::index_t* row = neighbors(p);
+      for (int last = degree(p), j = last / 2; j < last; ++j) {
+        __builtin_prefetch(&labels_[at(row[j])]);
+        __builtin_prefetch(normal(at(row[j])));
+        __builtin_prefetch(neighbors(at(row[j])));
+      }
+    }
+    visit(at(queue_[head]), reliable_only);
+  }
 }
 
 void SheetGrower::growAll() {
