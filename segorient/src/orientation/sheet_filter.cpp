@@ -109,12 +109,15 @@ struct Block {
 
 // Sums by lane, so that compilers can use vectors without changing the order of any sum.
 struct Sums {
-  alignas(32) std::array<float, kLanes> x{};
-  alignas(32) std::array<float, kLanes> y{};
-  alignas(32) std::array<float, kLanes> z{};
-  alignas(32) std::array<float, kLanes> total{};
+  alignas(32) std::array<float, kLanes> x;
+  alignas(32) std::array<float, kLanes> y;
+  alignas(32) std::array<float, kLanes> z;
+  alignas(32) std::array<float, kLanes> total;
+};
 
-  void add(const Block& b, std::size_t first, const Kernel& kernel) {
+__attribute__((always_inline)) inline void addLanes(const Block& b, std::size_t filled,
+                                                    const Kernel& kernel, Sums& sums) {
+  for (std::size_t first = 0; first < filled; first += kLanes) {
     for (std::size_t l = 0; l < kLanes; ++l) {
       const std::size_t j = first + l;
       const float off =
@@ -128,23 +131,42 @@ struct Sums {
       const float base8 = base4 * base4;
       // Half weight at two spacings.
       const float w = b.used[j] / (base8 * base8 * (1.F + fit * fit) * (1.F + 0.25F * far2));
-      x[l] += w * b.nx[j];
-      y[l] += w * b.ny[j];
-      z[l] += w * b.nz[j];
-      total[l] += w;
+      sums.x[l] += w * b.nx[j];
+      sums.y[l] += w * b.ny[j];
+      sums.z[l] += w * b.nz[j];
+      sums.total[l] += w;
     }
   }
-};
+}
+
+using AddBlock = void (*)(const Block&, std::size_t, const Kernel&, Sums&);
+
+void addPortably(const Block& b, std::size_t filled, const Kernel& kernel, Sums& sums) {
+  addLanes(b, filled, kernel, sums);
+}
+#if defined(__x86_64__)
+__attribute__((target("avx2"))) void addByAvx2(const Block& b, std::size_t filled,
+                                               const Kernel& kernel, Sums& sums) {
+  addLanes(b, filled, kernel, sums);
+}
+#endif
+
+AddBlock chooseAddBlock() {
+#if defined(__x86_64__)
+  if (__builtin_cpu_supports("avx2")) return &addByAvx2;
+#endif
+  return &addPortably;
+}
 
 Mean meanNormal(const PointView& points, const Neighborhoods& nb, const std::vector<float>& normals,
-                float h, std::size_t p, const Kernel& kernel) {
+                float h, std::size_t p, const Kernel& kernel, AddBlock addBlock) {
   const pcl::index_t* row = nb.indices(p);
   constexpr float kMost = 1e36F;  // finite, and so is what distances in the cloud's unit give by it
   const float per_h = h > 0.F ? std::min(1.F / h, kMost) : 0.F;
   const auto count = static_cast<std::size_t>(nb.count(p));
   const bool fours = points.stride >= 4;
   Block block;
-  Sums sums;
+  Sums sums{};
   for (std::size_t first = 0; first < count; first += kBlock) {
     const std::size_t end = std::min(count, first + kBlock);
     std::size_t filled = 0;
@@ -158,7 +180,7 @@ Mean meanNormal(const PointView& points, const Neighborhoods& nb, const std::vec
       if (std::isfinite(n[0])) block.set(filled++, points[p], points[q], per_h, n);
     }
     while (filled % kLanes != 0) block.clear(filled++);
-    for (std::size_t i = 0; i < filled; i += kLanes) sums.add(block, i, kernel);
+    addBlock(block, filled, kernel, sums);
   }
   Mean mean;
   for (std::size_t l = 0; l < kLanes; ++l) {
@@ -179,6 +201,7 @@ FilteredNormals filterOrientedNormals(const PointView& points, const Neighborhoo
   // A tenth of a spacing is what curvature explains at one spacing's distance, beside the noise.
   const float half_fit = 0.03F + residual;
   const Kernel kernel{1.F / std::sqrt(0.01F + residual * residual), 1.F / half_fit};
+  const AddBlock addBlock = chooseAddBlock();
   FilteredNormals out;
   out.normals = oriented;
   out.confidences.assign(points.size, 0.F);
@@ -191,7 +214,7 @@ FilteredNormals filterOrientedNormals(const PointView& points, const Neighborhoo
 #pragma omp parallel for num_threads(t) schedule(dynamic, 2048)
     for (std::size_t p = 0; p < points.size; ++p) {
       if (out.confidences[p] > kSettled) continue;
-      const Mean mean = meanNormal(points, nb, out.normals, spacing[p], p, kernel);
+      const Mean mean = meanNormal(points, nb, out.normals, spacing[p], p, kernel, addBlock);
       const double l = mean.length();
       const auto total = static_cast<double>(mean.total);
       if (!(total > 0.0) || !(l > 1e-4 * total)) continue;
