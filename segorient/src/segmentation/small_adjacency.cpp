@@ -33,24 +33,28 @@ SmallAdjacency::SmallAdjacency(const GrowthState& state, std::size_t small_size)
 void SmallAdjacency::listReverse() {
   reverse_starts_.assign(points_.size() + 1, 0);
   if (points_.empty()) return;
-  const auto forEachReverse = [&](auto&& visit) {
-    for (std::size_t p = 0; p < state_.nodes.size(); ++p) {
-      if (state_.on_border[p] == 0 || state_.labels[p] < 0) continue;
-      const pcl::index_t* row = state_.neighborhoods->indices(p);
-      const int count = state_.rowSize(p);
-      for (int j = 1; j < count; ++j) {
-        const auto q = static_cast<std::size_t>(row[j]);
-        if (slots_[q] != kNone && state_.labels[q] != state_.labels[p]) visit(slots_[q], p);
-      }
-    }
+  struct Reverse {
+    std::uint32_t slot;
+    pcl::index_t point;
   };
-  forEachReverse([&](std::uint32_t slot, std::size_t) { ++reverse_starts_[slot + 1]; });
+  std::vector<Reverse> found;
+  const std::uint32_t* slots = slots_.data();
+  const std::int32_t* labels = state_.labels.data();
+  for (std::size_t p = 0; p < state_.nodes.size(); ++p) {
+    if (state_.on_border[p] == 0 || labels[p] < 0) continue;
+    const pcl::index_t* row = state_.neighborhoods->indices(p);
+    const int count = state_.rowSize(p);
+    for (int j = 1; j < count; ++j) {
+      const std::uint32_t slot = slots[row[j]];
+      if (slot == kNone || labels[row[j]] == labels[p]) continue;
+      found.push_back({slot, static_cast<pcl::index_t>(p)});
+      ++reverse_starts_[slot + 1];
+    }
+  }
   for (std::size_t s = 0; s < points_.size(); ++s) reverse_starts_[s + 1] += reverse_starts_[s];
-  reverse_.resize(reverse_starts_.back());
+  reverse_.resize(found.size());
   std::vector<std::size_t> next(reverse_starts_.begin(), reverse_starts_.end() - 1);
-  forEachReverse([&](std::uint32_t slot, std::size_t p) {
-    reverse_[next[slot]++] = static_cast<pcl::index_t>(p);
-  });
+  for (const Reverse& r : found) reverse_[next[r.slot]++] = r.point;
 }
 
 void SmallAdjacency::append(std::int32_t from, std::int32_t into) {
