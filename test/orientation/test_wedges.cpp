@@ -35,7 +35,11 @@ struct Wedge {
       const std::array<float, 2> n{-std::sin(kHalf), side * std::cos(kHalf)};
       xyz.insert(xyz.end(), {d * std::cos(kHalf), side * d * std::sin(kHalf), z, 0.F});
       truth.insert(truth.end(), {n[0], n[1], 0.F, 0.F});
-      oriented.insert(oriented.end(), {(own + other) * n[0], (own - other) * n[1], 0.F, 0.F});
+      const std::array<float, 2> mean{(own + other) * n[0], (own - other) * n[1]};
+      const float length = std::hypot(mean[0], mean[1]);
+      // Planes through points of both faces leave a part of their distance.
+      const float residual = own * other != 0.F ? 0.3F : 0.F;
+      oriented.insert(oriented.end(), {mean[0] / length, mean[1] / length, 0.F, residual});
     }
   }
 
@@ -56,6 +60,29 @@ TEST(Wedges, PointsTakeTheNormalOfTheirFace) {
   EXPECT_LT(shareOutward(wedge.oriented, wedge.truth), 0.995);
   EXPECT_GT(wedge.shareRight(true), 0.9985);
   EXPECT_LT(wedge.shareRight(false), 0.9985);
+}
+
+// Deep in the wedge, where planes took points of both faces, no neighbour's normal is sure until
+// those farther out have got theirs.
+TEST(Wedges, FromOutsideInwards) {
+  const Wedge wedge([](float, float d, float z) -> std::array<float, 2> {
+    const float own = std::fmod(1000.F * (d + z), 2.F) < 1.F ? 0.7F : 0.3F;
+    if (d < 6.F * Wedge::kSpacing) return {own, 1.F - own};
+    return {1.F, 0.F};
+  });
+  const auto shareOfTheirFace = [&](const std::vector<float>& normals) {
+    std::size_t near = 0;
+    for (std::size_t i = 0; i < normals.size(); i += 4) {
+      near += dot3(&normals[i], &wedge.truth[i]) > 0.95F ? 1 : 0;
+    }
+    return 4.0 * static_cast<double>(near) / static_cast<double>(normals.size());
+  };
+  EXPECT_LT(shareOfTheirFace(wedge.oriented), 0.92);
+  const std::vector<float> spacing(wedge.xyz.size() / 4, Wedge::kSpacing);
+  const FilteredNormals filtered = filterOrientedNormals(viewOf(wedge.xyz), neighborsOf(wedge.xyz),
+                                                         wedge.oriented, spacing, 0.F, 2, true);
+  // In one go it would be 0.9583.
+  EXPECT_GT(shareOfTheirFace(filtered.normals), 0.9595);
 }
 
 TEST(Wedges, PatchesWithTheSignOfTheOtherFaceAreTurned) {

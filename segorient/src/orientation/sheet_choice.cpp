@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <utility>
 
 namespace segorient::detail {
@@ -24,13 +25,13 @@ struct Sheet {
   float meanOffset() const { return offset / total; }
 };
 
-constexpr float kDecided = 0.9F;  ///< from then on the surroundings agree
+constexpr float kDecided = 0.9F;  ///< confidence from which on the surroundings agree
 
 class SheetChoice {
  public:
   SheetChoice(const PointView& points, const Neighborhoods& nb, const FilteredNormals& filtered,
-              float residual)
-      : points_(points), nb_(nb), filtered_(filtered), residual_(residual) {}
+              const std::vector<std::uint8_t>& decided, float residual)
+      : points_(points), nb_(nb), filtered_(filtered), decided_(decided), residual_(residual) {}
 
   /// Writes the normal of the sheet that p is on to `normal`, if that can be told.
   bool choose(std::size_t p, float h, float* normal) const {
@@ -70,7 +71,7 @@ class SheetChoice {
     std::size_t count = 0;
     for (int j = 1; j < nb_.count(p); ++j) {
       const auto q = static_cast<std::size_t>(row[j]);
-      if (!(filtered_.confidences[q] >= kDecided)) continue;
+      if (decided_[q] == 0) continue;
       const float* n = filtered_.normals.data() + 4 * q;
       float off = 0.F;
       float far2 = 0.F;
@@ -96,6 +97,7 @@ class SheetChoice {
   const PointView& points_;
   const Neighborhoods& nb_;
   const FilteredNormals& filtered_;
+  const std::vector<std::uint8_t>& decided_;
   float residual_;
 };
 
@@ -104,22 +106,35 @@ class SheetChoice {
 void chooseSheets(const PointView& points, const Neighborhoods& nb,
                   const std::vector<float>& spacing, float residual, int threads,
                   FilteredNormals& filtered) {
+  std::vector<std::uint8_t> decided(points.size);
   std::vector<std::size_t> undecided;
   for (std::size_t p = 0; p < points.size; ++p) {
-    if (filtered.confidences[p] < kDecided && spacing[p] > 0.F) undecided.push_back(p);
+    decided[p] = filtered.confidences[p] >= kDecided ? 1 : 0;
+    if (decided[p] == 0 && spacing[p] > 0.F) undecided.push_back(p);
   }
   std::vector<std::array<float, 4>> chosen(undecided.size());
-  const SheetChoice choice(points, nb, filtered, residual);
+  const SheetChoice choice(points, nb, filtered, decided, residual);
+  // What has been told is a witness in the next pass: so they work their way into the wedge.
+  constexpr int kPasses = 4;
+  for (int pass = 0; pass < kPasses && !undecided.empty(); ++pass) {
 #pragma omp parallel for num_threads(threads) schedule(dynamic, 256)
-  for (std::size_t i = 0; i < undecided.size(); ++i) {
-    const bool found = choice.choose(undecided[i], spacing[undecided[i]], chosen[i].data());
-    chosen[i][3] = found ? 1.F : 0.F;
-  }
-  for (std::size_t i = 0; i < undecided.size(); ++i) {
-    if (chosen[i][3] > 0.F) {
-      std::copy(chosen[i].begin(), chosen[i].begin() + 3,
-                filtered.normals.begin() + static_cast<std::ptrdiff_t>(4 * undecided[i]));
+    for (std::size_t i = 0; i < undecided.size(); ++i) {
+      const bool found = choice.choose(undecided[i], spacing[undecided[i]], chosen[i].data());
+      chosen[i][3] = found ? 1.F : 0.F;
     }
+    std::size_t left = 0;
+    for (std::size_t i = 0; i < undecided.size(); ++i) {
+      const std::size_t p = undecided[i];
+      if (chosen[i][3] > 0.F) {
+        std::copy(chosen[i].begin(), chosen[i].begin() + 3,
+                  filtered.normals.begin() + static_cast<std::ptrdiff_t>(4 * p));
+        decided[p] = 1;
+      } else {
+        undecided[left++] = p;
+      }
+    }
+    if (left == undecided.size()) break;
+    undecided.resize(left);
   }
 }
 

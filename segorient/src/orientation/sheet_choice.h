@@ -12,7 +12,8 @@ namespace segorient::detail {
 
 /// Where two sheets meet in a wedge, the mean of their oriented normals may point to either side:
 /// points there take the normal of the sheet that they lie on, where the noise allows to tell.
-/// Sheets are taken from neighbours whose surroundings agree about the normal.
+/// Sheets are taken from neighbours whose surroundings agree about the normal, and from those that
+/// have got theirs in this way.
 /// \param residual median residual of the cloud, in spacings
 /// \param filtered normals of some points change, confidences stay: such points are on an edge
 void chooseSheets(const PointView& points, const Neighborhoods& neighborhoods,
