@@ -6,6 +6,7 @@
 #include <Eigen/Eigenvalues>
 #include <cmath>
 #include <limits>
+#include <random>
 #include <vector>
 
 #include "feature_clouds.h"
@@ -190,6 +191,52 @@ TEST_P(AnyEstimator, UnevenRows) {
   }
   const std::vector<float> normals = normalsOf(sample.view(), table, options());
   for (std::size_t i = 0; i < normals.size(); ++i) ASSERT_EQ(normals[i], expected[i]) << i;
+}
+
+// On a grid angles tie; what breaks the ties may not come from the longer rows beside.
+TEST_P(AnyEstimator, TiesDoNotDependOnOtherRows) {
+  Sample grid;
+  std::mt19937 generator(7);
+  std::normal_distribution<float> noise(0.F, 0.02F);
+  for (int i = 0; i < 1600; ++i) {
+    const auto x = static_cast<float>(i % 40);
+    const auto y = static_cast<float>(i / 40);
+    grid.add({x, y, noise(generator)}, Eigen::Vector3f::UnitZ());
+  }
+  Neighborhoods table = neighborsOf(grid.view(), 199);
+  for (std::size_t i = 0; i < table.size(); ++i) table.setCount(i, i / 8 % 2 == 0 ? 32 : 200);
+  LocalNormalOptions o = options();
+  const std::vector<float> normals = normalsOf(grid.view(), table, o);
+  std::vector<float> alone(normals.size());
+  for (std::size_t i = 0; i < table.size(); ++i) {
+    const std::vector<pcl::index_t> row{static_cast<pcl::index_t>(i)};
+    estimateNormals(grid.view(), grid.view(), table, o, alone.data(), nullptr, &row);
+  }
+  EXPECT_EQ(normals, alone);
+  o.portable = true;
+  EXPECT_EQ(normals, normalsOf(grid.view(), table, o));
+}
+
+// Every second point of an array as a query for all of them: row 5 is not point 5.
+TEST_P(AnyEstimator, QueriesAndPointsOfOneArray) {
+  const Sample sample = torus(1000, 12);
+  const PointView points = sample.view();
+  const PointView queries{points.data, 2 * points.stride, points.size / 2};
+  const Neighborhoods all = neighborsOf(points, 12);
+  Neighborhoods table;
+  table.reset(queries.size, 13, false);
+  std::vector<float> copy;
+  for (std::size_t row = 0; row < queries.size; ++row) {
+    std::copy_n(all.indices(2 * row), 13, table.mutableIndices(row));
+    table.mutableIndices(row)[0] = static_cast<pcl::index_t>(row);
+    table.setCount(row, 13);
+    copy.insert(copy.end(), queries[row], queries[row] + 4);
+  }
+  std::vector<float> normals(4 * queries.size);
+  std::vector<float> expected(4 * queries.size);
+  estimateNormals(queries, points, table, options(), normals.data());
+  estimateNormals({copy.data(), 4, queries.size}, points, table, options(), expected.data());
+  EXPECT_EQ(normals, expected);
 }
 
 INSTANTIATE_TEST_SUITE_P(Estimators, AnyEstimator,

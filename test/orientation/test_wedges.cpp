@@ -5,6 +5,7 @@
 #include <segorient/orientation/sheet_filter.h>
 
 #include <array>
+#include <cstdlib>
 #include <functional>
 #include <random>
 
@@ -115,6 +116,21 @@ TEST(Wedges, SpacingsWithoutAnInverse) {
   for (std::size_t i = 0; i < filtered.normals.size(); i += 4) {
     ASSERT_NEAR(dot3(&filtered.normals[i], &filtered.normals[i]), 1.F, 1e-4F) << i / 4;
   }
+}
+
+TEST(Wedges, SameBitsForAnyInstructionSet) {
+  const Wedge wedge([](float, float d, float) -> std::array<float, 2> { return {1.F, 0.3F * d}; });
+  const std::vector<float> spacing(wedge.xyz.size() / 4, Wedge::kSpacing);
+  const auto filtered = [&] {
+    return filterOrientedNormals(viewOf(wedge.xyz), neighborsOf(wedge.xyz), wedge.oriented, spacing,
+                                 0.1F, 2, true);
+  };
+  const FilteredNormals reference = filtered();
+  setenv("SEGORIENT_SIMD", "sse2", 1);
+  const FilteredNormals narrow = filtered();
+  unsetenv("SEGORIENT_SIMD");
+  EXPECT_EQ(narrow.normals, reference.normals);
+  EXPECT_EQ(narrow.confidences, reference.confidences);
 }
 
 TEST(Wedges, WallsOfAThinPlateAreTwoSurfaces) {

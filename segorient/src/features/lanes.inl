@@ -69,12 +69,7 @@ SEGORIENT_TWICE(Twice, /)
 SEGORIENT_TWICE(TwiceMask, <)
 SEGORIENT_TWICE(TwiceMask, >)
 SEGORIENT_TWICE(TwiceMask, >=)
-SEGORIENT_TWICE(TwiceMask, ==)
-SEGORIENT_TWICE(TwiceMask, !=)
 #undef SEGORIENT_TWICE
-inline Twice operator+(float a, const Twice& b) {
-  return {a + b.first, a + b.second};
-}
 inline Twice operator-(float a, const Twice& b) {
   return {a - b.first, a - b.second};
 }
@@ -84,14 +79,8 @@ inline Twice operator*(float a, const Twice& b) {
 inline Twice operator/(float a, const Twice& b) {
   return {a / b.first, a / b.second};
 }
-inline Twice operator-(const Twice& a) {
-  return {-a.first, -a.second};
-}
 inline TwiceMask operator&(const TwiceMask& a, const TwiceMask& b) {
   return {a.first & b.first, a.second & b.second};
-}
-inline TwiceMask operator|(const TwiceMask& a, const TwiceMask& b) {
-  return {a.first | b.first, a.second | b.second};
 }
 inline Twice select(const TwiceMask& condition, const Twice& yes, const Twice& no) {
   return {select(condition.first, yes.first, no.first),
@@ -199,15 +188,12 @@ inline Vector3<V> unit(const Vector3<V>& a) {
 
 /// Orthonormal vectors that with n are a right-handed frame (Duff et al., Building an orthonormal
 /// basis, revisited, JCGT 2017).
-template <typename V>
 struct Frame {
-  Vector3<V> u, v, n;
+  Lanes3 u, v, n;
 };
-template <typename V>
-inline Frame<V> frameOf(const Vector3<V>& n) {
-  const V zero{};
-  const V sign = select(n.z < 0.0F, zero - 1.0F, zero + 1.0F);
-  const V a = -1.0F / (sign + n.z);
-  const V b = n.x * n.y * a;
+inline Frame frameOf(const Lanes3& n) {
+  const Lanes sign = select(n.z < 0.0F, all(-1.0F), all(1.0F));
+  const Lanes a = -1.0F / (sign + n.z);
+  const Lanes b = n.x * n.y * a;
   return {{1.0F + sign * n.x * n.x * a, sign * b, -sign * n.x}, {b, sign + n.y * n.y * a, -n.y}, n};
 }

@@ -13,6 +13,7 @@ namespace segorient::detail {
 struct LocalFitJob {
   PointView queries;
   const float* xyz = nullptr;  ///< the neighbours' coordinates, 4 floats a point
+  bool same_points = false;    ///< the neighbours are of the queries' own cloud
   const Neighborhoods* neighborhoods = nullptr;
   const pcl::index_t* rows = nullptr;  ///< rows to do, or null for all
   NormalEstimator estimator = NormalEstimator::Plane;

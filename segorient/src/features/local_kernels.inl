@@ -20,7 +20,7 @@ inline Lanes3 surfaceNormals(const LocalFitJob& job, const Batch& batch, std::si
                              std::size_t used, const Plane& plane, const Lanes3& guess) {
   const std::size_t* rows = batch.rows + half * kWidth;
   const double* units = batch.unit + half * kWidth;
-  const Frame<Lanes> frame = frameOf(guess);
+  const Frame frame = frameOf(guess);
   const Quadratic q = fitQuadratics(batch, half, plane, frame);
   const Lanes3 fitted = unit(Lanes3{frame.n.x - q.c[1] * frame.u.x - q.c[2] * frame.v.x,
                                     frame.n.y - q.c[1] * frame.u.y - q.c[2] * frame.v.y,
@@ -64,7 +64,7 @@ void estimateRows(const LocalFitJob& job, std::size_t begin, std::size_t end) {
   const auto entries = static_cast<std::size_t>(job.entries);
   Batch batch(entries);
   SortingNetwork network;
-  std::vector<float> scratch(first == NormalEstimator::Plane ? 0 : 3 * entries * kBatchRows);
+  std::vector<float> scratch(first == NormalEstimator::Plane ? 0 : 3 * entries * kWidth);
   for (std::size_t i = begin; i < end; i += kBatchRows) {
     loadBatch(job, i, end, batch);
     Plane planes[2];

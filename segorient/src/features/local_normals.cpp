@@ -88,6 +88,7 @@ void estimateNormals(const PointView& queries, const PointView& points,
   LocalFitJob job;
   job.queries = queries;
   job.xyz = packed(points, copy);
+  job.same_points = queries.data == points.data && queries.stride == points.stride;
   job.neighborhoods = &neighborhoods;
   job.rows = rows ? rows->data() : nullptr;
   job.estimator = options.estimator;

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026, the segorient authors
 //
-// Neighbourhoods of kLanes points at once, and their planes. Included once per instruction set.
+// Neighbourhoods of twice kLanes points at once, and their planes. Included once per instruction
+// set.
 
 /// Points that are worked on at once: two registers full.
 constexpr std::size_t kBatchRows = 2 * kWidth;
@@ -9,8 +10,8 @@ constexpr std::size_t kBatchRows = 2 * kWidth;
 /// The row of points without neighbours: its first entry can be read as any other's.
 constexpr pcl::index_t kNoNeighbors[1] = {0};
 
-/// Some points' neighbours as offsets from them: entry j of point l at [j * kBatchRows + l].
-/// Entries beyond a point's own count are zero, so they add nothing to any sum.
+/// Some points' neighbours as offsets from them: entry j of point l at [j * kBatchRows + l], from
+/// `first` on. Entries beyond a point's own count are zero, so they add nothing to any sum.
 struct Batch {
   explicit Batch(std::size_t entries) : buffer(3 * entries * kBatchRows) {
     x = buffer.data();
@@ -27,7 +28,7 @@ struct Batch {
     store(y + at, d.y);
     store(z + at, d.z);
   }
-  /// Another neighbour of each of one register's points.
+  /// Of each of one register's points the neighbour numbered numberOf(lane).
   template <typename NumberOf>
   Lanes3 offsetsAt(NumberOf&& numberOf, std::size_t half) const {
     Lanes3 result{};
@@ -94,13 +95,13 @@ inline void loadHalf(const LocalFitJob& job, std::size_t half, Batch& batch) {
   }
 }
 
-/// Reads the neighbours of rows first to first + kBatchRows - 1; beyond `last` the last row again.
-inline void loadBatch(const LocalFitJob& job, std::size_t first, std::size_t last, Batch& batch) {
-  bool selves = job.queries.data == job.xyz;
+/// Reads the neighbours of rows begin to begin + kBatchRows - 1; from `end` on the last row again.
+inline void loadBatch(const LocalFitJob& job, std::size_t begin, std::size_t end, Batch& batch) {
+  bool selves = job.same_points;
   batch.count = 0;
   batch.even = true;
   for (std::size_t l = 0; l < kBatchRows; ++l) {
-    const std::size_t row = job.row(first + l < last ? first + l : last - 1);
+    const std::size_t row = job.row(begin + l < end ? begin + l : end - 1);
     batch.rows[l] = row;
     batch.counts[l] = job.count(row);
     batch.unit[l] = 1.0;

@@ -51,15 +51,15 @@ struct RecomputationScene {
     const std::int32_t label = label_of[i];
     const int end = count(i);
     std::int32_t difference = 0;
-    int first = 1;
-    for (; first + 4 <= end; first += 4) {
-      difference |= (label_of[row[first]] ^ label) | (label_of[row[first + 1]] ^ label) |
-                    (label_of[row[first + 2]] ^ label) | (label_of[row[first + 3]] ^ label);
+    int k = 1;
+    for (; k + 4 <= end; k += 4) {
+      difference |= (label_of[row[k]] ^ label) | (label_of[row[k + 1]] ^ label) |
+                    (label_of[row[k + 2]] ^ label) | (label_of[row[k + 3]] ^ label);
     }
-    for (; first < end; ++first) difference |= label_of[row[first]] ^ label;
+    for (; k < end; ++k) difference |= label_of[row[k]] ^ label;
     if (difference == 0 && isRegular(label)) return false;
     bool bent = false;
-    for (int j = 1; j < count(i) && !bent; ++j) bent = !(cosine(i, neighbor(i, j)) > flat);
+    for (int j = 1; j < end && !bent; ++j) bent = !(cosine(i, neighbor(i, j)) > flat);
     return bent;
   }
 };

@@ -51,7 +51,7 @@ inline Mask isNeighbor(const Lanes3& d) {
 /// depends on it.
 inline Lanes3 fanNormals(const LocalFitJob& job, const Batch& batch, std::size_t half,
                          const Plane& plane, SortingNetwork& network, float* keys) {
-  const Frame<Lanes> frame = frameOf(plane.normal);
+  const Frame frame = frameOf(plane.normal);
   const int first = batch.first;
   const int count = batch.count < 4096 ? batch.count : 4096;
   if (count == first) return plane.normal;  // no neighbours in any lane, and no plane
@@ -68,9 +68,14 @@ inline Lanes3 fanNormals(const LocalFitJob& job, const Batch& batch, std::size_t
 
   // Keys are angles with the neighbour's number in their last bits. The angle is that of a square
   // instead of a circle: it has the same order, and needs one division.
-  int number_bits = 1;
-  while ((1 << number_bits) < count) ++number_bits;
-  const std::int32_t number_mask = (1 << number_bits) - 1;
+  // As many bits as each point's own number of neighbours takes: what the others have is no matter.
+  Mask number_masks{};
+  for (std::size_t l = 0; l < kWidth; ++l) {
+    const int own = std::min(batch.counts[half * kWidth + l], count);
+    int bits = 1;
+    while ((1 << bits) < own) ++bits;
+    number_masks[l] = (1 << bits) - 1;
+  }
   for (int j = first; j < count; ++j) {
     const Lanes3 d = batch.offset(j, half);
     const Lanes x = dot(d, frame.u) - center_u;
@@ -80,8 +85,8 @@ inline Lanes3 fanNormals(const LocalFitJob& job, const Batch& batch, std::size_t
     const Lanes angle = select(x < 0.0F, 2.0F - slope, select(y < 0.0F, 4.0F + slope, slope));
     const Mask present = isNeighbor(d);
     const Lanes key = select(present, 1.0F + 0.125F * angle, all(1.75F));
-    // What is no neighbour goes last, and is the first entry: rows may be shorter than the longest.
-    const Mask numbered = (reinterpret_cast<Mask>(key) & ~number_mask) | (present & j);
+    // What is no neighbour goes last and is numbered 0, which every row has: rows may be shorter.
+    const Mask numbered = (reinterpret_cast<Mask>(key) & ~number_masks) | (present & j);
     store(keys + static_cast<std::size_t>(j - first) * kWidth, reinterpret_cast<Lanes>(numbered));
   }
   const int sorted = count - first;
@@ -94,7 +99,7 @@ inline Lanes3 fanNormals(const LocalFitJob& job, const Batch& batch, std::size_t
   const auto numberAt = [&](int j, std::size_t l) __attribute__((always_inline)) {
     std::int32_t key;
     __builtin_memcpy(&key, keys + static_cast<std::size_t>(j) * kWidth + l, sizeof(key));
-    return static_cast<std::size_t>(key & number_mask);
+    return static_cast<std::size_t>(key & number_masks[l]);
   };
   const auto areaOf = [&](auto&& vertex) __attribute__((always_inline)) {
     const Lanes3 start = vertex(0);
@@ -132,7 +137,7 @@ inline Lanes3 fanNormals(const LocalFitJob& job, const Batch& batch, std::size_t
 /// lanes walk around their hulls in step (Jarvis), from the nearest neighbour on.
 inline Lanes3 starNormals(const Batch& batch, std::size_t half, const Plane& plane,
                           float* inverted) {
-  const Frame<Lanes> frame = frameOf(plane.normal);
+  const Frame frame = frameOf(plane.normal);
   const Lanes unit_length = 1.0F / plane.size;
   const auto at = [inverted](int j) __attribute__((always_inline)) {
     return inverted + 3 * static_cast<std::size_t>(j) * kWidth;
@@ -167,6 +172,7 @@ inline Lanes3 starNormals(const Batch& batch, std::size_t half, const Plane& pla
   Lanes3 current = start;
   Lanes3 corner_now = corner(start);
   Mask walking = start_norm > 0.0F;
+  const Lanes counts_of = batch.countsOf(half);
   for (int step = 0; step <= batch.count && any(walking); ++step) {
     // The origin is a candidate like the others, except where the walk stands on it.
     const Mask at_origin = (current.x == 0.0F) & (current.y == 0.0F);
@@ -189,6 +195,7 @@ inline Lanes3 starNormals(const Batch& batch, std::size_t half, const Plane& pla
     const Mask counts = walking & (doubled_area > 0.0F);
     total = sum(total, select(counts, scaled(triangle, 1.0F / doubled_area), Lanes3{}));
     walking &= (next.x != start.x) | (next.y != start.y);
+    walking &= all(static_cast<float>(step)) < counts_of;
     current = next;
     corner_now = corner_next;
   }

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdlib>
 #include <cstring>
 
 #include "contrary_patches.h"
@@ -151,9 +152,12 @@ __attribute__((target("avx2"))) void addByAvx2(const Block& b, std::size_t fille
 }
 #endif
 
+// SEGORIENT_SIMD may ask for less, as in the search.
 AddBlock chooseAddBlock() {
 #if defined(__x86_64__)
-  if (__builtin_cpu_supports("avx2")) return &addByAvx2;
+  const char* wanted = std::getenv("SEGORIENT_SIMD");
+  const bool wide = wanted == nullptr || std::strcmp(wanted, "avx2") == 0;
+  if (wide && __builtin_cpu_supports("avx2") != 0) return &addByAvx2;
 #endif
   return &addPortably;
 }

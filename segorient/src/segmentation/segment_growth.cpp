@@ -152,6 +152,7 @@ class Grower {
       for (std::uint32_t others = othersAmong(row + first, last - first); others != 0;
            others &= others - 1) {
         const auto q = static_cast<std::size_t>(row[first + __builtin_ctz(others)]);
+        if (labels_[q] == label_) continue;  // twice in the row
         if (labels_[q] >= 0 || !tryAccept(node, q)) border = 1;
       }
     }

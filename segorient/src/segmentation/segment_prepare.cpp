@@ -81,8 +81,10 @@ float sqrSpacing(const Node* nodes, const pcl::index_t* row, std::size_t p, int 
 
 float sqrSpacing(const float* sqr_distances, int count) {
   const float* d = sqr_distances;
-  // Rows ascend: nearly always there are no duplicates, and nothing to look for.
-  if (count > kRing && d[1] > 0.F) {
+  static_assert(kRing == 6, "the terms below");
+  // Nearly always there are no duplicates, and nothing to look for.
+  if (count > kRing && d[1] > 0.F && d[2] > 0.F && d[3] > 0.F && d[4] > 0.F && d[5] > 0.F &&
+      d[6] > 0.F) {
     return (d[1] + d[2] + d[3] + d[4] + d[5] + d[6]) / static_cast<float>(kRing);
   }
   float sum = 0.F;

@@ -164,12 +164,13 @@ class Settler {
       std::uint32_t wanted = 0;
       for (int i = 0; i < size; ++i) {
         const auto at = static_cast<std::size_t>(i);
-        const bool wants = (labels[at] == candidate.label) & candidate.wants(curvatures[at]);
-        wanted |= static_cast<std::uint32_t>(wants) << i;
+        const auto same = static_cast<std::uint32_t>(labels[at] == candidate.label);
+        wanted |= (same & static_cast<std::uint32_t>(candidate.wants(curvatures[at]))) << i;
       }
       for (; wanted != 0; wanted &= wanted - 1) {
         const auto i = static_cast<std::size_t>(__builtin_ctz(wanted));
-        if (static_cast<std::size_t>(row[i]) != p) candidate.offer(row[i], curvatures[i]);
+        if (static_cast<std::size_t>(row[i]) != p)
+          candidate.offer(static_cast<std::int32_t>(row[i]), curvatures[i]);
       }
     }
   }

@@ -33,28 +33,34 @@ SmallAdjacency::SmallAdjacency(const GrowthState& state, std::size_t small_size)
 void SmallAdjacency::listReverse() {
   reverse_starts_.assign(points_.size() + 1, 0);
   if (points_.empty()) return;
-  struct Reverse {
-    std::uint32_t slot;
-    pcl::index_t point;
-  };
-  std::vector<Reverse> found;
   const std::uint32_t* slots = slots_.data();
   const std::int32_t* labels = state_.labels.data();
-  for (std::size_t p = 0; p < state_.nodes.size(); ++p) {
-    if (state_.on_border[p] == 0 || labels[p] < 0) continue;
+  const auto visitReverse = [&](std::size_t p, auto&& visit) {
     const pcl::index_t* row = state_.neighborhoods->indices(p);
     const int count = state_.rowSize(p);
+    bool any = false;
     for (int j = 1; j < count; ++j) {
       const std::uint32_t slot = slots[row[j]];
       if (slot == kNone || labels[row[j]] == labels[p]) continue;
-      found.push_back({slot, static_cast<pcl::index_t>(p)});
-      ++reverse_starts_[slot + 1];
+      visit(slot);
+      any = true;
+    }
+    return any;
+  };
+  std::vector<pcl::index_t> sources;
+  for (std::size_t p = 0; p < state_.nodes.size(); ++p) {
+    if (state_.on_border[p] == 0 || labels[p] < 0) continue;
+    if (visitReverse(p, [&](std::uint32_t slot) { ++reverse_starts_[slot + 1]; })) {
+      sources.push_back(static_cast<pcl::index_t>(p));
     }
   }
   for (std::size_t s = 0; s < points_.size(); ++s) reverse_starts_[s + 1] += reverse_starts_[s];
-  reverse_.resize(found.size());
+  reverse_.resize(reverse_starts_.back());
   std::vector<std::size_t> next(reverse_starts_.begin(), reverse_starts_.end() - 1);
-  for (const Reverse& r : found) reverse_[next[r.slot]++] = r.point;
+  for (const pcl::index_t p : sources) {
+    visitReverse(static_cast<std::size_t>(p),
+                 [&](std::uint32_t slot) { reverse_[next[slot]++] = p; });
+  }
 }
 
 void SmallAdjacency::append(std::int32_t from, std::int32_t into) {
