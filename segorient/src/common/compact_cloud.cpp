@@ -72,9 +72,8 @@ class Source {
     if (indices_ != nullptr) {
       const pcl::index_t row = (*indices_)[i];
       if (row < 0 || static_cast<std::size_t>(row) >= points_.size) return nullptr;
-      i = static_cast<std::size_t>(row);
     }
-    const float* p = points_[i];
+    const float* p = known(static_cast<pcl::index_t>(i));
     return isFinite(p) ? p : nullptr;
   }
 

@@ -95,6 +95,7 @@ inline Twice smaller(const Twice& a, const Twice& b) {
 inline Twice squareRoot(const Twice& a) {
   return {squareRoot(a.first), squareRoot(a.second)};
 }
+
 inline bool any(Mask m) {
 #if SEGORIENT_LANES == 8
   return _mm256_movemask_ps(reinterpret_cast<__m256>(m)) != 0;

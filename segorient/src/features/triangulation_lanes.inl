@@ -46,37 +46,47 @@ inline Mask isNeighbor(const Lanes3& d) {
   return (d.x != 0.0F) | (d.y != 0.0F) | (d.z != 0.0F);
 }
 
-/// Local centre triangulation. The fan's triangles, weighted by their areas, sum up to the vector
-/// area of the polygon through the neighbours, whatever the centre: only their angular order
-/// depends on it.
-inline Lanes3 fanNormals(const LocalFitJob& job, const Batch& batch, std::size_t half,
-                         const Plane& plane, SortingNetwork& network, float* keys) {
-  const Frame frame = frameOf(plane.normal);
-  const int first = batch.first;
-  const int count = batch.count < 4096 ? batch.count : 4096;
-  if (count == first) return plane.normal;  // no neighbours in any lane, and no plane
+/// The neighbours of one register's points in order of angle: their numbers in the last bits of
+/// sorted keys.
+struct FanOrder {
+  const float* keys;
+  int sorted = 0;       ///< keys of each point; those of no neighbour come last
+  Lanes neighbors{};    ///< how many are of neighbours
+  Mask number_masks{};  ///< the bits of a key that are a number
+
+  std::size_t number(int j, std::size_t l) const {
+    std::int32_t key;
+    __builtin_memcpy(&key, keys + static_cast<std::size_t>(j) * kWidth + l, sizeof(key));
+    return static_cast<std::size_t>(key & number_masks[l]);
+  }
+};
+
+inline FanOrder sortFan(const Batch& batch, std::size_t half, int count, const Frame& frame,
+                        SortingNetwork& network, float* keys) {
+  FanOrder order;
+  order.keys = keys;
+  order.sorted = count - batch.first;
   Lanes3 center{};
-  Lanes neighbors{};
-  for (int j = first; j < count; ++j) {
+  for (int j = batch.first; j < count; ++j) {
     const Lanes3 d = batch.offset(j, half);
     center = sum(center, d);
-    neighbors += select(isNeighbor(d), all(1.0F), Lanes{});
+    order.neighbors += select(isNeighbor(d), all(1.0F), Lanes{});
   }
-  center = scaled(center, 1.0F / larger(neighbors, all(1.0F)));
+  center = scaled(center, 1.0F / larger(order.neighbors, all(1.0F)));
   const Lanes center_u = dot(center, frame.u);
   const Lanes center_v = dot(center, frame.v);
 
-  // Keys are angles with the neighbour's number in their last bits. The angle is that of a square
-  // instead of a circle: it has the same order, and needs one division.
   // As many bits as each point's own number of neighbours takes: what the others have is no matter.
-  Mask number_masks{};
   for (std::size_t l = 0; l < kWidth; ++l) {
-    const int own = std::min(batch.counts[half * kWidth + l], count);
+    const int listed = batch.counts[half * kWidth + l];
+    const int own = listed < count ? listed : count;
     int bits = 1;
     while ((1 << bits) < own) ++bits;
-    number_masks[l] = (1 << bits) - 1;
+    order.number_masks[l] = (1 << bits) - 1;
   }
-  for (int j = first; j < count; ++j) {
+  // The angle is that of a square instead of a circle: it has the same order, and needs one
+  // division.
+  for (int j = batch.first; j < count; ++j) {
     const Lanes3 d = batch.offset(j, half);
     const Lanes x = dot(d, frame.u) - center_u;
     const Lanes y = dot(d, frame.v) - center_v;
@@ -86,45 +96,54 @@ inline Lanes3 fanNormals(const LocalFitJob& job, const Batch& batch, std::size_t
     const Mask present = isNeighbor(d);
     const Lanes key = select(present, 1.0F + 0.125F * angle, all(1.75F));
     // What is no neighbour goes last and is numbered 0, which every row has: rows may be shorter.
-    const Mask numbered = (reinterpret_cast<Mask>(key) & ~number_masks) | (present & j);
-    store(keys + static_cast<std::size_t>(j - first) * kWidth, reinterpret_cast<Lanes>(numbered));
+    const Mask numbered = (reinterpret_cast<Mask>(key) & ~order.number_masks) | (present & j);
+    store(keys + static_cast<std::size_t>(j - batch.first) * kWidth,
+          reinterpret_cast<Lanes>(numbered));
   }
-  const int sorted = count - first;
-  network.sort(keys, sorted);
+  network.sort(keys, order.sorted);
+  return order;
+}
+
+/// \param corner gives the neighbours at one place of the order
+template <typename Corner>
+inline Lanes3 fanArea(const FanOrder& order, const Corner& corner) {
+  const Lanes3 start = corner(0);
+  Lanes3 previous = start;
+  Lanes3 area{};
+  for (int j = 1; j <= order.sorted; ++j) {
+    const Mask inside = all(static_cast<float>(j)) < order.neighbors;
+    const Lanes3 next = j < order.sorted ? select(inside, corner(j), start) : start;
+    area = sum(area, cross(previous, next));
+    previous = next;
+  }
+  return area;
+}
+
+/// Local centre triangulation. The fan's triangles, weighted by their areas, sum up to the vector
+/// area of the polygon through the neighbours, whatever the centre: only their angular order
+/// depends on it.
+inline Lanes3 fanNormals(const LocalFitJob& job, const Batch& batch, std::size_t half,
+                         const Plane& plane, SortingNetwork& network, float* keys) {
+  const Frame frame = frameOf(plane.normal);
+  const int count = batch.count < 4096 ? batch.count : 4096;
+  if (count == batch.first) return plane.normal;  // no neighbours in any lane, and no plane
+  const FanOrder order = sortFan(batch, half, count, frame, network, keys);
 
   // Corners come from the points anew: that costs less than offsets that can be had lane by lane.
-  const double* units = batch.unit + half * kWidth;
-  bool rescaled = false;
-  for (std::size_t l = 0; l < kWidth; ++l) rescaled = rescaled || units[l] != 1.0;
-  const auto numberAt = [&](int j, std::size_t l) __attribute__((always_inline)) {
-    std::int32_t key;
-    __builtin_memcpy(&key, keys + static_cast<std::size_t>(j) * kWidth + l, sizeof(key));
-    return static_cast<std::size_t>(key & number_masks[l]);
-  };
-  const auto areaOf = [&](auto&& vertex) __attribute__((always_inline)) {
-    const Lanes3 start = vertex(0);
-    Lanes3 previous = start;
-    Lanes3 area{};
-    for (int j = 1; j <= sorted; ++j) {
-      const Mask inside = all(static_cast<float>(j)) < neighbors;
-      const Lanes3 next = j < sorted ? select(inside, vertex(j), start) : start;
-      area = sum(area, cross(previous, next));
-      previous = next;
-    }
-    return area;
-  };
   const auto corner = [&](int j) __attribute__((always_inline)) {
     const float* points[kWidth];
     for (std::size_t l = 0; l < kWidth; ++l) {
       const pcl::index_t* row = batch.neighbors[half * kWidth + l];
-      points[l] = job.xyz + 4 * static_cast<std::size_t>(row[numberAt(j, l)]);
+      points[l] = job.xyz + 4 * static_cast<std::size_t>(row[order.number(j, l)]);
     }
     return difference(loadPoints(points), batch.centers[half]);
   };
   const auto rescaledCorner = [&](int j) {
-    return batch.offsetsAt([&](std::size_t l) { return numberAt(j, l); }, half);
+    return batch.offsetsAt([&](std::size_t l) { return order.number(j, l); }, half);
   };
-  Lanes3 area = rescaled ? areaOf(rescaledCorner) : areaOf(corner);
+  const double* units = batch.unit + half * kWidth;
+  const bool rescaled = std::any_of(units, units + kWidth, [](double u) { return u != 1.0; });
+  Lanes3 area = rescaled ? fanArea(order, rescaledCorner) : fanArea(order, corner);
   // In units of the neighbourhood: squares of areas leave float's range early.
   area = scaled(area, 1.0F / (plane.size * plane.size));
   // Collinear in projection: no area, no normal of its own.
@@ -172,7 +191,7 @@ inline Lanes3 starNormals(const Batch& batch, std::size_t half, const Plane& pla
   Lanes3 current = start;
   Lanes3 corner_now = corner(start);
   Mask walking = start_norm > 0.0F;
-  const Lanes counts_of = batch.countsOf(half);
+  const Lanes most_steps = batch.countsOf(half);
   for (int step = 0; step <= batch.count && any(walking); ++step) {
     // The origin is a candidate like the others, except where the walk stands on it.
     const Mask at_origin = (current.x == 0.0F) & (current.y == 0.0F);
@@ -195,7 +214,7 @@ inline Lanes3 starNormals(const Batch& batch, std::size_t half, const Plane& pla
     const Mask counts = walking & (doubled_area > 0.0F);
     total = sum(total, select(counts, scaled(triangle, 1.0F / doubled_area), Lanes3{}));
     walking &= (next.x != start.x) | (next.y != start.y);
-    walking &= all(static_cast<float>(step)) < counts_of;
+    walking &= all(static_cast<float>(step)) < most_steps;
     current = next;
     corner_now = corner_next;
   }

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026, the segorient authors
+#include <segorient/common/instruction_set.h>
 #include <segorient/common/threads.h>
 #include <segorient/orientation/sheet_filter.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdlib>
 #include <cstring>
 
 #include "contrary_patches.h"
@@ -152,12 +152,9 @@ __attribute__((target("avx2"))) void addByAvx2(const Block& b, std::size_t fille
 }
 #endif
 
-// SEGORIENT_SIMD may ask for less, as in the search.
 AddBlock chooseAddBlock() {
 #if defined(__x86_64__)
-  const char* wanted = std::getenv("SEGORIENT_SIMD");
-  const bool wide = wanted == nullptr || std::strcmp(wanted, "avx2") == 0;
-  if (wide && __builtin_cpu_supports("avx2") != 0) return &addByAvx2;
+  if (instructionSet() == InstructionSet::Avx2) return &addByAvx2;
 #endif
   return &addPortably;
 }

@@ -8,8 +8,9 @@
 // machines without it.
 #include "kernels.h"
 
+#include <segorient/common/instruction_set.h>
+
 #include <algorithm>
-#include <cstdlib>
 #include <cstring>
 #include <limits>
 #include <vector>
@@ -120,17 +121,16 @@ constexpr Kernels kKernels{"avx2",         collect,     collectRegion,   gatherA
 }  // namespace
 
 const Kernels& chooseKernels() {
-  const char* wanted = std::getenv("SEGORIENT_SIMD");
-  const auto is = [&](const char* name) {
-    return wanted != nullptr && std::strcmp(wanted, name) == 0;
-  };
-  if (is("scalar")) return scalar::kKernels;
+  switch (instructionSet()) {
 #if SEGORIENT_X86
-  if (!is("sse2") && __builtin_cpu_supports("avx2") != 0) return avx2::kKernels;
-  return sse2::kKernels;
-#else
-  return scalar::kKernels;
+    case InstructionSet::Avx2:
+      return avx2::kKernels;
+    case InstructionSet::Sse2:
+      return sse2::kKernels;
 #endif
+    default:
+      return scalar::kKernels;
+  }
 }
 
 namespace {

@@ -209,8 +209,7 @@ struct Kernels {
   void (*withinInRegion)(const LayoutView&, std::size_t region, GroupTask&);
 };
 
-/// The kernels of the best instruction set that this machine has, or of the one that the
-/// environment variable SEGORIENT_SIMD names (scalar, sse2, avx2) if it has that.
+/// The kernels for instructionSet().
 const Kernels& chooseKernels();
 
 /// Makes what lies beyond the last candidate come last in any order.
