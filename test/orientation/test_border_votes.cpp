@@ -127,7 +127,7 @@ TEST(ClusterGraph, RecoversPlantedSigns) {
     }
   }
   ClusterGraph graph(std::vector<std::uint32_t>(kNodes, 1), votes);
-  graph.contract({});
+  graph.contract({ClusterGraph::Rule{}});
   EXPECT_EQ(graph.clusters().size(), 1U);
   int first = 0;
   const std::int32_t root = graph.find(0, first);
@@ -151,7 +151,7 @@ TEST(ClusterGraph, JoinsOnlyWhatTheRuleAllows) {
   ClusterGraph graph({100, 100, 100}, votes);
   ClusterGraph::Rule rule;
   rule.unanimity = 0.9F;
-  graph.contract(rule);
+  graph.contract({rule});
   EXPECT_EQ(graph.clusters().size(), 2U);
   int one = 0;
   int two = 0;
@@ -160,8 +160,45 @@ TEST(ClusterGraph, JoinsOnlyWhatTheRuleAllows) {
   ASSERT_EQ(graph.edges().size(), 1U);
   ClusterGraph::Rule large;
   large.both_larger = 50;
-  graph.contract(large);
+  graph.contract({large});
   EXPECT_EQ(graph.clusters().size(), 2U) << "both clusters are larger than 50 points";
+}
+
+TEST(ClusterGraph, OneRuleOfSeveralSuffices) {
+  // 0-1 and 1-2 are long and of one mind, but of few reliable points; 0-2 is short and lies.
+  std::vector<BorderVote> votes(3);
+  const std::int32_t ends[3][2] = {{0, 1}, {0, 2}, {1, 2}};
+  const float weights[3] = {40.F, -7.F, 60.F};
+  const float reliable[3] = {16.F, 7.F, 20.F};
+  for (std::size_t e = 0; e < 3; ++e) {
+    votes[e].a = ends[e][0];
+    votes[e].b = ends[e][1];
+    votes[e].weight = weights[e];
+    votes[e].absolute = std::fabs(weights[e]);
+    votes[e].reliable = reliable[e];
+  }
+  ClusterGraph::Rule sure;
+  sure.weight = 4.F;
+  sure.reliable = 0.5F;
+  ClusterGraph::Rule unanimous;
+  unanimous.unanimity = 0.97F;
+  unanimous.weight = 16.F;
+  unanimous.reliable = 0.25F;
+  const auto sideOfTwo = [&](const std::vector<ClusterGraph::Rule>& rules) {
+    ClusterGraph graph({1, 1, 1}, votes);
+    graph.contract(rules);
+    graph.contract({ClusterGraph::Rule{}});
+    int zero = 0;
+    int two = 0;
+    EXPECT_EQ(graph.find(0, zero), graph.find(2, two));
+    return zero * two;
+  };
+  EXPECT_EQ(sideOfTwo({sure}), -1);
+  EXPECT_EQ(sideOfTwo({sure, unanimous}), 1);
+  EXPECT_EQ(sideOfTwo({unanimous, sure}), 1) << "their order does not matter";
+  ClusterGraph none({1, 1, 1}, votes);
+  none.contract({});
+  EXPECT_EQ(none.clusters().size(), 3U);
 }
 
 TEST(ClusterGraph, ParallelBordersAddUpWithTheirSigns) {
@@ -178,7 +215,7 @@ TEST(ClusterGraph, ParallelBordersAddUpWithTheirSigns) {
   ClusterGraph graph({1, 1, 1}, votes);
   ClusterGraph::Rule sure;
   sure.weight = 10.F;
-  graph.contract(sure);
+  graph.contract({sure});
   ASSERT_EQ(graph.edges().size(), 1U);
   EXPECT_FLOAT_EQ(graph.edges()[0].weight, -2.F);
   EXPECT_FLOAT_EQ(graph.edges()[0].absolute, 8.F);

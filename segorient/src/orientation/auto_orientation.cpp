@@ -350,7 +350,7 @@ void Orienter::followViewpoint() {
 }
 
 // What nothing hides from where all was seen from was seen: segments that turn their backs to it
-// are turned over whatever their borders say.
+// are turned over, unless next to all of their borders know better.
 void Orienter::turnVisibleSegments(const ViewpointFit& fit) {
   const std::vector<std::uint8_t> visible = visibleFrom(points_, field_.spacing, fit.position);
   std::vector<Ballot> facing(signs_.size());
@@ -364,6 +364,10 @@ void Orienter::turnVisibleSegments(const ViewpointFit& fit) {
     const float sign = pointSign(i) * static_cast<float>(fit.facing);
     facing[at(s)].add({sign * d > 0.F ? 1.F : -1.F, 1.F}, 1);
   }
+  constexpr float kFirmBorders = 0.9F;
+  std::vector<std::int32_t> itself(signs_.size());
+  std::iota(itself.begin(), itself.end(), 0);
+  const std::vector<float> agreement = detail::agreementOf(itself, votes_, signs_, 0.F);
   // That all was seen from there is a guess from the largest cluster, and a wrong one if much of
   // the rest speaks against it: two walls of a corner look to many places behind the third.
   constexpr float kMostAgainst = 0.1F;
@@ -373,6 +377,7 @@ void Orienter::turnVisibleSegments(const ViewpointFit& fit) {
     const float size = static_cast<float>(segmentation_.segments[s].size);
     const bool seen = facing[s].total > 0.5F * size;
     if (!seen || hinted_[at(clusters_.of(s))] || facing[s].share() >= -kClearly) continue;
+    if (agreement[s] > kFirmBorders) continue;
     against.push_back(s);
     points += size;
   }

@@ -61,15 +61,21 @@ bool ClusterGraph::allowed(const Edge& e, const Rule& rule) const {
          std::min(sizes_[at(e.a)], sizes_[at(e.b)]) <= rule.both_larger;
 }
 
-void ClusterGraph::push(std::vector<Candidate>& heap, std::uint32_t edge, const Rule& rule) const {
+bool ClusterGraph::allowed(const Edge& e, const std::vector<Rule>& rules) const {
+  return std::any_of(rules.begin(), rules.end(),
+                     [&](const Rule& rule) { return allowed(e, rule); });
+}
+
+void ClusterGraph::push(std::vector<Candidate>& heap, std::uint32_t edge,
+                        const std::vector<Rule>& rules) const {
   const Edge& e = edges_[edge];
-  if (!allowed(e, rule)) return;
+  if (!allowed(e, rules)) return;
   heap.push_back({std::fabs(e.weight) * e.unanimity(), e.weight, edge});
   std::push_heap(heap.begin(), heap.end());
 }
 
-void ClusterGraph::merge(std::int32_t keep, std::int32_t gone, int sign, const Rule& rule,
-                         std::vector<Candidate>& heap) {
+void ClusterGraph::merge(std::int32_t keep, std::int32_t gone, int sign,
+                         const std::vector<Rule>& rules, std::vector<Candidate>& heap) {
   parent_[at(gone)] = keep;
   parity_[at(gone)] = static_cast<std::int8_t>(sign);
   sizes_[at(keep)] += sizes_[at(gone)];
@@ -90,30 +96,30 @@ void ClusterGraph::merge(std::int32_t keep, std::int32_t gone, int sign, const R
       edges_[twin].absolute += edge.absolute;
       edges_[twin].reliable += edge.reliable;
       edge.alive = false;
-      push(heap, twin, rule);
+      push(heap, twin, rules);
     } else {
       (edge.a == gone ? edge.a : edge.b) = keep;
       edge.weight *= static_cast<float>(sign);
       incident_[at(keep)].push_back(e);
-      push(heap, e, rule);
+      push(heap, e, rules);
     }
   }
 }
 
-void ClusterGraph::contract(const Rule& rule) {
+void ClusterGraph::contract(const std::vector<Rule>& rules) {
   std::vector<Candidate> heap;
   for (std::uint32_t e = 0; e < edges_.size(); ++e) {
-    if (edges_[e].alive) push(heap, e, rule);
+    if (edges_[e].alive) push(heap, e, rules);
   }
   while (!heap.empty()) {
     std::pop_heap(heap.begin(), heap.end());
     const Candidate c = heap.back();
     heap.pop_back();
     const Edge& e = edges_[c.edge];
-    if (!e.alive || e.weight != c.weight || !allowed(e, rule)) continue;
+    if (!e.alive || e.weight != c.weight || !allowed(e, rules)) continue;
     const int sign = e.weight > 0.F ? 1 : -1;
     const bool keep_a = incident_[at(e.a)].size() >= incident_[at(e.b)].size();
-    merge(keep_a ? e.a : e.b, keep_a ? e.b : e.a, sign, rule, heap);
+    merge(keep_a ? e.a : e.b, keep_a ? e.b : e.a, sign, rules, heap);
   }
 }
 

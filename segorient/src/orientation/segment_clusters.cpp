@@ -24,12 +24,18 @@ SegmentClusters::SegmentClusters(const Segmentation& segmentation,
     certain.unanimity = 0.9F;
     certain.weight = 4.F;  // a border of a few points
     certain.reliable = 0.5F;
-    graph.contract(certain);
+    // Where next to all of a longer border agree, that makes up for fewer sure normals, as they are
+    // in sparse stripes of a clean cloud.
+    ClusterGraph::Rule unanimous;
+    unanimous.unanimity = 0.97F;
+    unanimous.weight = 4.F * certain.weight;
+    unanimous.reliable = 0.5F * certain.reliable;
+    graph.contract({certain, unanimous});
     // Two large clusters are joined only with all evidence on the table.
     ClusterGraph::Rule likely;
     likely.unanimity = 0.6F;
     likely.both_larger = static_cast<std::uint32_t>(rules.points / 50);
-    graph.contract(likely);
+    graph.contract({likely});
   }
   of_.resize(n);
   inside_.resize(n);
@@ -39,7 +45,7 @@ SegmentClusters::SegmentClusters(const Segmentation& segmentation,
     inside_[s] = static_cast<std::int8_t>(sign);
   }
   edges_ = graph.edges();
-  graph.contract(ClusterGraph::Rule{});
+  graph.contract({ClusterGraph::Rule{}});
   sign_.assign(n, 1);
   root_.assign(n, -1);
   for (std::size_t s = 0; s < n; ++s) {

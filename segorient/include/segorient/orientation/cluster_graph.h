@@ -43,8 +43,8 @@ class ClusterGraph {
   /// \param sizes points of each segment
   ClusterGraph(const std::vector<std::uint32_t>& sizes, const std::vector<BorderVote>& votes);
 
-  /// Joins all that the rule allows, by |weight| * unanimity.
-  void contract(const Rule& rule);
+  /// Joins all that one of the rules allows, by |weight| * unanimity.
+  void contract(const std::vector<Rule>& rules);
 
   /// The cluster that a segment belongs to: one of its segments stands for it.
   /// \param sign +1 or -1: what turns the segment to agree with the cluster
@@ -64,8 +64,9 @@ class ClusterGraph {
   }
   std::uint32_t edgeBetween(std::int32_t a, std::int32_t b) const;
   bool allowed(const Edge& e, const Rule& rule) const;
-  void push(std::vector<Candidate>& heap, std::uint32_t edge, const Rule& rule) const;
-  void merge(std::int32_t keep, std::int32_t gone, int sign, const Rule& rule,
+  bool allowed(const Edge& e, const std::vector<Rule>& rules) const;
+  void push(std::vector<Candidate>& heap, std::uint32_t edge, const std::vector<Rule>& rules) const;
+  void merge(std::int32_t keep, std::int32_t gone, int sign, const std::vector<Rule>& rules,
              std::vector<Candidate>& heap);
 
   std::vector<Edge> edges_;
