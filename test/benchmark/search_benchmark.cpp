@@ -10,7 +10,7 @@
 //
 // NAME of a cloud: uniform, surface, lidar; of an order: coherent (along a curve or as scanned),
 // random. --threads 0 means all cores. --whole measures all of them with 20k to 5M points; without
-// it, 200k points on one thread. SEGORIENT_SIMD=scalar|sse2|avx2 forces an instruction set.
+// it, 200k points on one thread. SEGORIENT_SIMD=scalar|sse2|avx2|avx512 forces an instruction set.
 #include <pcl/search/kdtree.h>
 #include <pcl/search/octree.h>
 #include <segorient/search/median_hash.h>

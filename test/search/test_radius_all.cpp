@@ -89,7 +89,7 @@ TEST_P(RadiusAll, SameForAnyNumberOfThreadsAndInstructionSet) {
   const SearchCloud& cloud = GetParam();
   const double radius = std::max(radii(cloud)[2], 1e-15);  // 0 where all are in one place
   RadiusNeighborhoods first;
-  for (const char* instruction_set : {"scalar", "sse2", "avx2"}) {
+  for (const char* instruction_set : {"scalar", "sse2", "avx2", "avx512"}) {
     setenv("SEGORIENT_SIMD", instruction_set, 1);
     MedianHashIndex::Options options;
     options.region_size = 100;

@@ -74,7 +74,10 @@ TEST(InstructionSet, CanBeForced) {
 #ifdef __x86_64__
   EXPECT_EQ(chosen("sse2"), "sse2");
   EXPECT_EQ(chosen("avx2"), __builtin_cpu_supports("avx2") != 0 ? "avx2" : "sse2");
-  EXPECT_EQ(chosen("no such"), chosen("avx2"));
+  const bool has512 =
+      __builtin_cpu_supports("avx512f") != 0 && __builtin_cpu_supports("avx512vl") != 0;
+  EXPECT_EQ(chosen("avx512"), has512 ? "avx512" : chosen("avx2"));
+  EXPECT_EQ(chosen("no such"), chosen("avx512"));
 #endif
 }
 
@@ -85,6 +88,7 @@ TEST_P(Simd, SameBytesAsPlainLoops) {
   ASSERT_FALSE(plain.indices.empty());
   EXPECT_TRUE(compute(GetParam(), "sse2") == plain);
   EXPECT_TRUE(compute(GetParam(), "avx2") == plain);
+  EXPECT_TRUE(compute(GetParam(), "avx512") == plain);
   EXPECT_TRUE(compute(GetParam(), "") == plain) << "the best that this machine has";
 }
 

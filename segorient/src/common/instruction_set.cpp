@@ -2,23 +2,37 @@
 // Copyright (c) 2026, the segorient authors
 #include <segorient/common/instruction_set.h>
 
+#include <algorithm>
 #include <cstdlib>
 #include <cstring>
 
 namespace segorient {
+
+namespace {
+
+InstructionSet best() {
+#if defined(__x86_64__)
+  if (__builtin_cpu_supports("avx2") == 0) return InstructionSet::Sse2;
+  const bool has512 =
+      __builtin_cpu_supports("avx512f") != 0 && __builtin_cpu_supports("avx512vl") != 0;
+  return has512 ? InstructionSet::Avx512 : InstructionSet::Avx2;
+#else
+  return InstructionSet::Scalar;
+#endif
+}
+
+}  // namespace
 
 InstructionSet instructionSet() {
   const char* wanted = std::getenv("SEGORIENT_SIMD");
   const auto is = [&](const char* name) {
     return wanted != nullptr && std::strcmp(wanted, name) == 0;
   };
-  if (is("scalar")) return InstructionSet::Scalar;
-#if defined(__x86_64__)
-  if (!is("sse2") && __builtin_cpu_supports("avx2") != 0) return InstructionSet::Avx2;
-  return InstructionSet::Sse2;
-#else
-  return InstructionSet::Scalar;
-#endif
+  InstructionSet most = InstructionSet::Avx512;
+  if (is("scalar")) most = InstructionSet::Scalar;
+  if (is("sse2")) most = InstructionSet::Sse2;
+  if (is("avx2")) most = InstructionSet::Avx2;
+  return std::min(most, best());
 }
 
 }  // namespace segorient

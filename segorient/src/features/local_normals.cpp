@@ -62,7 +62,7 @@ using Kernel = void (*)(const LocalFitJob&, std::size_t, std::size_t);
 
 Kernel chooseKernel(bool portable_only) {
 #if defined(SEGORIENT_HAS_AVX2_KERNELS)
-  if (!portable_only && instructionSet() == InstructionSet::Avx2) return &avx2::estimateRows;
+  if (!portable_only && instructionSet() >= InstructionSet::Avx2) return &avx2::estimateRows;
 #endif
   static_cast<void>(portable_only);
   return &portable::estimateRows;

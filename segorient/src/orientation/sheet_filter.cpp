@@ -154,7 +154,7 @@ __attribute__((target("avx2"))) void addByAvx2(const Block& b, std::size_t fille
 
 AddBlock chooseAddBlock() {
 #if defined(__x86_64__)
-  if (instructionSet() == InstructionSet::Avx2) return &addByAvx2;
+  if (instructionSet() >= InstructionSet::Avx2) return &addByAvx2;
 #endif
   return &addPortably;
 }

@@ -112,6 +112,30 @@ constexpr Kernels kKernels{"avx2",         collect,     collectRegion,   gatherA
 
 #if defined(__clang__)
 #pragma clang attribute pop
+#pragma clang attribute push(__attribute__((target("avx512f,avx512vl,popcnt"))), \
+                             apply_to = function)
+#else
+#pragma GCC pop_options
+#pragma GCC push_options
+#pragma GCC target("avx512f,avx512vl,popcnt")
+#endif
+
+namespace avx512 {
+#include "simd_avx512.inl"
+
+#include "kernels_ranges.inl"
+
+#include "kernels_sort.inl"
+
+#include "kernels_groups.inl"
+
+#include "kernels_all_points.inl"
+constexpr Kernels kKernels{"avx512",       collect,     collectRegion,   gatherAround,
+                           nearestInBlock, sortNearest, nearestInRegion, withinInRegion};
+}  // namespace avx512
+
+#if defined(__clang__)
+#pragma clang attribute pop
 #else
 #pragma GCC pop_options
 #endif
@@ -123,6 +147,8 @@ constexpr Kernels kKernels{"avx2",         collect,     collectRegion,   gatherA
 const Kernels& chooseKernels() {
   switch (instructionSet()) {
 #if SEGORIENT_X86
+    case InstructionSet::Avx512:
+      return avx512::kKernels;
     case InstructionSet::Avx2:
       return avx2::kKernels;
     case InstructionSet::Sse2:

@@ -88,6 +88,16 @@ SEGORIENT_INLINE bool cellRange(const Region& region, const Box& bounds, const C
 // ---------------------------------------------------------------------------------------------------
 // Points to look at
 
+template <std::uint32_t kLanes>
+struct LaneBitsOf {
+  using Type = std::uint8_t;
+};
+template <>
+struct LaneBitsOf<16> {
+  using Type = std::uint16_t;
+};
+using LaneBits = LaneBitsOf<kWidth>::Type;
+
 // Ranges of points as a list of vectors, so that going through many short ones is one loop, whose
 // number of turns is the only thing that a processor cannot foresee.
 struct VectorList {
@@ -96,31 +106,39 @@ struct VectorList {
   static constexpr std::size_t kRoom = kMost + std::size_t{kWidth + 1} * kAtOnce;
   std::size_t count = 0;
   std::uint32_t first[kRoom];  // of each vector, its first point
-  std::uint8_t lanes[kRoom];   // of each vector, a bit for each lane that counts
+  LaneBits lanes[kRoom];       // of each vector, a bit for each lane that counts
 };
 
 // By how many points are beyond whole vectors, the lanes of the last one.
 struct LastLanes {
-  std::uint8_t lanes[kWidth];
+  LaneBits lanes[kWidth];
   constexpr LastLanes() : lanes() {
     for (std::uint32_t i = 0; i < kWidth; ++i) {
-      lanes[i] = static_cast<std::uint8_t>((1U << (i > 0 ? i : kWidth)) - 1U);
+      lanes[i] = static_cast<LaneBits>((1U << (i > 0 ? i : kWidth)) - 1U);
     }
   }
 };
 constexpr LastLanes kLastLanes;
 
+// As many as are appended at once, with all lanes.
+struct WholeVectors {
+  LaneBits lanes[VectorList::kAtOnce];
+  constexpr WholeVectors() : lanes() {
+    for (LaneBits& bits : lanes) bits = static_cast<LaneBits>((1U << kWidth) - 1U);
+  }
+};
+constexpr WholeVectors kWholeVectors;
+
 // Appends up to kAtOnce vectors. \return the new number of vectors
 SEGORIENT_INLINE std::size_t append(VectorList& list, std::size_t at, std::uint32_t begin,
                                     std::uint32_t count) {
   using Eight = std::uint32_t __attribute__((vector_size(32)));
-  constexpr std::uint32_t kAllLanes = (1U << kWidth) - 1U;
   const std::uint32_t vectors = (count + kWidth - 1) / kWidth;
   // More than needed, without a branch; the next range overwrites the rest.
   const Eight first = begin + Eight{0,          kWidth,     2 * kWidth, 3 * kWidth,
                                     4 * kWidth, 5 * kWidth, 6 * kWidth, 7 * kWidth};
   __builtin_memcpy(list.first + at, &first, sizeof(first));
-  __builtin_memset(list.lanes + at, kAllLanes, VectorList::kAtOnce);
+  __builtin_memcpy(list.lanes + at, kWholeVectors.lanes, sizeof(kWholeVectors.lanes));
   at += vectors;
   // Of an empty range, what the next one overwrites.
   list.lanes[at - (count > 0 ? 1 : 0)] = kLastLanes.lanes[count % kWidth];

@@ -41,8 +41,8 @@ struct Split {
 /// The points by region and cell, and the tree over the regions. The tree is complete: node i has
 /// the children 2 i and 2 i + 1, the root is 1, and region r is node regions.size() + r.
 struct Layout {
-  /// Vectors are read beyond the last point by up to this many entries.
-  static constexpr std::size_t kPadding = 16;
+  /// Vectors are read beyond the last point by up to this many entries: two of the longest.
+  static constexpr std::size_t kPadding = 32;
 
   FastVector<float> x, y, z;          ///< padded
   FastVector<std::uint32_t> id;       ///< index that is reported; padded

@@ -4,11 +4,12 @@
 
 namespace segorient {
 
-/// What vector instructions are used; results do not depend on it.
-enum class InstructionSet { Scalar, Sse2, Avx2 };
+/// What vector instructions are used, from the least to the most; results do not depend on it.
+/// Avx512 stands for its F and VL parts.
+enum class InstructionSet { Scalar, Sse2, Avx2, Avx512 };
 
 /// The best one that this machine has, or the one that the environment variable SEGORIENT_SIMD
-/// names (scalar, sse2, avx2) if it has that.
+/// names (scalar, sse2, avx2, avx512) if it has that.
 InstructionSet instructionSet();
 
 }  // namespace segorient
