@@ -46,7 +46,8 @@ class MedianHashIndex {
   std::size_t memory() const;  ///< bytes in use
 
   /// The instruction set in use: the best that this machine has, unless the environment variable
-  /// SEGORIENT_SIMD named another one (scalar, sse2, avx2, avx512) at build(). Results do not depend on it.
+  /// SEGORIENT_SIMD named another one (scalar, sse2, avx2, avx512) at build(). Results do not
+  /// depend on it.
   const char* instructionSet() const;
 
   /// The k nearest, ascending. Room for min(k, size()) entries each is the caller's.
