@@ -217,8 +217,8 @@ TEST(LooseParts, HalvesOfAPlaneStayAsTheyAre) {
             (std::vector<std::int8_t>{1, 1}));
 }
 
-// Along most of a border the points have the wrong sign, so that it says the opposite of what is
-// right, though not unanimously.
+// Along most of a border, now here, now there, the points have the wrong sign, so that it says the
+// opposite of what is right, though not unanimously.
 TEST(LooseParts, AreFoundByTheirBorders) {
   const Bands bands({1.F, 1.F, 1.F});
   const std::size_t n = bands.band.size();
@@ -230,7 +230,7 @@ TEST(LooseParts, AreFoundByTheirBorders) {
     ++segmentation.segments[static_cast<std::size_t>(bands.band[i])].size;
     const float* p = &bands.ball.xyz[4 * i];
     const bool at_border = p[2] >= 0.6F && p[2] < 0.75F;
-    if (at_border && std::atan2(p[1], p[0]) < 0.9F) segmentation.signs[i] = -1;
+    if (at_border && std::sin(12.F * std::atan2(p[1], p[0])) < 0.4F) segmentation.signs[i] = -1;
   }
   const std::vector<float> wall(n, std::numeric_limits<float>::max());
   const std::vector<float> below(n, -std::numeric_limits<float>::max());

@@ -6,16 +6,19 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
+
+#include "border_groups.h"
+#include "wide_votes.h"
 
 namespace segorient {
 namespace {
 
-using Vec3 = std::array<float, 3>;
+using detail::SheetGroup;
+using detail::Vec3;
 
-float dot(const Vec3& a, const Vec3& b) {
-  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
+// Borders of so many votes, of which fewer than nine of ten agree, are voted on again.
+constexpr std::uint32_t kLong = 16;
+constexpr float kAgreed = 0.8F;
 
 struct RawVote {
   std::int32_t a, b;
@@ -23,30 +26,6 @@ struct RawVote {
   float value;
   bool wall;
   bool reliable;
-};
-
-// Neighbours of one label on one sheet: mean offset and mean signed normal.
-struct Group {
-  std::int32_t label = -1;
-  bool wall = false;
-  float count = 0.F;
-  Vec3 mean{0.F, 0.F, 0.F};
-  Vec3 normal{0.F, 0.F, 0.F};
-
-  void add(const Vec3& offset, const float* n, float sign) {
-    count += 1.F;
-    for (std::size_t a = 0; a < 3; ++a) {
-      mean[a] += offset[a];
-      normal[a] += sign * n[a];
-    }
-  }
-  void finish() {
-    const float l = std::sqrt(dot(normal, normal));
-    for (std::size_t a = 0; a < 3; ++a) {
-      mean[a] /= count;
-      normal[a] = l > 0.F ? normal[a] / l : 0.F;
-    }
-  }
 };
 
 class Voter {
@@ -57,7 +36,7 @@ class Voter {
 
   void vote(std::size_t p, std::vector<RawVote>& out) const {
     if (!isBorder(p)) return;
-    std::array<Group, kSheetDegree + 1> groups;
+    std::array<SheetGroup, kSheetDegree + 1> groups;
     const std::size_t count = collect(p, groups);
     groups[0].finish();
     for (std::size_t g = 1; g < count; ++g) {
@@ -65,7 +44,7 @@ class Voter {
       RawVote v{groups[0].label,
                 groups[g].label,
                 static_cast<pcl::index_t>(p),
-                std::min(groups[0].count, groups[g].count) * compare(groups[0], groups[g]),
+                std::min(groups[0].count, groups[g].count) * groups[0].compare(groups[g]),
                 groups[g].wall,
                 field_.reliable[p] != 0};
       if (v.a > v.b) std::swap(v.a, v.b);
@@ -88,7 +67,7 @@ class Voter {
   }
 
   // The point's own group first.
-  std::size_t collect(std::size_t p, std::array<Group, kSheetDegree + 1>& groups) const {
+  std::size_t collect(std::size_t p, std::array<SheetGroup, kSheetDegree + 1>& groups) const {
     const std::int32_t own = segmentation_.labels[p];
     const float* n = field_.normals + 4 * p;
     groups[0].label = own;
@@ -114,17 +93,6 @@ class Voter {
       groups[g].add({d[0] / h, d[1] / h, d[2] / h}, field_.normals + 4 * q, segmentation_.signs[q]);
     }
     return count;
-  }
-
-  static float compare(const Group& own, const Group& other) {
-    const float cosine = dot(own.normal, other.normal);
-    if (other.wall) return -cosine;
-    const Vec3 chord{other.mean[0] - own.mean[0], other.mean[1] - own.mean[1],
-                     other.mean[2] - own.mean[2]};
-    // A quarter of a squared spacing: chords shorter than that have no direction.
-    const float square = dot(chord, chord) + 0.25F;
-    if (!(square < std::numeric_limits<float>::max())) return 0.F;  // as many spacings long
-    return cosine - 2.F * dot(own.normal, chord) * dot(other.normal, chord) / square;
   }
 
   const PointView& points_;
@@ -186,6 +154,8 @@ std::vector<BorderVote> borderVotes(const PointView& points, const Neighborhoods
   const Voter voter(points, neighborhoods, field, segmentation);
   const std::vector<RawVote> votes = castVotes(voter, points.size, threads);
   std::vector<BorderVote> out;
+  detail::WideVoter wide(points, neighborhoods, field, segmentation);
+  std::vector<pcl::index_t> border;
   for (std::size_t i = 0; i < votes.size();) {
     Tally sheet;
     Tally wall;
@@ -203,6 +173,12 @@ std::vector<BorderVote> borderVotes(const PointView& points, const Neighborhoods
       v.reliable = static_cast<float>(sheet.reliable);
       v.count = sheet.count;
       v.where = votes[i + (j - i) / 2].point;
+      if (v.count >= kLong && v.unanimity() < kAgreed) {
+        border.clear();
+        for (std::size_t k = i; k < j; ++k) border.push_back(votes[k].point);
+        const float again = wide.vote(border, v.a, v.b);
+        if (std::fabs(again) > kAgreed) v.weight = again * v.absolute;
+      }
       out.push_back(v);
     }
     i = j;

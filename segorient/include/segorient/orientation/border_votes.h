@@ -36,6 +36,9 @@ struct BorderVote {
 /// Groups on another wall vote -n.m: the walls of a plate face apart. Where two segments also meet
 /// at an edge, their walls have no say.
 ///
+/// Where the points of a longer border contradict each other, as noise across a sharp crease makes
+/// them, planes of more points on either side of it decide, if these agree.
+///
 /// \return the same for any number of threads
 std::vector<BorderVote> borderVotes(const PointView& points, const Neighborhoods& neighborhoods,
                                     const SheetField& field, const Segmentation& segmentation,
