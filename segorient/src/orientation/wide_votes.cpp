@@ -81,6 +81,10 @@ SheetGroup WideVoter::spread(std::size_t from, std::int32_t label) {
 }
 
 float WideVoter::vote(const std::vector<pcl::index_t>& border, std::int32_t a, std::int32_t b) {
+  for (const std::int32_t s : {a, b}) {
+    const auto size = segmentation_.segments[static_cast<std::size_t>(s)].size;
+    if (static_cast<float>(size) < kLeastPoints) return 0.F;
+  }
   seen_.resize(points_.size, 0);
   float sum = 0.F;
   float absolute = 0.F;
