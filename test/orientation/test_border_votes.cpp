@@ -89,7 +89,7 @@ Wedge withNoise(Wedge wedge, float sigma, unsigned seed) {
   return wedge;
 }
 
-// Points lie up to half a spacing off, and near the crease among those of the other plane.
+// Points lie some half a spacing off, and near the crease among those of the other plane.
 TEST(BorderVotes, NoiseAcrossASharpCreaseDoesNotCount) {
   for (const double degrees : {-160.0, -150.0, -135.0, 135.0, 150.0, 160.0}) {
     Wedge w = withNoise(makeWedge(degrees, 24), 0.015F, 25);

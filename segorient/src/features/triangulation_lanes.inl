@@ -142,7 +142,8 @@ inline Lanes3 fanNormals(const LocalFitJob& job, const Batch& batch, std::size_t
     return batch.offsetsAt([&](std::size_t l) { return order.number(j, l); }, half);
   };
   const double* units = batch.unit + half * kWidth;
-  const bool rescaled = std::any_of(units, units + kWidth, [](double u) { return u != 1.0; });
+  bool rescaled = false;
+  for (std::size_t l = 0; l < kWidth; ++l) rescaled = rescaled || units[l] != 1.0;
   Lanes3 area = rescaled ? fanArea(order, rescaledCorner) : fanArea(order, corner);
   // In units of the neighbourhood: squares of areas leave float's range early.
   area = scaled(area, 1.0F / (plane.size * plane.size));

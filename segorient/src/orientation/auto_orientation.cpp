@@ -377,9 +377,8 @@ void Orienter::turnVisibleSegments(const ViewpointFit& fit) {
     const float size = static_cast<float>(segmentation_.segments[s].size);
     const bool seen = facing[s].total > 0.5F * size;
     if (!seen || hinted_[at(clusters_.of(s))] || facing[s].share() >= -kClearly) continue;
-    if (agreement[s] > kFirmBorders) continue;
-    against.push_back(s);
     points += size;
+    if (agreement[s] <= kFirmBorders) against.push_back(s);
   }
   if (points > kMostAgainst * static_cast<float>(points_.size)) return;
   for (const std::size_t s : against) signs_[s] = static_cast<std::int8_t>(-signs_[s]);
@@ -390,7 +389,10 @@ void Orienter::findContradictions() {
   const auto long_enough = static_cast<std::uint32_t>(
       std::max(20.0, 0.5 * std::sqrt(static_cast<double>(points_.size))));
   for (const BorderVote& v : votes_) {
-    if (v.unanimity() < 0.9F || v.count < long_enough || v.reliable < 0.8F * v.absolute) continue;
+    if (v.by_planes || v.unanimity() < 0.9F || v.count < long_enough ||
+        v.reliable < 0.8F * v.absolute) {
+      continue;
+    }
     const float agreed = v.weight * static_cast<float>(signs_[at(v.a)] * signs_[at(v.b)]);
     if (agreed >= 0.F) continue;
     const float* p = points_[static_cast<std::size_t>(v.where)];

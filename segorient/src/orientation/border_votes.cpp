@@ -163,7 +163,8 @@ std::vector<BorderVote> borderVotes(const PointView& points, const Neighborhoods
     for (; j < votes.size() && votes[j].a == votes[i].a && votes[j].b == votes[i].b; ++j) {
       (votes[j].wall ? wall : sheet).add(votes[j]);
     }
-    if (wall.absolute > 0.5 * sheet.absolute) sheet.add(wall);
+    const bool walls_count = wall.absolute > 0.5 * sheet.absolute;
+    if (walls_count) sheet.add(wall);
     if (sheet.count > 0) {
       BorderVote v;
       v.a = votes[i].a;
@@ -175,9 +176,14 @@ std::vector<BorderVote> borderVotes(const PointView& points, const Neighborhoods
       v.where = votes[i + (j - i) / 2].point;
       if (v.count >= kLong && v.unanimity() < kAgreed) {
         border.clear();
-        for (std::size_t k = i; k < j; ++k) border.push_back(votes[k].point);
+        for (std::size_t k = i; k < j; ++k) {
+          const bool counted = walls_count || !votes[k].wall;
+          const bool known = !border.empty() && border.back() == votes[k].point;
+          if (counted && !known) border.push_back(votes[k].point);
+        }
         const float again = wide.vote(border, v.a, v.b);
-        if (std::fabs(again) > kAgreed) v.weight = again * v.absolute;
+        v.by_planes = std::fabs(again) > kAgreed;
+        if (v.by_planes) v.weight = again * v.absolute;
       }
       out.push_back(v);
     }

@@ -20,7 +20,7 @@ constexpr float kHardlyBent = 0.9F;
 constexpr float kParallel = 0.95F;
 // In spacings: what is nearer to a plane is on neither side of it.
 constexpr float kClear = 0.5F;
-// Points that are asked, and how many of four have to know something.
+// Points that are asked; half of them have to know something.
 constexpr std::size_t kAsked = 16;
 
 bool isBent(const SheetGroup& sum) {
@@ -105,7 +105,7 @@ float WideVoter::vote(const std::vector<pcl::index_t>& border, std::int32_t a, s
     absolute += std::fabs(value);
     voters += value != 0.F ? 1 : 0;
   }
-  return 4 * voters >= asked && absolute > 0.F ? sum / absolute : 0.F;
+  return 2 * voters >= asked && absolute > 0.F ? sum / absolute : 0.F;
 }
 
 }  // namespace segorient::detail

@@ -199,8 +199,8 @@ struct Kernels {
                          Candidates& room, const SortScratch&, pcl::index_t* indices,
                          float* distances);
   /// Leaves the k nearest of `count` candidates in ascending order, ties by id, in the scratch. All
-  /// are nearer than `limit`; there are at most kMostToSort, and those up to Layout::kPadding
-  /// beyond the last were set by padCandidates().
+  /// are nearer than `limit`; there are at most kMostToSort, and the eight beyond the last were set
+  /// by padCandidates().
   void (*sortNearest)(const float* distance, const std::uint32_t* id, std::size_t count,
                       std::size_t k, float limit, const SortScratch&);
   /// The k nearest of every point of a region.

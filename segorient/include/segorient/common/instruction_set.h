@@ -4,8 +4,8 @@
 
 namespace segorient {
 
-/// What vector instructions are used, from the least to the most; results do not depend on it.
-/// Avx512 stands for its F and VL parts.
+/// What vector instructions are used, from the least to the most; exact results do not depend on
+/// it. Avx512 stands for its F and VL parts.
 enum class InstructionSet { Scalar, Sse2, Avx2, Avx512 };
 
 /// The best one that this machine has, or the one that the environment variable SEGORIENT_SIMD

@@ -21,6 +21,8 @@ struct BorderVote {
   float reliable = 0.F;     ///< part of `absolute` from points whose normal is reliable
   std::uint32_t count = 0;  ///< votes
   pcl::index_t where = -1;  ///< a point of the border
+  /// Whether planes of more points decided: then `weight` is `absolute` times how far these agree.
+  bool by_planes = false;
   /// |weight| / absolute: 1 where all votes agree.
   float unanimity() const {
     return absolute > 0.F ? (weight < 0.F ? -weight : weight) / absolute : 0.F;
@@ -39,6 +41,7 @@ struct BorderVote {
 /// Where the points of a longer border contradict each other, as noise across a sharp crease makes
 /// them, planes of more points on either side of it decide, if these agree.
 ///
+/// \param segmentation with a segment for each label
 /// \return the same for any number of threads
 std::vector<BorderVote> borderVotes(const PointView& points, const Neighborhoods& neighborhoods,
                                     const SheetField& field, const Segmentation& segmentation,

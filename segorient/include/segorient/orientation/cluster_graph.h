@@ -43,7 +43,7 @@ class ClusterGraph {
   /// \param sizes points of each segment
   ClusterGraph(const std::vector<std::uint32_t>& sizes, const std::vector<BorderVote>& votes);
 
-  /// Joins all that one of the rules allows, by |weight| * unanimity.
+  /// Joins all that one of the rules allows, by |weight| * unanimity; nothing without rules.
   void contract(const std::vector<Rule>& rules);
 
   /// The cluster that a segment belongs to: one of its segments stands for it.

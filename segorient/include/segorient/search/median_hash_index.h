@@ -46,7 +46,7 @@ class MedianHashIndex {
   std::size_t memory() const;  ///< bytes in use
 
   /// The instruction set in use: the best that this machine has, unless the environment variable
-  /// SEGORIENT_SIMD named another one (scalar, sse2, avx2, avx512) at build(). Results do not
+  /// SEGORIENT_SIMD named another one (scalar, sse2, avx2, avx512) at build(). Exact results do not
   /// depend on it.
   const char* instructionSet() const;
 
