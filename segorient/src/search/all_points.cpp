@@ -124,9 +124,10 @@ void MedianHashIndex::nearestKAll(int k, Neighborhoods& out, bool with_distances
   const std::size_t shared = std::min(wanted, kMostNeighborsShared);
 #pragma omp parallel num_threads(threads) if (threads > 1)
   {
-    // A group has up to 31 points with up to some 3 k + 104 candidates each.
+    // A group has up to 31 points with up to some 3 k + 104 candidates each, in two halves.
     const std::size_t block = 2048 + 16 * shared;
-    GroupWork work(self.layout, block, block + 32 * (3 * shared + 112));
+    const std::size_t half = block + Layout::kPadding + 16 * (3 * shared + 112);
+    GroupWork work(self.layout, block, 2 * wholeLines(half));
     GroupTask& task = work.task;
     task.k = static_cast<std::uint32_t>(wanted);
     task.epsilon = epsilon > 0.0F ? epsilon : 0.0F;

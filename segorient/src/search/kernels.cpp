@@ -48,13 +48,9 @@ namespace scalar {
 
 #include "kernels_ranges.inl"
 
-#include "kernels_sort.inl"
+#include "kernels_take.inl"
 
-#include "kernels_groups.inl"
-
-#include "kernels_all_points.inl"
-constexpr Kernels kKernels{"scalar",       collect,     collectRegion,   gatherAround,
-                           nearestInBlock, sortNearest, nearestInRegion, withinInRegion};
+#include "kernels_one.inl"
 }  // namespace scalar
 
 #if SEGORIENT_X86
@@ -64,13 +60,9 @@ namespace sse2 {
 
 #include "kernels_ranges.inl"
 
-#include "kernels_sort.inl"
+#include "kernels_take_listed.inl"
 
-#include "kernels_groups.inl"
-
-#include "kernels_all_points.inl"
-constexpr Kernels kKernels{"sse2",         collect,     collectRegion,   gatherAround,
-                           nearestInBlock, sortNearest, nearestInRegion, withinInRegion};
+#include "kernels_one.inl"
 }  // namespace sse2
 
 /// For each mask of eight lanes the lanes that are set, in a byte each.
@@ -101,13 +93,9 @@ namespace avx2 {
 
 #include "kernels_ranges.inl"
 
-#include "kernels_sort.inl"
+#include "kernels_take.inl"
 
-#include "kernels_groups.inl"
-
-#include "kernels_all_points.inl"
-constexpr Kernels kKernels{"avx2",         collect,     collectRegion,   gatherAround,
-                           nearestInBlock, sortNearest, nearestInRegion, withinInRegion};
+#include "kernels_one.inl"
 }  // namespace avx2
 
 #if defined(__clang__)
@@ -125,13 +113,9 @@ namespace avx512 {
 
 #include "kernels_ranges.inl"
 
-#include "kernels_sort.inl"
+#include "kernels_take.inl"
 
-#include "kernels_groups.inl"
-
-#include "kernels_all_points.inl"
-constexpr Kernels kKernels{"avx512",       collect,     collectRegion,   gatherAround,
-                           nearestInBlock, sortNearest, nearestInRegion, withinInRegion};
+#include "kernels_one.inl"
 }  // namespace avx512
 
 #if defined(__clang__)

@@ -173,7 +173,7 @@ struct GroupTask {
   RowBuffer* rows;
   // work space of one thread; each array with Layout::kPadding entries more
   Block block;                ///< points that a group may have as neighbours
-  float* candidate_distance;  ///< of all points of a group
+  float* candidate_distance;  ///< of all points of a group; of the k nearest, in two halves
   std::uint32_t* candidate_id;
   std::size_t candidate_capacity;
   SortScratch sort;

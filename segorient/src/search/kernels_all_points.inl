@@ -11,11 +11,10 @@ inline void writeNearest(const LayoutView& view, Group& group, RegionState& stat
   sortMembers(group, task.k, task);
   for (std::size_t m = 0; m < group.found_count; ++m) {
     const Group::Member& member = group.found[m];
-    const float* const distance = task.candidate_distance + member.first;
-    state.most = largest(state.most, distance[task.k - 1]);
+    state.most = largest(state.most, member.distance[task.k - 1]);
     const std::size_t at = view.row[member.point] * task.row_length;
-    copyRow(task.candidate_id + member.first, distance, view.id[member.point], task.k,
-            task.indices + at, task.distances == nullptr ? nullptr : task.distances + at);
+    copyRow(member.id, member.distance, view.id[member.point], task.k, task.indices + at,
+            task.distances == nullptr ? nullptr : task.distances + at);
   }
 }
 
@@ -24,20 +23,30 @@ inline void writeNearest(const LayoutView& view, Group& group, RegionState& stat
 inline bool nearestWithin(const LayoutView& view, float reach, Group& group, RegionState& state,
                           GroupTask& task) {
   if (!gather(view, group.box, reach, state, task)) return false;
+  const std::size_t half = task.candidate_capacity / 2;
+  Candidates room[2] = {{task.candidate_distance, task.candidate_id, 0, half},
+                        {task.candidate_distance + half, task.candidate_id + half, 0, half}};
   std::size_t left = 0;
-  std::size_t used = 0;
   group.found_count = 0;
-  for (std::size_t i = 0; i < group.waiting_count; ++i) {
-    const std::uint32_t point = group.waiting[i];
-    const float q[3] = {view.x[point], view.y[point], view.z[point]};
-    Candidates found{task.candidate_distance + used, task.candidate_id + used, 0, 0};
-    if (takeNearest(task.block, q, reach, task.k, state.guess, found)) {
-      group.found[group.found_count++] = {point, static_cast<std::uint32_t>(found.count), used,
-                                          state.guess.limit};
-      used += wholeLines(found.count + kSortRoom);
-    } else {
-      group.waiting[left++] = point;
+  for (std::size_t i = 0; i < group.waiting_count; i += 2) {
+    const std::size_t points = i + 1 < group.waiting_count ? 2 : 1;
+    const std::uint32_t point[2] = {group.waiting[i], group.waiting[i + points - 1]};
+    const float q[2][3] = {{view.x[point[0]], view.y[point[0]], view.z[point[0]]},
+                           {view.x[point[1]], view.y[point[1]], view.z[point[1]]}};
+    const float first = firstLimit(state.guess, reach);
+    takeNearTwo(task.block, q[0], q[1], first, room[0], room[1]);
+    float typical = 0.0F;
+    for (std::size_t j = 0; j < points; ++j) {
+      float limit = first;
+      if (settleLimit(task.block, q[j], reach, task.k, limit, room[j])) {
+        typical += typicalOf(limit, task.k, room[j].count);
+        addMember(point[j], limit, room[j], group);
+      } else {
+        typical += state.guess.typical;
+        group.waiting[left++] = point[j];
+      }
     }
+    state.guess.typical = typical / static_cast<float>(points);
   }
   group.waiting_count = left;
   writeNearest(view, group, state, task);
@@ -52,6 +61,9 @@ SEGORIENT_APART void nearestOfGroup(const LayoutView& view, std::uint32_t begin,
       __builtin_prefetch(task.indices + row + j, 1);
       if (task.distances != nullptr) __builtin_prefetch(task.distances + row + j, 1);
     }
+    // A row does not begin where a line does.
+    __builtin_prefetch(task.indices + row + task.k - 1, 1);
+    if (task.distances != nullptr) __builtin_prefetch(task.distances + row + task.k - 1, 1);
   }
   Group group;
   startGroup(view, begin, end, group);
@@ -78,8 +90,7 @@ inline void writeWithin(const LayoutView& view, Group& group, RegionState& state
     const std::size_t count = member.count < task.k ? member.count : task.k;
     RowBuffer& rows = *task.rows;
     if (rows.used + count > rows.capacity) rows.grow(rows, rows.used + count);
-    copyRow(task.candidate_id + member.first, task.candidate_distance + member.first,
-            view.id[member.point], count, rows.indices + rows.used,
+    copyRow(member.id, member.distance, view.id[member.point], count, rows.indices + rows.used,
             rows.distances == nullptr ? nullptr : rows.distances + rows.used);
     rows.begin[member.point - region_begin] = rows.used;
     rows.count[member.point - region_begin] = static_cast<std::uint32_t>(count);
@@ -93,22 +104,22 @@ void withinOfGroup(const LayoutView& view, std::uint32_t begin, std::uint32_t en
   startGroup(view, begin, end, group);
   const bool gathered = gather(view, group.box, task.limit, state, task);
   group.found_count = 0;
-  std::size_t used = 0;
+  Candidates room{task.candidate_distance, task.candidate_id, 0, 0};
+  const float* const end_of_room = task.candidate_distance + task.candidate_capacity;
   for (std::uint32_t i = begin; i < end; ++i) {
-    if (!gathered || used + task.block.count + kWidth > task.candidate_capacity) {
+    const auto left = static_cast<std::size_t>(end_of_room - room.distance);
+    if (!gathered || task.block.count + kWidth > left) {
       task.failed[task.failed_count++] = i;
       continue;
     }
     const float q[3] = {view.x[i], view.y[i], view.z[i]};
-    const std::size_t count = takeNear(task.block, q, task.limit, task.candidate_distance + used,
-                                       task.candidate_id + used);
-    if (count > kMostToSort) {
+    room.count = takeNear(task.block, q, task.limit, room.distance, room.id);
+    if (room.count > kMostToSort) {
       task.failed[task.failed_count++] = i;
       continue;
     }
-    padCandidates(task.candidate_distance + used, task.candidate_id + used, count);
-    group.found[group.found_count++] = {i, static_cast<std::uint32_t>(count), used, task.limit};
-    used += wholeLines(count + kSortRoom);
+    padCandidates(room.distance, room.id, room.count);
+    addMember(i, task.limit, room, group);
   }
   writeWithin(view, group, state, task);
 }

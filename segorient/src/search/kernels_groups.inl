@@ -116,8 +116,9 @@ struct Group {
   struct Member {
     std::uint32_t point;
     std::uint32_t count;  // of its candidates
-    std::size_t first;    // where they are
-    float limit;          // they are nearer than this
+    float* distance;
+    std::uint32_t* id;
+    float limit;  // their distances are less
   };
   Corners box;
   std::uint32_t waiting[2 * kGroup];  // points not yet searched for
@@ -138,6 +139,15 @@ inline void startGroup(const LayoutView& view, std::uint32_t begin, std::uint32_
   group.box = {lo, hi};
   group.waiting_count = end - begin;
   for (std::uint32_t i = begin; i < end; ++i) group.waiting[i - begin] = i;
+}
+
+// A point's candidates; what comes after them is for those of the next point.
+inline void addMember(std::uint32_t point, float limit, Candidates& room, Group& group) {
+  const auto count = static_cast<std::uint32_t>(room.count);
+  group.found[group.found_count++] = {point, count, room.distance, room.id, limit};
+  const std::size_t used = wholeLines(room.count + kSortRoom);
+  room.distance += used;
+  room.id += used;
 }
 
 // Fills the block with all points nearer to the group's box than the square root of `limit`.
@@ -162,43 +172,22 @@ inline bool gather(const LayoutView& view, const Corners& box, float limit, Regi
   return true;
 }
 
-// Copies what is nearer to a point than the square root of `limit` out of the block.
-// \return how many
-inline std::size_t takeNear(const Block& from, const float* q, float limit, float* out_distance,
-                            std::uint32_t* out_id) {
-  const Vector qx = broadcast(q[0]);
-  const Vector qy = broadcast(q[1]);
-  const Vector qz = broadcast(q[2]);
-  const Vector bound = broadcast(limit);
-  const float* const x = from.xyz[0];
-  const float* const y = from.xyz[1];
-  const float* const z = from.xyz[2];
-  const std::uint32_t* const id = from.id;
-  const std::size_t block = from.count;
-  std::size_t count = 0;
-  for (std::size_t i = 0; i < block; i += 2 * std::size_t{kWidth}) {
-    const std::size_t j = i + kWidth;
-    const Vector d = squaredNorm(qx - load(x + i), qy - load(y + i), qz - load(z + i));
-    const Vector e = squaredNorm(qx - load(x + j), qy - load(y + j), qz - load(z + j));
-    const unsigned int mask = lessMask(d, bound);
-    const unsigned int next_mask = lessMask(e, bound);
-    compress(d, mask, out_distance + count);
-    count += compressIds(id + i, mask, out_id + count);
-    compress(e, next_mask, out_distance + count);
-    count += compressIds(id + j, next_mask, out_id + count);
-  }
-  return count;
+inline float firstLimit(const Guess& guess, float reach) {
+  return smallest(guess.margin * guess.typical, reach);
 }
 
-// Candidates for the k nearest of a point from a block that holds everything nearer than the square
-// root of `reach`. Starting from a guess, looks for a limit that lets through k and not many more.
-// \return false if there are fewer in reach
-inline bool takeNearest(const Block& block, const float* q, float reach, std::size_t k,
-                        Guess& guess, Candidates& out) {
+// From candidates nearer than the square root of `limit`, how near the k-th typically is.
+inline float typicalOf(float limit, std::size_t k, std::size_t count) {
+  return largest(limit * static_cast<float>(k) / static_cast<float>(count), 1e-44F);
+}
+
+// With candidates taken with a first limit, looks for a limit that lets through k and not many
+// more. \return false if there are fewer in reach
+inline bool settleLimit(const Block& block, const float* q, float reach, std::size_t k,
+                        float& limit, Candidates& out) {
   const std::size_t enough = k + k / 2 + 8;
-  float limit = smallest(guess.margin * guess.typical, reach);
   float too_low = 0.0F;
-  std::size_t count = takeNear(block, q, limit, out.distance, out.id);
+  std::size_t count = out.count;
   for (int attempt = 0; count < k || (count > enough && attempt < 3); ++attempt) {
     const float factor = 1.25F * static_cast<float>(k) / static_cast<float>(count + 1);
     if (count < k) {
@@ -216,8 +205,6 @@ inline bool takeNearest(const Block& block, const float* q, float reach, std::si
   }
   padCandidates(out.distance, out.id, count);
   out.count = count;
-  guess.limit = limit;
-  guess.typical = largest(limit * static_cast<float>(k) / static_cast<float>(count), 1e-44F);
   return true;
 }
 
@@ -243,7 +230,12 @@ inline void copyEntries(const From* from, std::size_t count, To* to) {
 bool nearestInBlock(const Block& block, const float* q, float reach, std::size_t k, Guess& guess,
                     Candidates& room, const SortScratch& scratch, pcl::index_t* indices,
                     float* distances) {
-  if (!takeNearest(block, q, reach, k, guess, room) || room.count > kMostToSort) return false;
+  float limit = firstLimit(guess, reach);
+  room.count = takeNear(block, q, limit, room.distance, room.id);
+  if (!settleLimit(block, q, reach, k, limit, room)) return false;
+  guess.limit = limit;
+  guess.typical = typicalOf(limit, k, room.count);
+  if (room.count > kMostToSort) return false;
   sortNearest(room.distance, room.id, room.count, k, guess.limit, scratch);
   copyEntries(scratch.id, k, indices);
   copyEntries(scratch.distance, k, distances);
@@ -275,8 +267,8 @@ inline void copyRow(const std::uint32_t* id, const float* distance, std::uint32_
 inline void sortMembers(Group& group, std::size_t k, GroupTask& task) {
   for (std::size_t m = 0; m < group.found_count; ++m) {
     const Group::Member& member = group.found[m];
-    float* const distance = task.candidate_distance + member.first;
-    std::uint32_t* const id = task.candidate_id + member.first;
+    float* const distance = member.distance;
+    std::uint32_t* const id = member.id;
     if (member.count <= kMostAtOnce) {
       sortAtOnce(distance, id, member.count, distance, id);
       continue;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026, the segorient authors
 
+constexpr const char* kName = "avx2";
 constexpr std::uint32_t kWidth = 8;
 #include "simd_vector.inl"
 

@@ -4,6 +4,7 @@
 // Sixteen lanes, and lanes moved together by one instruction; to memory by another, since both at
 // once are slow on some machines.
 
+constexpr const char* kName = "avx512";
 constexpr std::uint32_t kWidth = 16;
 #include "simd_vector.inl"
 

@@ -3,6 +3,7 @@
 //
 // One number at a time: for machines without the instructions below, and to compare those with.
 
+constexpr const char* kName = "scalar";
 constexpr std::uint32_t kWidth = 1;
 using Vector = float;
 

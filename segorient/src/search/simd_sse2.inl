@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026, the segorient authors
 //
-// Every x86-64 machine has SSE2. There is no shuffle by a variable, hence the plain stores.
+// Every x86-64 machine has SSE2. There is no shuffle by a variable.
 
+constexpr const char* kName = "sse2";
 constexpr std::uint32_t kWidth = 4;
 #include "simd_vector.inl"
 
@@ -23,24 +24,50 @@ inline Vector selectLess(Vector a, Vector b, Vector yes, Vector no) {
 inline unsigned int lessMask(Vector a, Vector b) {
   return static_cast<unsigned int>(_mm_movemask_ps(_mm_cmplt_ps(a, b)));
 }
+// Writes two pairs of lanes; of each, the second moves down where the first is not wanted.
+inline void putPairs(std::uint64_t low, std::uint64_t high, unsigned int mask, void* out) {
+  low >>= 32U * (~mask & 1U);
+  high >>= 32U * ((~mask >> 2U) & 1U);
+  char* const at = static_cast<char*>(out);
+  __builtin_memcpy(at, &low, sizeof(low));
+  __builtin_memcpy(at + 4 * ((mask & 1U) + ((mask >> 1U) & 1U)), &high, sizeof(high));
+}
+inline std::size_t lanesIn(unsigned int mask) {
+  return (0x4332322132212110ULL >> (4 * mask)) & 15U;
+}
 inline void compress(Vector v, unsigned int mask, float* out) {
-  if (mask == 0) return;
-  float lanes[4];
-  _mm_storeu_ps(lanes, v);
-  std::size_t n = 0;
-  for (unsigned int lane = 0; lane < 4; ++lane) {
-    out[n] = lanes[lane];
-    n += (mask >> lane) & 1U;
-  }
+  const __m128i lanes = _mm_castps_si128(v);
+  putPairs(static_cast<std::uint64_t>(_mm_cvtsi128_si64(lanes)),
+           static_cast<std::uint64_t>(_mm_cvtsi128_si64(_mm_unpackhi_epi64(lanes, lanes))), mask,
+           out);
 }
 inline std::size_t compressIds(const std::uint32_t* ids, unsigned int mask, std::uint32_t* out) {
-  if (mask == 0) return 0;
-  std::size_t n = 0;
-  for (unsigned int lane = 0; lane < 4; ++lane) {
-    out[n] = ids[lane];
-    n += (mask >> lane) & 1U;
+  std::uint64_t pairs[2];
+  __builtin_memcpy(pairs, ids, sizeof(pairs));
+  putPairs(pairs[0], pairs[1], mask, out);
+  return lanesIn(mask);
+}
+
+// For each mask the lanes that are set.
+struct LaneLists {
+  alignas(16) std::uint32_t lanes[16][4];
+  constexpr LaneLists() : lanes() {
+    for (unsigned int mask = 0; mask < 16; ++mask) {
+      unsigned int n = 0;
+      for (std::uint32_t lane = 0; lane < 4; ++lane) {
+        if ((mask >> lane) & 1U) lanes[mask][n++] = lane;
+      }
+    }
   }
-  return n;
+};
+constexpr LaneLists kLaneLists;
+
+// Lists where the lanes of a vector are whose first one is at `first`.
+inline std::size_t listLanes(std::uint32_t first, unsigned int mask, std::uint32_t* out) {
+  const auto* const lanes = reinterpret_cast<const __m128i*>(kLaneLists.lanes[mask]);
+  _mm_storeu_si128(reinterpret_cast<__m128i*>(out),
+                   _mm_add_epi32(_mm_set1_epi32(static_cast<int>(first)), _mm_load_si128(lanes)));
+  return lanesIn(mask);
 }
 
 struct Keys {
