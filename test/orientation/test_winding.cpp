@@ -295,6 +295,44 @@ TEST(Viewpoint, AFloorDoesNotTurnTheRoof) {
   EXPECT_EQ(out.result.segments[0].sign, out.result.segments[1].sign);
 }
 
+// A kerb along the edge of a floor: places above the floor show it from the front or from behind,
+// and nothing tells which of them the sensor was at. Some of the votes across the border are wrong.
+TEST(Viewpoint, WhatTheFloorDoesNotTellIsLeftToTheBorder) {
+  constexpr float kStep = 1.F / 40;
+  std::vector<float> xyz;
+  std::vector<float> normals;
+  std::vector<std::uint8_t> reliable;
+  Segmentation segmentation;
+  segmentation.segments.resize(2);
+  const auto add = [&](std::int32_t label, float from_edge, std::array<float, 4> p,
+                       std::array<float, 4> n) {
+    xyz.insert(xyz.end(), p.begin(), p.end());
+    normals.insert(normals.end(), n.begin(), n.end());
+    reliable.push_back(from_edge < 0.15F ? 0 : 1);
+    segmentation.labels.push_back(label);
+    const auto wrong = static_cast<std::int8_t>(p[1] > 0.85F && label == 1 ? -1 : 1);
+    segmentation.signs.push_back(wrong);
+    ++segmentation.segments[static_cast<std::size_t>(label)].size;
+  };
+  for (int j = 0; j < 40; ++j) {
+    const float y = static_cast<float>(j) * kStep;
+    for (int i = 0; i < 100; ++i) {
+      const float x = (static_cast<float>(i) + 0.5F) * kStep;
+      add(0, x, {-x, y, 0.F, 0.F}, {0.F, 0.F, 1.F, 0.F});
+      if (i < 8) add(1, x, {0.F, y, x, 0.F}, {-1.F, 0.F, 0.F, 0.F});
+    }
+  }
+  const std::size_t n = segmentation.labels.size();
+  const std::vector<float> spacing(n, kStep);
+  const std::vector<float> above(n, std::numeric_limits<float>::max());
+  const std::vector<float> below(n, -std::numeric_limits<float>::max());
+  const SheetField field{normals.data(), spacing.data(), below.data(), above.data(),
+                         reliable.data()};
+  const AutoOrientation out = orientSheets(viewOf(xyz), neighborsOf(xyz), field, segmentation);
+  EXPECT_GT(out.viewpoint_agreement, 0.98F);
+  EXPECT_EQ(out.result.segments[0].sign, out.result.segments[1].sign);
+}
+
 std::vector<std::uint32_t> allRows(std::size_t n) {
   std::vector<std::uint32_t> rows(n);
   std::iota(rows.begin(), rows.end(), 0U);
@@ -310,6 +348,37 @@ TEST(Viewpoint, IsFoundForARoomSeenFromInside) {
     EXPECT_GE(c, -0.01F);
     EXPECT_LE(c, 1.01F);
   }
+  for (const Viewpoint& other : fit.others) {
+    EXPECT_EQ(other.facing, -1);
+    for (const float c : other.position) {
+      EXPECT_GE(c, -0.1F);
+      EXPECT_LE(c, 1.1F);
+    }
+  }
+}
+
+// All places above see its front, all below its back.
+TEST(Viewpoint, OfAPlaneManyPlacesSeeAsMuch) {
+  std::vector<float> xyz;
+  std::vector<float> normals;
+  for (int i = 0; i < 2500; ++i) {
+    const auto [x, y] = std::div(i, 50);
+    for (const float c : {0.02F * static_cast<float>(x), 0.02F * static_cast<float>(y), 5.F, 0.F}) {
+      xyz.push_back(c);
+    }
+    normals.insert(normals.end(), {0.F, 0.F, 1.F, 0.F});
+  }
+  const ViewpointFit fit = fitViewpoint(viewOf(xyz), normals, allRows(2500));
+  EXPECT_EQ(fit.agreement, 1.F);
+  ASSERT_GE(fit.others.size(), 4U);
+  bool left = false;
+  bool right = false;
+  for (const Viewpoint& other : fit.others) {
+    EXPECT_EQ(other.facing, other.position[2] > 5.F ? 1 : -1);
+    left = left || other.position[0] < 0.F;
+    right = right || other.position[0] > 1.F;
+  }
+  EXPECT_TRUE(left && right);
 }
 
 TEST(Viewpoint, IsNotFoundForSeparateSolids) {

@@ -74,6 +74,8 @@ class Orienter {
   void turnClusters(const std::vector<Ballot>& ballots, float sure_borders);
   void followHints();
   void followViewpoint();
+  std::vector<Ballot> facingOf(const Viewpoint& from,
+                               const std::vector<std::uint8_t>& visible) const;
   void turnVisibleSegments(const ViewpointFit& fit);
   void judge();
   void listClusters();
@@ -349,21 +351,29 @@ void Orienter::followViewpoint() {
   if (fit.agreement >= kNearlySure) turnVisibleSegments(fit);
 }
 
-// What nothing hides from where all was seen from was seen: segments that turn their backs to it
-// are turned over, unless next to all of their borders know better.
-void Orienter::turnVisibleSegments(const ViewpointFit& fit) {
-  const std::vector<std::uint8_t> visible = visibleFrom(points_, field_.spacing, fit.position);
+// How far the visible points of each segment face a viewpoint.
+std::vector<Ballot> Orienter::facingOf(const Viewpoint& from,
+                                       const std::vector<std::uint8_t>& visible) const {
   std::vector<Ballot> facing(signs_.size());
   for (std::size_t i = 0; i < points_.size; ++i) {
     const std::int32_t s = segmentation_.labels[i];
     if (s < 0 || visible[i] == 0) continue;
     float d = 0.F;
     for (std::size_t a = 0; a < 3; ++a) {
-      d += field_.normals[4 * i + a] * (fit.position[a] - points_[i][a]);
+      d += field_.normals[4 * i + a] * (from.position[a] - points_[i][a]);
     }
-    const float sign = pointSign(i) * static_cast<float>(fit.facing);
+    const float sign = pointSign(i) * static_cast<float>(from.facing);
     facing[at(s)].add({sign * d > 0.F ? 1.F : -1.F, 1.F}, 1);
   }
+  return facing;
+}
+
+// What nothing hides from where all was seen from was seen: segments that turn their backs to it
+// are turned over, unless next to all of their borders know better, or all could have been seen
+// from elsewhere, too, which they face.
+void Orienter::turnVisibleSegments(const ViewpointFit& fit) {
+  const std::vector<std::uint8_t> visible = visibleFrom(points_, field_.spacing, fit.position);
+  const std::vector<Ballot> facing = facingOf(fit, visible);
   constexpr float kFirmBorders = 0.9F;
   std::vector<std::int32_t> itself(signs_.size());
   std::iota(itself.begin(), itself.end(), 0);
@@ -380,8 +390,15 @@ void Orienter::turnVisibleSegments(const ViewpointFit& fit) {
     points += size;
     if (agreement[s] <= kFirmBorders) against.push_back(s);
   }
-  if (points > kMostAgainst * static_cast<float>(points_.size)) return;
-  for (const std::size_t s : against) signs_[s] = static_cast<std::int8_t>(-signs_[s]);
+  if (against.empty() || points > kMostAgainst * static_cast<float>(points_.size)) return;
+  std::vector<bool> sure(signs_.size(), true);
+  for (const Viewpoint& other : fit.others) {
+    const std::vector<Ballot> seen = facingOf(other, visible);
+    for (const std::size_t s : against) sure[s] = sure[s] && seen[s].share() < -kClearly;
+  }
+  for (const std::size_t s : against) {
+    if (sure[s]) signs_[s] = static_cast<std::int8_t>(-signs_[s]);
+  }
 }
 
 void Orienter::findContradictions() {
