@@ -310,8 +310,7 @@ TEST(Viewpoint, WhatTheFloorDoesNotTellIsLeftToTheBorder) {
     normals.insert(normals.end(), n.begin(), n.end());
     reliable.push_back(from_edge < 0.15F ? 0 : 1);
     segmentation.labels.push_back(label);
-    const auto wrong = static_cast<std::int8_t>(p[1] > 0.85F && label == 1 ? -1 : 1);
-    segmentation.signs.push_back(wrong);
+    segmentation.signs.push_back(1);
     ++segmentation.segments[static_cast<std::size_t>(label)].size;
   };
   for (int j = 0; j < 40; ++j) {
@@ -319,7 +318,7 @@ TEST(Viewpoint, WhatTheFloorDoesNotTellIsLeftToTheBorder) {
     for (int i = 0; i < 100; ++i) {
       const float x = (static_cast<float>(i) + 0.5F) * kStep;
       add(0, x, {-x, y, 0.F, 0.F}, {0.F, 0.F, 1.F, 0.F});
-      if (i < 8) add(1, x, {0.F, y, x, 0.F}, {-1.F, 0.F, 0.F, 0.F});
+      if (i < 8) add(1, x, {0.F, y, x, 0.F}, {y > 0.91F ? 1.F : -1.F, 0.F, 0.F, 0.F});
     }
   }
   const std::size_t n = segmentation.labels.size();
