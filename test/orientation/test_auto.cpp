@@ -186,11 +186,11 @@ TEST(Auto, FilterIsWorthItsTime) {
             shareOutward(orient(cloud.xyz, unfiltered).normals, cloud.normals) + 0.005);
 }
 
-// A ring of tube radius 0.15 and noise of a quarter of that: neighbourhoods of 32 see no surface.
+// A ring of tube radius 0.15 and noise of a third of that: neighbourhoods of 32 see no surface.
 TEST(Auto, DenoisingIsWorthItsTime) {
   std::mt19937 rng(51);
   std::uniform_real_distribution<double> angle(0, 2 * M_PI);
-  std::normal_distribution<double> noise(0, 0.0375);
+  std::normal_distribution<double> noise(0, 0.05);
   std::vector<float> xyz;
   std::vector<float> truth;
   for (int i = 0; i < 12000; ++i) {
@@ -212,7 +212,7 @@ TEST(Auto, DenoisingIsWorthItsTime) {
   EXPECT_TRUE(smooth.report.denoised);
   const double share = shareOutward(smooth.normals, truth);
   EXPECT_GT(share, 0.98);
-  EXPECT_GT(share, shareOutward(orient(xyz, rough).normals, truth));
+  EXPECT_GT(share, shareOutward(orient(xyz, rough).normals, truth) + 0.005);
 }
 
 }  // namespace

@@ -130,6 +130,22 @@ TEST(BorderVotes, NormalsOnBothSidesOfAWallPointApart) {
   EXPECT_FLOAT_EQ(voteOn(plate, 0.01F).weight, -apart.weight);
 }
 
+// Where it is not known what a wall is: a sheet three spacings above another one.
+TEST(BorderVotes, WhatLiesAboveIsAWall) {
+  Wedge sheets = makeWedge(0, 28);
+  for (std::size_t i = 0; i < sheets.xyz.size(); i += 8) {
+    sheets.xyz[i] += 0.5F;
+    sheets.xyz[i + 2] -= 0.09F;
+  }
+  const BorderVote vote = voteOn(sheets);
+  ASSERT_GT(vote.count, 16U);
+  EXPECT_LT(vote.weight, 0.F);
+  EXPECT_TRUE(vote.wall_counts) << "nothing else is known of the two";
+  EXPECT_GT(vote.wall.absolute, 0.9F * vote.absolute);
+  const BorderVote bent = voteOn(makeWedge(135, 29));
+  EXPECT_EQ(bent.wall.absolute, 0.F) << "across a crease of 45 degrees";
+}
+
 // Lengths in spacings that a float cannot hold.
 TEST(BorderVotes, PointsTooFarApartSayNothing) {
   const BorderVote vote = voteOn(makeWedge(30, 24), std::numeric_limits<float>::infinity(), 1e-40F);
@@ -195,6 +211,35 @@ TEST(ClusterGraph, JoinsOnlyWhatTheRuleAllows) {
   large.both_larger = 50;
   graph.contract({large});
   EXPECT_EQ(graph.clusters().size(), 2U) << "both clusters are larger than 50 points";
+}
+
+// 0-1 and 1-2 meet on one sheet, 0-2 only across a wall, as the turns of a roll do.
+TEST(ClusterGraph, WallsHaveNoSayWhereClustersMeet) {
+  std::vector<BorderVote> votes(3);
+  const std::int32_t ends[3][2] = {{0, 1}, {0, 2}, {1, 2}};
+  const float weights[3] = {20.F, -9.F, 60.F};
+  for (std::size_t e = 0; e < 3; ++e) {
+    votes[e].a = ends[e][0];
+    votes[e].b = ends[e][1];
+    votes[e].weight = weights[e];
+    votes[e].absolute = votes[e].reliable = std::fabs(weights[e]);
+  }
+  ClusterGraph::Rule rule;
+  rule.unanimity = 0.9F;
+  rule.weight = 15.F;
+  for (const bool is_wall : {true, false}) {
+    if (is_wall) votes[1].wall = votes[1];
+    votes[1].wall_counts = is_wall;
+    ClusterGraph graph({10, 10, 10}, votes);
+    graph.contract({rule});
+    EXPECT_EQ(graph.clusters().size(), is_wall ? 1U : 2U);
+    if (!is_wall) continue;
+    int first = 0;
+    int last = 0;
+    graph.find(0, first);
+    graph.find(2, last);
+    EXPECT_EQ(first, last);
+  }
 }
 
 TEST(ClusterGraph, OneRuleOfSeveralSuffices) {

@@ -45,7 +45,7 @@ class Voter {
                 groups[g].label,
                 static_cast<pcl::index_t>(p),
                 std::min(groups[0].count, groups[g].count) * groups[0].compare(groups[g]),
-                groups[g].wall,
+                groups[g].wall || groups[0].isAbove(groups[g]),
                 field_.reliable[p] != 0};
       if (v.a > v.b) std::swap(v.a, v.b);
       out.push_back(v);
@@ -116,6 +116,9 @@ struct Tally {
     reliable += o.reliable;
     count += o.count;
   }
+  Evidence evidence() const {
+    return {static_cast<float>(weight), static_cast<float>(absolute), static_cast<float>(reliable)};
+  }
 };
 
 std::vector<RawVote> castVotes(const Voter& voter, std::size_t n, int threads) {
@@ -163,15 +166,15 @@ std::vector<BorderVote> borderVotes(const PointView& points, const Neighborhoods
     for (; j < votes.size() && votes[j].a == votes[i].a && votes[j].b == votes[i].b; ++j) {
       (votes[j].wall ? wall : sheet).add(votes[j]);
     }
-    const bool walls_count = wall.absolute > 0.5 * sheet.absolute;
+    const bool walls_count = sheet.evidence().letsCount(wall.evidence());
     if (walls_count) sheet.add(wall);
     if (sheet.count > 0) {
       BorderVote v;
       v.a = votes[i].a;
       v.b = votes[i].b;
-      v.weight = static_cast<float>(sheet.weight);
-      v.absolute = static_cast<float>(sheet.absolute);
-      v.reliable = static_cast<float>(sheet.reliable);
+      static_cast<Evidence&>(v) = sheet.evidence();
+      v.wall = wall.evidence();
+      v.wall_counts = walls_count;
       v.count = sheet.count;
       v.where = votes[i + (j - i) / 2].point;
       if (v.count >= kLong && v.unanimity() < kAgreed) {
@@ -183,7 +186,10 @@ std::vector<BorderVote> borderVotes(const PointView& points, const Neighborhoods
         }
         const float again = wide.vote(border, v.a, v.b);
         v.by_planes = std::fabs(again) > kAgreed;
-        if (v.by_planes) v.weight = again * v.absolute;
+        if (v.by_planes) {
+          v.weight = again * v.absolute;
+          v.wall = Evidence{};
+        }
       }
       out.push_back(v);
     }

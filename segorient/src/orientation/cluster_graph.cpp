@@ -24,6 +24,17 @@ struct ClusterGraph::Candidate {
   bool operator<(const Candidate& o) const { return key != o.key ? key < o.key : edge > o.edge; }
 };
 
+void ClusterGraph::Edge::decide() {
+  static_cast<Evidence&>(*this) = sheet;
+  if (sheet.letsCount(wall)) Evidence::add(wall);
+}
+
+void ClusterGraph::Edge::add(const Edge& o, float sign) {
+  sheet.add(o.sheet, sign);
+  wall.add(o.wall, sign);
+  decide();
+}
+
 ClusterGraph::ClusterGraph(const std::vector<std::uint32_t>& sizes,
                            const std::vector<BorderVote>& votes)
     : incident_(sizes.size()), sizes_(sizes), parent_(sizes.size()), parity_(sizes.size(), 1) {
@@ -32,7 +43,13 @@ ClusterGraph::ClusterGraph(const std::vector<std::uint32_t>& sizes,
   for (const BorderVote& v : votes) {
     incident_[at(v.a)].push_back(static_cast<std::uint32_t>(edges_.size()));
     incident_[at(v.b)].push_back(static_cast<std::uint32_t>(edges_.size()));
-    edges_.push_back({v.a, v.b, v.weight, v.absolute, v.reliable, true});
+    Edge edge;
+    static_cast<Evidence&>(edge) = v;
+    edge.a = v.a;
+    edge.b = v.b;
+    edge.sheet = v.sheet();
+    edge.wall = v.wall;
+    edges_.push_back(edge);
   }
 }
 
@@ -92,14 +109,14 @@ void ClusterGraph::merge(std::int32_t keep, std::int32_t gone, int sign,
     }
     const std::uint32_t twin = edgeBetween(keep, third);
     if (twin != kNone) {
-      edges_[twin].weight += static_cast<float>(sign) * edge.weight;
-      edges_[twin].absolute += edge.absolute;
-      edges_[twin].reliable += edge.reliable;
+      edges_[twin].add(edge, static_cast<float>(sign));
       edge.alive = false;
       push(heap, twin, rules);
     } else {
       (edge.a == gone ? edge.a : edge.b) = keep;
-      edge.weight *= static_cast<float>(sign);
+      for (Evidence* e_part : {static_cast<Evidence*>(&edge), &edge.sheet, &edge.wall}) {
+        e_part->weight *= static_cast<float>(sign);
+      }
       incident_[at(keep)].push_back(e);
       push(heap, e, rules);
     }

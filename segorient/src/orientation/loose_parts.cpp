@@ -19,20 +19,23 @@ std::size_t at(std::int32_t i) {
 std::vector<float> agreementOf(const std::vector<std::int32_t>& part_of,
                                const std::vector<BorderVote>& votes,
                                const std::vector<std::int8_t>& signs, float without) {
-  std::vector<float> agreed(part_of.size(), 0.F);
-  std::vector<float> absolute(part_of.size(), 0.F);
+  std::vector<Evidence> sheet(part_of.size());
+  std::vector<Evidence> wall(part_of.size());
   for (const BorderVote& v : votes) {
     const std::int32_t a = part_of[at(v.a)];
     const std::int32_t b = part_of[at(v.b)];
     if (a == b) continue;
-    const float w = v.weight * static_cast<float>(signs[at(v.a)] * signs[at(v.b)]);
+    const auto sign = static_cast<float>(signs[at(v.a)] * signs[at(v.b)]);
     for (const std::int32_t part : {a, b}) {
-      agreed[at(part)] += w;
-      absolute[at(part)] += v.absolute;
+      sheet[at(part)].add(v.sheet(), sign);
+      wall[at(part)].add(v.wall, sign);
     }
   }
+  std::vector<float> agreed(part_of.size(), without);
   for (std::size_t p = 0; p < agreed.size(); ++p) {
-    agreed[p] = absolute[p] > 0.F ? agreed[p] / absolute[p] : without;
+    Evidence all = sheet[p];
+    if (all.letsCount(wall[p])) all.add(wall[p]);
+    if (all.absolute > 0.F) agreed[p] = all.weight / all.absolute;
   }
   return agreed;
 }

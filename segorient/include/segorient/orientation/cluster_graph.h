@@ -15,20 +15,21 @@ namespace segorient {
 ///
 /// Where two clusters are joined, one is turned over if the evidence says so, and the borders that
 /// both have with a third add up with their signs: contradictions cancel and show as low unanimity,
-/// so that no single weak border decides anything.
+/// so that no single weak border decides anything. So do votes across walls, apart: two clusters
+/// that somewhere meet on one sheet need not listen to those of the walls between them elsewhere,
+/// as of a sheet that is rolled up.
 class ClusterGraph {
  public:
   /// Evidence between two clusters.
-  struct Edge {
+  struct Edge : Evidence {
     std::int32_t a = 0;
     std::int32_t b = 0;
-    float weight = 0.F;    ///< above 0 where the two agree as they are
-    float absolute = 0.F;  ///< sum of absolute votes
-    float reliable = 0.F;  ///< part of it from reliable points
     bool alive = true;
-    float unanimity() const {
-      return absolute > 0.F ? (weight < 0.F ? -weight : weight) / absolute : 0.F;
-    }
+    Evidence sheet;  ///< votes on one sheet
+    Evidence wall;   ///< votes across walls
+
+    void decide();                        ///< which of the votes count
+    void add(const Edge& o, float sign);  ///< another edge between the same two
   };
 
   /// What may be joined.
