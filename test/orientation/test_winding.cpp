@@ -388,35 +388,6 @@ TEST(Viewpoint, IsNotFoundForSeparateSolids) {
   EXPECT_LT(fit.agreement, 0.85F);
 }
 
-TEST(Viewpoint, WhatLiesBehindIsHidden) {
-  Balls ball;
-  addBall(ball, {5, 0, 0}, 1, 4000, 1.F);
-  const std::vector<float> spacing(4000, 0.05F);
-  const std::vector<std::uint8_t> visible =
-      visibleFrom(viewOf(ball.xyz), spacing.data(), {0.F, 0.F, 0.F});
-  std::size_t front = 0;
-  std::size_t back = 0;
-  std::size_t seen_front = 0;
-  std::size_t seen_back = 0;
-  for (std::size_t i = 0; i < visible.size(); ++i) {
-    const float x = ball.xyz[4 * i] - 5.F;
-    if (std::fabs(x) < 0.4F) continue;  // seen edge-on, or nearly
-    (x < 0.F ? front : back) += 1;
-    (x < 0.F ? seen_front : seen_back) += visible[i];
-  }
-  EXPECT_GT(static_cast<double>(seen_front), 0.95 * static_cast<double>(front));
-  EXPECT_LT(static_cast<double>(seen_back), 0.05 * static_cast<double>(back));
-}
-
-TEST(Viewpoint, AllIsVisibleFromInside) {
-  const LabelledCloud room = sample("room", cube(), 3000, 33);
-  const std::vector<float> spacing(room.size(), 0.02F);
-  const std::vector<std::uint8_t> visible =
-      visibleFrom(viewOf(room.xyz), spacing.data(), {0.4F, 0.5F, 0.6F});
-  const auto seen = std::count(visible.begin(), visible.end(), std::uint8_t{1});
-  EXPECT_GT(static_cast<double>(seen), 0.9 * static_cast<double>(room.size()));
-}
-
 TEST(Viewpoint, NeedsPoints) {
   const std::vector<float> none;
   EXPECT_EQ(fitViewpoint(viewOf(none), none, {}).agreement, 0.F);

@@ -74,9 +74,8 @@ class Orienter {
   void turnClusters(const std::vector<Ballot>& ballots, float sure_borders);
   void followHints();
   void followViewpoint();
-  std::vector<Ballot> facingOf(const Viewpoint& from,
-                               const std::vector<std::uint8_t>& visible) const;
-  void turnVisibleSegments(const ViewpointFit& fit);
+  std::vector<Ballot> facingOf(const Viewpoint& from) const;
+  void turnSegmentsTo(const ViewpointFit& fit);
   void judge();
   void listClusters();
   void findContradictions();
@@ -348,16 +347,15 @@ void Orienter::followViewpoint() {
     if (!hinted_[c]) facing[c].add(votes[s].view, signs_[s] * fit.facing);
   }
   turnClusters(facing, kSureBorders);
-  if (fit.agreement >= kNearlySure) turnVisibleSegments(fit);
+  if (fit.agreement >= kNearlySure) turnSegmentsTo(fit);
 }
 
-// How far the visible points of each segment face a viewpoint.
-std::vector<Ballot> Orienter::facingOf(const Viewpoint& from,
-                                       const std::vector<std::uint8_t>& visible) const {
+// How far the points of each segment face a viewpoint.
+std::vector<Ballot> Orienter::facingOf(const Viewpoint& from) const {
   std::vector<Ballot> facing(signs_.size());
   for (std::size_t i = 0; i < points_.size; ++i) {
     const std::int32_t s = segmentation_.labels[i];
-    if (s < 0 || visible[i] == 0) continue;
+    if (s < 0) continue;
     float d = 0.F;
     for (std::size_t a = 0; a < 3; ++a) {
       d += field_.normals[4 * i + a] * (from.position[a] - points_[i][a]);
@@ -368,32 +366,31 @@ std::vector<Ballot> Orienter::facingOf(const Viewpoint& from,
   return facing;
 }
 
-// What nothing hides from where all was seen from was seen: segments that turn their backs to it
-// are turned over, unless next to all of their borders know better, or all could have been seen
-// from elsewhere, too, which they face.
-void Orienter::turnVisibleSegments(const ViewpointFit& fit) {
-  const std::vector<std::uint8_t> visible = visibleFrom(points_, field_.spacing, fit.position);
-  const std::vector<Ballot> facing = facingOf(fit, visible);
-  constexpr float kFirmBorders = 0.9F;
-  std::vector<std::int32_t> itself(signs_.size());
-  std::iota(itself.begin(), itself.end(), 0);
-  const std::vector<float> agreement = detail::agreementOf(itself, votes_, signs_, 0.F);
+// Nothing that a sensor saw turns its back to it: segments that do are turned over, unless next to
+// all borders of theirs with others know better, or all could have been seen from elsewhere, too,
+// which they face.
+void Orienter::turnSegmentsTo(const ViewpointFit& fit) {
+  const std::vector<Ballot> facing = facingOf(fit);
   // That all was seen from there is a guess from the largest cluster, and a wrong one if much of
   // the rest speaks against it: two walls of a corner look to many places behind the third.
   constexpr float kMostAgainst = 0.1F;
-  std::vector<std::size_t> against;
+  std::vector<bool> turned_away(signs_.size());
   float points = 0.F;
   for (std::size_t s = 0; s < signs_.size(); ++s) {
-    const float size = static_cast<float>(segmentation_.segments[s].size);
-    const bool seen = facing[s].total > 0.5F * size;
-    if (!seen || hinted_[at(clusters_.of(s))] || facing[s].share() >= -kClearly) continue;
-    points += size;
-    if (agreement[s] <= kFirmBorders) against.push_back(s);
+    turned_away[s] = !hinted_[at(clusters_.of(s))] && facing[s].share() < -kClearly;
+    if (turned_away[s]) points += static_cast<float>(segmentation_.segments[s].size);
+  }
+  const std::vector<std::int32_t> group = detail::agreeingGroups(votes_, signs_, turned_away);
+  const std::vector<float> agreement = detail::agreementOf(group, votes_, signs_, 0.F);
+  constexpr float kFirmBorders = 0.9F;
+  std::vector<std::size_t> against;
+  for (std::size_t s = 0; s < signs_.size(); ++s) {
+    if (turned_away[s] && agreement[at(group[s])] <= kFirmBorders) against.push_back(s);
   }
   if (against.empty() || points > kMostAgainst * static_cast<float>(points_.size)) return;
   std::vector<bool> sure(signs_.size(), true);
   for (const Viewpoint& other : fit.others) {
-    const std::vector<Ballot> seen = facingOf(other, visible);
+    const std::vector<Ballot> seen = facingOf(other);
     for (const std::size_t s : against) sure[s] = sure[s] && seen[s].share() < -kClearly;
   }
   for (const std::size_t s : against) {

@@ -2,6 +2,8 @@
 // Copyright (c) 2026, the segorient authors
 #include "loose_parts.h"
 
+#include <numeric>
+
 namespace segorient::detail {
 namespace {
 
@@ -38,6 +40,25 @@ std::vector<float> agreementOf(const std::vector<std::int32_t>& part_of,
     if (all.absolute > 0.F) agreed[p] = all.weight / all.absolute;
   }
   return agreed;
+}
+
+std::vector<std::int32_t> agreeingGroups(const std::vector<BorderVote>& votes,
+                                         const std::vector<std::int8_t>& signs,
+                                         const std::vector<bool>& chosen) {
+  std::vector<std::int32_t> group(signs.size());
+  std::iota(group.begin(), group.end(), 0);
+  const auto find = [&](std::int32_t s) {
+    while (group[at(s)] != s) s = group[at(s)] = group[at(group[at(s)])];
+    return s;
+  };
+  for (const BorderVote& v : votes) {
+    if (!chosen[at(v.a)] || !chosen[at(v.b)]) continue;
+    if (v.weight * static_cast<float>(signs[at(v.a)] * signs[at(v.b)]) > 0.F) {
+      group[at(find(v.b))] = find(v.a);
+    }
+  }
+  for (std::size_t s = 0; s < group.size(); ++s) group[s] = find(static_cast<std::int32_t>(s));
+  return group;
 }
 
 LooseParts findLooseParts(const Segmentation& segmentation, const std::vector<BorderVote>& votes,

@@ -35,12 +35,4 @@ struct ViewpointFit : Viewpoint {
 ViewpointFit fitViewpoint(const PointView& points, const std::vector<float>& normals,
                           const std::vector<std::uint32_t>& rows, int threads = 0);
 
-/// Which points nothing hides from a place: around it, the points are gathered by direction into
-/// cells of some points each, and what is clearly farther away than the nearest of its cell is
-/// hidden.
-/// \param spacing one a point: depth that points of one surface may differ by
-/// \return 1 a visible point
-std::vector<std::uint8_t> visibleFrom(const PointView& points, const float* spacing,
-                                      const std::array<float, 3>& position);
-
 }  // namespace segorient

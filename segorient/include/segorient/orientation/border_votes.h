@@ -28,10 +28,8 @@ struct Evidence {
     reliable += o.reliable;
   }
   /// Whether votes across walls count beside these on one sheet: where two surfaces also meet at an
-  /// edge, and the votes there are of one mind, their walls have no say.
-  bool letsCount(const Evidence& wall) const {
-    return wall.absolute > 0.5F * (weight < 0.F ? -weight : weight);
-  }
+  /// edge, their walls have no say.
+  bool letsCount(const Evidence& wall) const { return wall.absolute > 0.5F * absolute; }
 };
 
 /// What the points along one border say about the relative sign of two segments.
