@@ -142,8 +142,12 @@ TEST(BorderVotes, WhatLiesAboveIsAWall) {
   EXPECT_LT(vote.weight, 0.F);
   EXPECT_TRUE(vote.wall_counts) << "nothing else is known of the two";
   EXPECT_GT(vote.wall.absolute, 0.9F * vote.absolute);
-  const BorderVote bent = voteOn(makeWedge(135, 29));
-  EXPECT_EQ(bent.wall.absolute, 0.F) << "across a crease of 45 degrees";
+  for (const double degrees : {0.0, 30.0, 135.0}) {
+    const BorderVote one_sheet = voteOn(makeWedge(degrees, 29));
+    EXPECT_EQ(one_sheet.wall.absolute, 0.F) << degrees;
+  }
+  const BorderVote noisy = voteOn(withNoise(makeWedge(0, 29), 0.006F, 30));
+  EXPECT_FALSE(noisy.wall_counts) << "noise of a fifth of a spacing";
 }
 
 // Lengths in spacings that a float cannot hold.
@@ -228,7 +232,7 @@ TEST(ClusterGraph, WallsHaveNoSayWhereClustersMeet) {
   rule.unanimity = 0.9F;
   rule.weight = 15.F;
   for (const bool is_wall : {true, false}) {
-    if (is_wall) votes[1].wall = votes[1];
+    votes[1].wall = is_wall ? Evidence(votes[1]) : Evidence{};
     votes[1].wall_counts = is_wall;
     ClusterGraph graph({10, 10, 10}, votes);
     graph.contract({rule});

@@ -328,6 +328,7 @@ TEST(Viewpoint, WhatTheFloorDoesNotTellIsLeftToTheBorder) {
   const SheetField field{normals.data(), spacing.data(), below.data(), above.data(),
                          reliable.data()};
   const AutoOrientation out = orientSheets(viewOf(xyz), neighborsOf(xyz), field, segmentation);
+  ASSERT_EQ(out.clusters.size(), 2U);
   EXPECT_GT(out.viewpoint_agreement, 0.98F);
   EXPECT_EQ(out.result.segments[0].sign, out.result.segments[1].sign);
 }
@@ -347,6 +348,7 @@ TEST(Viewpoint, IsFoundForARoomSeenFromInside) {
     EXPECT_GE(c, -0.01F);
     EXPECT_LE(c, 1.01F);
   }
+  ASSERT_FALSE(fit.others.empty());
   for (const Viewpoint& other : fit.others) {
     EXPECT_EQ(other.facing, -1);
     for (const float c : other.position) {
@@ -361,10 +363,9 @@ TEST(Viewpoint, OfAPlaneManyPlacesSeeAsMuch) {
   std::vector<float> xyz;
   std::vector<float> normals;
   for (int i = 0; i < 2500; ++i) {
-    const auto [x, y] = std::div(i, 50);
-    for (const float c : {0.02F * static_cast<float>(x), 0.02F * static_cast<float>(y), 5.F, 0.F}) {
-      xyz.push_back(c);
-    }
+    const auto x = 0.02F * static_cast<float>(i / 50);
+    const auto y = 0.02F * static_cast<float>(i % 50);
+    xyz.insert(xyz.end(), {x, y, 5.F, 0.F});
     normals.insert(normals.end(), {0.F, 0.F, 1.F, 0.F});
   }
   const ViewpointFit fit = fitViewpoint(viewOf(xyz), normals, allRows(2500));
@@ -386,6 +387,46 @@ TEST(Viewpoint, IsNotFoundForSeparateSolids) {
   const ViewpointFit fit =
       fitViewpoint(viewOf(balls.xyz), balls.normals, allRows(balls.xyz.size() / 4));
   EXPECT_LT(fit.agreement, 0.85F);
+}
+
+// A bowl seen from inside. In its middle are two segments that agree with each other; most normals
+// along their border with the rest lie.
+TEST(Viewpoint, TurnsWhatNothingCouldHaveBeenSeenFrom) {
+  std::vector<float> xyz;
+  std::vector<float> normals;
+  std::vector<std::uint8_t> reliable;
+  Segmentation segmentation;
+  segmentation.segments.resize(3);
+  constexpr int kPoints = 24000;
+  for (int i = 0; i < kPoints; ++i) {
+    const float z = -1.F + (static_cast<float>(i) + 0.5F) / kPoints;
+    const float azimuth = std::remainder(2.3999632F * static_cast<float>(i), 6.2831853F);
+    const float r = std::sqrt(1.F - z * z);
+    const std::int32_t label = r < 0.15F ? 2 : r < 0.43F ? 1 : 0;
+    const bool lies = label == 1 && r > 0.39F && std::fabs(azimuth) < 0.88F * 3.1415927F;
+    for (const float c : {r * std::cos(azimuth), r * std::sin(azimuth), z, 0.F}) {
+      xyz.push_back(c);
+      normals.push_back(lies ? c : -c);
+    }
+    reliable.push_back(label == 0 ? 1 : 0);
+    segmentation.labels.push_back(label);
+    ++segmentation.segments[static_cast<std::size_t>(label)].size;
+  }
+  segmentation.signs.assign(kPoints, 1);
+  const std::vector<float> spacing(kPoints, 0.016F);
+  const std::vector<float> above(kPoints, std::numeric_limits<float>::max());
+  const std::vector<float> below(kPoints, -std::numeric_limits<float>::max());
+  const SheetField field{normals.data(), spacing.data(), below.data(), above.data(),
+                         reliable.data()};
+  const Neighborhoods table = neighborsOf(xyz);
+  for (const bool guess : {false, true}) {
+    AutoOrientationOptions options;
+    options.infer_viewpoint = guess;
+    const AutoOrientation out = orientSheets(viewOf(xyz), table, field, segmentation, options);
+    const std::int8_t sign = out.result.segments[0].sign;
+    EXPECT_EQ(out.result.segments[1].sign, guess ? sign : -sign);
+    EXPECT_EQ(out.result.segments[2].sign, guess ? sign : -sign);
+  }
 }
 
 TEST(Viewpoint, NeedsPoints) {

@@ -312,8 +312,9 @@ void Orienter::followHints() {
 }
 
 // If all that the largest cluster knows was seen from one place, so was the rest: other clusters
-// that turn their backs to it are turned over, and where that is nearly sure, so are single
-// segments. Closed surfaces are never seen from one place, and have the winding number.
+// that turn their backs to it are turned over where their borders hardly tell, and where that is
+// nearly sure, so are single segments. Closed surfaces are never seen from one place, and have the
+// winding number.
 void Orienter::followViewpoint() {
   constexpr float kOnePlace = 0.97F;
   constexpr float kNearlySure = 0.98F;
@@ -366,9 +367,9 @@ std::vector<Ballot> Orienter::facingOf(const Viewpoint& from) const {
   return facing;
 }
 
-// Nothing that a sensor saw turns its back to it: segments that do are turned over, unless next to
-// all borders of theirs with others know better, or all could have been seen from elsewhere, too,
-// which they face.
+// Nothing that a sensor saw turns its back to it. Segments that do are turned over, those that meet
+// and agree together; but not where next to all of their borders with others know better, nor if
+// the sensor may as well have been at a place that they do not turn their backs to.
 void Orienter::turnSegmentsTo(const ViewpointFit& fit) {
   const std::vector<Ballot> facing = facingOf(fit);
   // That all was seen from there is a guess from the largest cluster, and a wrong one if much of
@@ -388,13 +389,17 @@ void Orienter::turnSegmentsTo(const ViewpointFit& fit) {
     if (turned_away[s] && agreement[at(group[s])] <= kFirmBorders) against.push_back(s);
   }
   if (against.empty() || points > kMostAgainst * static_cast<float>(points_.size)) return;
-  std::vector<bool> sure(signs_.size(), true);
+  std::vector<bool> sure(signs_.size(), true);  // by group
   for (const Viewpoint& other : fit.others) {
     const std::vector<Ballot> seen = facingOf(other);
-    for (const std::size_t s : against) sure[s] = sure[s] && seen[s].share() < -kClearly;
+    std::vector<Ballot> of_group(signs_.size());
+    for (const std::size_t s : against) of_group[at(group[s])].add(seen[s], 1);
+    for (const std::size_t s : against) {
+      if (of_group[at(group[s])].share() >= -kClearly) sure[at(group[s])] = false;
+    }
   }
   for (const std::size_t s : against) {
-    if (sure[s]) signs_[s] = static_cast<std::int8_t>(-signs_[s]);
+    if (sure[at(group[s])]) signs_[s] = static_cast<std::int8_t>(-signs_[s]);
   }
 }
 
@@ -403,7 +408,8 @@ void Orienter::findContradictions() {
   const auto long_enough = static_cast<std::uint32_t>(
       std::max(20.0, 0.5 * std::sqrt(static_cast<double>(points_.size))));
   for (const BorderVote& v : votes_) {
-    if (v.by_planes || v.unanimity() < 0.9F || v.count < long_enough ||
+    // Walls face apart in a plate, but not in a roll.
+    if (v.by_planes || v.wall_counts || v.unanimity() < 0.9F || v.count < long_enough ||
         v.reliable < 0.8F * v.absolute) {
       continue;
     }

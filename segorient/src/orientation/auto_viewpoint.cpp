@@ -120,8 +120,8 @@ std::array<float, 3> refine(const std::vector<Sample>& samples, std::array<float
   return v;
 }
 
-// Distances between places, however far away they are: all are drawn into a ball.
-float distanceOf(const std::array<float, 3>& a, const std::array<float, 3>& b) {
+// Squared distances between places, however far away they are: all are drawn into a ball.
+float squaredDistance(const std::array<float, 3>& a, const std::array<float, 3>& b) {
   const auto scale = [](const std::array<float, 3>& v) {
     return 1.F / (1.F + std::sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]));
   };
@@ -141,14 +141,14 @@ std::vector<std::array<float, 3>> farApart(const std::vector<std::array<float, 3
   std::vector<std::array<float, 3>> chosen;
   std::vector<float> nearest(places.size(), 0.F);
   for (std::size_t c = 0; c < places.size(); ++c) {
-    if (scores[c] >= least) nearest[c] = distanceOf(places[c], best);
+    if (scores[c] >= least) nearest[c] = squaredDistance(places[c], best);
   }
   while (chosen.size() < kMost) {
     const auto it = std::max_element(nearest.begin(), nearest.end());
     if (!(*it > 0.F)) break;
     chosen.push_back(places[static_cast<std::size_t>(it - nearest.begin())]);
     for (std::size_t c = 0; c < places.size(); ++c) {
-      nearest[c] = std::min(nearest[c], distanceOf(places[c], chosen.back()));
+      nearest[c] = std::min(nearest[c], squaredDistance(places[c], chosen.back()));
     }
   }
   return chosen;

@@ -50,7 +50,7 @@ struct SheetGroup {
     return cosine - 2.F * dot(normal, chord) * dot(other.normal, chord) / square;
   }
   /// Whether one of two finished groups lies above the other and is parallel to it, as the walls of
-  /// a plate or the turns of a roll.
+  /// a plate or the turns of a roll; or as noise within one sheet, whose votes are no better.
   bool isAbove(const SheetGroup& other) const {
     constexpr float kParallel = 0.9F;  // within 26 degrees
     const Vec3 chord{other.mean[0] - mean[0], other.mean[1] - mean[1], other.mean[2] - mean[2]};

@@ -144,7 +144,8 @@ std::vector<RawVote> castVotes(const Voter& voter, std::size_t n, int threads) {
     if (x.a != y.a) return x.a < y.a;
     if (x.b != y.b) return x.b < y.b;
     if (x.point != y.point) return x.point < y.point;
-    return x.wall < y.wall;
+    if (x.wall != y.wall) return x.wall < y.wall;
+    return x.value < y.value;
   });
   return votes;
 }
@@ -189,6 +190,7 @@ std::vector<BorderVote> borderVotes(const PointView& points, const Neighborhoods
         if (v.by_planes) {
           v.weight = again * v.absolute;
           v.wall = Evidence{};
+          v.wall_counts = false;
         }
       }
       out.push_back(v);

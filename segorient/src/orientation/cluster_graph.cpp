@@ -114,8 +114,8 @@ void ClusterGraph::merge(std::int32_t keep, std::int32_t gone, int sign,
       push(heap, twin, rules);
     } else {
       (edge.a == gone ? edge.a : edge.b) = keep;
-      for (Evidence* e_part : {static_cast<Evidence*>(&edge), &edge.sheet, &edge.wall}) {
-        e_part->weight *= static_cast<float>(sign);
+      for (Evidence* part : {static_cast<Evidence*>(&edge), &edge.sheet, &edge.wall}) {
+        part->weight *= static_cast<float>(sign);
       }
       incident_[at(keep)].push_back(e);
       push(heap, e, rules);

@@ -2,7 +2,10 @@
 // Copyright (c) 2026, the segorient authors
 #include "loose_parts.h"
 
+#include <algorithm>
+#include <map>
 #include <numeric>
+#include <utility>
 
 namespace segorient::detail {
 namespace {
@@ -21,23 +24,27 @@ std::size_t at(std::int32_t i) {
 std::vector<float> agreementOf(const std::vector<std::int32_t>& part_of,
                                const std::vector<BorderVote>& votes,
                                const std::vector<std::int8_t>& signs, float without) {
-  std::vector<Evidence> sheet(part_of.size());
-  std::vector<Evidence> wall(part_of.size());
+  // As between clusters, walls have their say where two parts do not meet on one sheet as well.
+  std::map<std::pair<std::int32_t, std::int32_t>, std::pair<Evidence, Evidence>> borders;
   for (const BorderVote& v : votes) {
     const std::int32_t a = part_of[at(v.a)];
     const std::int32_t b = part_of[at(v.b)];
     if (a == b) continue;
     const auto sign = static_cast<float>(signs[at(v.a)] * signs[at(v.b)]);
-    for (const std::int32_t part : {a, b}) {
-      sheet[at(part)].add(v.sheet(), sign);
-      wall[at(part)].add(v.wall, sign);
-    }
+    auto& [sheet, wall] = borders[std::minmax(a, b)];
+    sheet.add(v.sheet(), sign);
+    wall.add(v.wall, sign);
+  }
+  std::vector<Evidence> all(part_of.size());
+  for (const auto& [parts, evidence] : borders) {
+    Evidence counted = evidence.first;
+    if (counted.letsCount(evidence.second)) counted.add(evidence.second);
+    all[at(parts.first)].add(counted);
+    all[at(parts.second)].add(counted);
   }
   std::vector<float> agreed(part_of.size(), without);
   for (std::size_t p = 0; p < agreed.size(); ++p) {
-    Evidence all = sheet[p];
-    if (all.letsCount(wall[p])) all.add(wall[p]);
-    if (all.absolute > 0.F) agreed[p] = all.weight / all.absolute;
+    if (all[p].absolute > 0.F) agreed[p] = all[p].weight / all[p].absolute;
   }
   return agreed;
 }

@@ -105,10 +105,9 @@ void withinOfGroup(const LayoutView& view, std::uint32_t begin, std::uint32_t en
   const bool gathered = gather(view, group.box, task.limit, state, task);
   group.found_count = 0;
   Candidates room{task.candidate_distance, task.candidate_id, 0, 0};
-  const float* const end_of_room = task.candidate_distance + task.candidate_capacity;
   for (std::uint32_t i = begin; i < end; ++i) {
-    const auto left = static_cast<std::size_t>(end_of_room - room.distance);
-    if (!gathered || task.block.count + kWidth > left) {
+    const auto used = static_cast<std::size_t>(room.distance - task.candidate_distance);
+    if (!gathered || used + task.block.count + kWidth > task.candidate_capacity) {
       task.failed[task.failed_count++] = i;
       continue;
     }

@@ -40,7 +40,8 @@ struct BorderVote : Evidence {
   bool wall_counts = false;
   std::uint32_t count = 0;  ///< votes that count
   pcl::index_t where = -1;  ///< a point of the border
-  /// Whether planes of more points decided: then `weight` is `absolute` times how far these agree.
+  /// Whether planes of more points decided: then `weight` is `absolute` times how far these agree,
+  /// and none of it is of walls.
   bool by_planes = false;
 
   /// The votes on one sheet alone.
