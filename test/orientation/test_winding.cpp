@@ -250,46 +250,52 @@ TEST(LooseParts, AreFoundByTheirBorders) {
   }
 }
 
+// Segments whose points all have the sign of their normal, without walls.
+struct Scene {
+  std::vector<float> xyz;
+  std::vector<float> normals;
+  std::vector<std::uint8_t> reliable;
+  Segmentation segmentation;
+
+  explicit Scene(std::size_t segments) { segmentation.segments.resize(segments); }
+
+  void add(std::int32_t label, bool is_reliable, const std::array<float, 3>& p,
+           const std::array<float, 3>& n) {
+    xyz.insert(xyz.end(), {p[0], p[1], p[2], 0.F});
+    normals.insert(normals.end(), {n[0], n[1], n[2], 0.F});
+    reliable.push_back(is_reliable ? 1 : 0);
+    segmentation.labels.push_back(label);
+    segmentation.signs.push_back(1);
+    ++segmentation.segments[static_cast<std::size_t>(label)].size;
+  }
+  AutoOrientation orient(float step, const AutoOrientationOptions& options = {}) const {
+    const std::size_t n = segmentation.labels.size();
+    const std::vector<float> spacing(n, step);
+    const std::vector<float> above(n, std::numeric_limits<float>::max());
+    const std::vector<float> below(n, -std::numeric_limits<float>::max());
+    const SheetField field{normals.data(), spacing.data(), below.data(), above.data(),
+                           reliable.data()};
+    return orientSheets(viewOf(xyz), neighborsOf(xyz), field, segmentation, options);
+  }
+};
+
 // A roof over part of a floor: places above see the floor's face and the roof's back. The border
 // between them is sure, but not certain enough to make them one cluster.
 TEST(Viewpoint, AFloorDoesNotTurnTheRoof) {
   constexpr float kStep = 1.F / 40;
   const float angle = 0.8F;
-  std::vector<float> xyz;
-  std::vector<float> normals;
-  std::vector<std::uint8_t> reliable;
-  Segmentation segmentation;
-  segmentation.segments.resize(2);
-  const auto add = [&](std::int32_t label, float from_edge, std::array<float, 3> p,
-                       std::array<float, 3> n) {
-    for (std::size_t a = 0; a < 3; ++a) {
-      xyz.push_back(p[a]);
-      normals.push_back(n[a]);
-    }
-    xyz.push_back(0.F);
-    normals.push_back(0.F);
-    reliable.push_back(from_edge < 0.2F ? 0 : 1);
-    segmentation.labels.push_back(label);
-    ++segmentation.segments[static_cast<std::size_t>(label)].size;
-  };
+  Scene scene(2);
   for (int j = 0; j < 40; ++j) {
     const float y = static_cast<float>(j) * kStep;
     for (int i = 0; i < 60; ++i) {
       const float x = (static_cast<float>(i) + 0.5F) * kStep;
-      add(0, x, {x, y, 0.F}, {0.F, 0.F, 1.F});
+      scene.add(0, x >= 0.2F, {x, y, 0.F}, {0.F, 0.F, 1.F});
       if (i >= 40) continue;
-      add(1, x, {x * std::cos(angle), y, x * std::sin(angle)},
-          {std::sin(angle), 0.F, -std::cos(angle)});
+      scene.add(1, x >= 0.2F, {x * std::cos(angle), y, x * std::sin(angle)},
+                {std::sin(angle), 0.F, -std::cos(angle)});
     }
   }
-  const std::size_t n = segmentation.labels.size();
-  segmentation.signs.assign(n, 1);
-  const std::vector<float> spacing(n, kStep);
-  const std::vector<float> above(n, std::numeric_limits<float>::max());
-  const std::vector<float> below(n, -std::numeric_limits<float>::max());
-  const SheetField field{normals.data(), spacing.data(), below.data(), above.data(),
-                         reliable.data()};
-  const AutoOrientation out = orientSheets(viewOf(xyz), neighborsOf(xyz), field, segmentation);
+  const AutoOrientation out = scene.orient(kStep);
   ASSERT_EQ(out.clusters.size(), 2U);
   EXPECT_GT(out.viewpoint_agreement, 0.98F);
   EXPECT_EQ(out.result.segments[0].sign, out.result.segments[1].sign);
@@ -299,35 +305,17 @@ TEST(Viewpoint, AFloorDoesNotTurnTheRoof) {
 // and nothing tells which of them the sensor was at. Some of the votes across the border are wrong.
 TEST(Viewpoint, WhatTheFloorDoesNotTellIsLeftToTheBorder) {
   constexpr float kStep = 1.F / 40;
-  std::vector<float> xyz;
-  std::vector<float> normals;
-  std::vector<std::uint8_t> reliable;
-  Segmentation segmentation;
-  segmentation.segments.resize(2);
-  const auto add = [&](std::int32_t label, float from_edge, std::array<float, 4> p,
-                       std::array<float, 4> n) {
-    xyz.insert(xyz.end(), p.begin(), p.end());
-    normals.insert(normals.end(), n.begin(), n.end());
-    reliable.push_back(from_edge < 0.15F ? 0 : 1);
-    segmentation.labels.push_back(label);
-    segmentation.signs.push_back(1);
-    ++segmentation.segments[static_cast<std::size_t>(label)].size;
-  };
+  Scene scene(2);
   for (int j = 0; j < 40; ++j) {
     const float y = static_cast<float>(j) * kStep;
     for (int i = 0; i < 100; ++i) {
       const float x = (static_cast<float>(i) + 0.5F) * kStep;
-      add(0, x, {-x, y, 0.F, 0.F}, {0.F, 0.F, 1.F, 0.F});
-      if (i < 8) add(1, x, {0.F, y, x, 0.F}, {y > 0.91F ? 1.F : -1.F, 0.F, 0.F, 0.F});
+      scene.add(0, x >= 0.15F, {-x, y, 0.F}, {0.F, 0.F, 1.F});
+      if (i >= 8) continue;
+      scene.add(1, x >= 0.15F, {0.F, y, x}, {y > 0.91F ? 1.F : -1.F, 0.F, 0.F});
     }
   }
-  const std::size_t n = segmentation.labels.size();
-  const std::vector<float> spacing(n, kStep);
-  const std::vector<float> above(n, std::numeric_limits<float>::max());
-  const std::vector<float> below(n, -std::numeric_limits<float>::max());
-  const SheetField field{normals.data(), spacing.data(), below.data(), above.data(),
-                         reliable.data()};
-  const AutoOrientation out = orientSheets(viewOf(xyz), neighborsOf(xyz), field, segmentation);
+  const AutoOrientation out = scene.orient(kStep);
   ASSERT_EQ(out.clusters.size(), 2U);
   EXPECT_GT(out.viewpoint_agreement, 0.98F);
   EXPECT_EQ(out.result.segments[0].sign, out.result.segments[1].sign);
@@ -392,37 +380,23 @@ TEST(Viewpoint, IsNotFoundForSeparateSolids) {
 // A bowl seen from inside. In its middle are two segments that agree with each other; most normals
 // along their border with the rest lie.
 TEST(Viewpoint, TurnsWhatNothingCouldHaveBeenSeenFrom) {
-  std::vector<float> xyz;
-  std::vector<float> normals;
-  std::vector<std::uint8_t> reliable;
-  Segmentation segmentation;
-  segmentation.segments.resize(3);
+  Scene scene(3);
   constexpr int kPoints = 24000;
   for (int i = 0; i < kPoints; ++i) {
     const float z = -1.F + (static_cast<float>(i) + 0.5F) / kPoints;
     const float azimuth = std::remainder(2.3999632F * static_cast<float>(i), 6.2831853F);
     const float r = std::sqrt(1.F - z * z);
+    const float x = r * std::cos(azimuth);
+    const float y = r * std::sin(azimuth);
     const std::int32_t label = r < 0.15F ? 2 : r < 0.43F ? 1 : 0;
     const bool lies = label == 1 && r > 0.39F && std::fabs(azimuth) < 0.88F * 3.1415927F;
-    for (const float c : {r * std::cos(azimuth), r * std::sin(azimuth), z, 0.F}) {
-      xyz.push_back(c);
-      normals.push_back(lies ? c : -c);
-    }
-    reliable.push_back(label == 0 ? 1 : 0);
-    segmentation.labels.push_back(label);
-    ++segmentation.segments[static_cast<std::size_t>(label)].size;
+    const float s = lies ? 1.F : -1.F;
+    scene.add(label, label == 0, {x, y, z}, {s * x, s * y, s * z});
   }
-  segmentation.signs.assign(kPoints, 1);
-  const std::vector<float> spacing(kPoints, 0.016F);
-  const std::vector<float> above(kPoints, std::numeric_limits<float>::max());
-  const std::vector<float> below(kPoints, -std::numeric_limits<float>::max());
-  const SheetField field{normals.data(), spacing.data(), below.data(), above.data(),
-                         reliable.data()};
-  const Neighborhoods table = neighborsOf(xyz);
   for (const bool guess : {false, true}) {
     AutoOrientationOptions options;
     options.infer_viewpoint = guess;
-    const AutoOrientation out = orientSheets(viewOf(xyz), table, field, segmentation, options);
+    const AutoOrientation out = scene.orient(0.016F, options);
     const std::int8_t sign = out.result.segments[0].sign;
     EXPECT_EQ(out.result.segments[1].sign, guess ? sign : -sign);
     EXPECT_EQ(out.result.segments[2].sign, guess ? sign : -sign);

@@ -338,14 +338,11 @@ void Orienter::followViewpoint() {
   const ViewpointFit fit = fitViewpoint(points_, orientedNormals(false), rows, options_.threads);
   out_.viewpoint_agreement = fit.agreement;
   if (fit.agreement < kOnePlace) return;
-  PointHints inferred;
-  inferred.has_viewpoint = true;
-  inferred.viewpoint = fit.position;
-  const std::vector<HintVotes> votes = detail::hintVotes(points_, field_, segmentation_, inferred);
+  const std::vector<Ballot> seen = facingOf(fit);
   std::vector<Ballot> facing(clusters_.size());
   for (std::size_t s = 0; s < clusters_.size(); ++s) {
     const std::size_t c = at(clusters_.of(s));
-    if (!hinted_[c]) facing[c].add(votes[s].view, signs_[s] * fit.facing);
+    if (!hinted_[c]) facing[c].add(seen[s], 1);
   }
   turnClusters(facing, kSureBorders);
   if (fit.agreement >= kNearlySure) turnSegmentsTo(fit);
@@ -353,16 +350,13 @@ void Orienter::followViewpoint() {
 
 // How far the points of each segment face a viewpoint.
 std::vector<Ballot> Orienter::facingOf(const Viewpoint& from) const {
+  PointHints inferred;
+  inferred.has_viewpoint = true;
+  inferred.viewpoint = from.position;
+  const std::vector<HintVotes> votes = detail::hintVotes(points_, field_, segmentation_, inferred);
   std::vector<Ballot> facing(signs_.size());
-  for (std::size_t i = 0; i < points_.size; ++i) {
-    const std::int32_t s = segmentation_.labels[i];
-    if (s < 0) continue;
-    float d = 0.F;
-    for (std::size_t a = 0; a < 3; ++a) {
-      d += field_.normals[4 * i + a] * (from.position[a] - points_[i][a]);
-    }
-    const float sign = pointSign(i) * static_cast<float>(from.facing);
-    facing[at(s)].add({sign * d > 0.F ? 1.F : -1.F, 1.F}, 1);
+  for (std::size_t s = 0; s < signs_.size(); ++s) {
+    facing[s].add(votes[s].view, signs_[s] * from.facing);
   }
   return facing;
 }

@@ -24,6 +24,9 @@ struct ClusterGraph::Candidate {
   bool operator<(const Candidate& o) const { return key != o.key ? key < o.key : edge > o.edge; }
 };
 
+ClusterGraph::Edge::Edge(const BorderVote& vote)
+    : Evidence(vote), a(vote.a), b(vote.b), sheet(vote.sheet()), wall(vote.wall) {}
+
 void ClusterGraph::Edge::decide() {
   static_cast<Evidence&>(*this) = sheet;
   if (sheet.letsCount(wall)) Evidence::add(wall);
@@ -43,13 +46,7 @@ ClusterGraph::ClusterGraph(const std::vector<std::uint32_t>& sizes,
   for (const BorderVote& v : votes) {
     incident_[at(v.a)].push_back(static_cast<std::uint32_t>(edges_.size()));
     incident_[at(v.b)].push_back(static_cast<std::uint32_t>(edges_.size()));
-    Edge edge;
-    static_cast<Evidence&>(edge) = v;
-    edge.a = v.a;
-    edge.b = v.b;
-    edge.sheet = v.sheet();
-    edge.wall = v.wall;
-    edges_.push_back(edge);
+    edges_.emplace_back(v);
   }
 }
 

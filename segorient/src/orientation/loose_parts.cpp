@@ -2,6 +2,8 @@
 // Copyright (c) 2026, the segorient authors
 #include "loose_parts.h"
 
+#include <segorient/orientation/cluster_graph.h>
+
 #include <algorithm>
 #include <map>
 #include <numeric>
@@ -25,22 +27,18 @@ std::vector<float> agreementOf(const std::vector<std::int32_t>& part_of,
                                const std::vector<BorderVote>& votes,
                                const std::vector<std::int8_t>& signs, float without) {
   // As between clusters, walls have their say where two parts do not meet on one sheet as well.
-  std::map<std::pair<std::int32_t, std::int32_t>, std::pair<Evidence, Evidence>> borders;
+  std::map<std::pair<std::int32_t, std::int32_t>, ClusterGraph::Edge> borders;
   for (const BorderVote& v : votes) {
     const std::int32_t a = part_of[at(v.a)];
     const std::int32_t b = part_of[at(v.b)];
     if (a == b) continue;
     const auto sign = static_cast<float>(signs[at(v.a)] * signs[at(v.b)]);
-    auto& [sheet, wall] = borders[std::minmax(a, b)];
-    sheet.add(v.sheet(), sign);
-    wall.add(v.wall, sign);
+    borders[std::minmax(a, b)].add(ClusterGraph::Edge(v), sign);
   }
   std::vector<Evidence> all(part_of.size());
-  for (const auto& [parts, evidence] : borders) {
-    Evidence counted = evidence.first;
-    if (counted.letsCount(evidence.second)) counted.add(evidence.second);
-    all[at(parts.first)].add(counted);
-    all[at(parts.second)].add(counted);
+  for (const auto& [parts, border] : borders) {
+    all[at(parts.first)].add(border);
+    all[at(parts.second)].add(border);
   }
   std::vector<float> agreed(part_of.size(), without);
   for (std::size_t p = 0; p < agreed.size(); ++p) {

@@ -28,6 +28,8 @@ class ClusterGraph {
     Evidence sheet;  ///< votes on one sheet
     Evidence wall;   ///< votes across walls
 
+    Edge() = default;
+    explicit Edge(const BorderVote& vote);
     void decide();                        ///< which of the votes count
     void add(const Edge& o, float sign);  ///< another edge between the same two
   };
