@@ -2,8 +2,8 @@
 // Copyright (c) 2026, the segorient authors
 //
 // One float of each of several points, side by side in a vector register. Included once per
-// instruction set, with SEGORIENT_LANES set to 4 or 8; all arithmetic is per lane and rounded as
-// scalar code would, so the results do not depend on the width.
+// instruction set, with SEGORIENT_LANES set to 4, 8 or 16; all arithmetic is per lane and rounded
+// as scalar code would, so the results do not depend on the width.
 
 constexpr int kLanes = SEGORIENT_LANES;
 constexpr std::size_t kWidth = SEGORIENT_LANES;
@@ -28,6 +28,16 @@ struct Vector3 {
 using Lanes3 = Vector3<Lanes>;
 using Twice3 = Vector3<Twice>;
 
+inline Twice3 both(const Lanes3& a, const Lanes3& b) {
+  return {{a.x, b.x}, {a.y, b.y}, {a.z, b.z}};
+}
+inline Lanes3 firstOf(const Twice3& a) {
+  return {a.x.first, a.y.first, a.z.first};
+}
+inline Lanes3 secondOf(const Twice3& a) {
+  return {a.x.second, a.y.second, a.z.second};
+}
+
 inline Lanes all(float value) {
   return Lanes{} + value;
 }
@@ -45,7 +55,9 @@ inline Lanes absolute(Lanes a) {
 }
 
 inline Lanes squareRoot(Lanes a) {
-#if SEGORIENT_LANES == 8
+#if SEGORIENT_LANES == 16
+  return reinterpret_cast<Lanes>(_mm512_maskz_sqrt_ps(0xffff, reinterpret_cast<__m512>(a)));
+#elif SEGORIENT_LANES == 8
   return reinterpret_cast<Lanes>(_mm256_sqrt_ps(reinterpret_cast<__m256>(a)));
 #elif defined(__SSE2__)
   return reinterpret_cast<Lanes>(_mm_sqrt_ps(reinterpret_cast<__m128>(a)));
@@ -69,7 +81,12 @@ SEGORIENT_TWICE(Twice, /)
 SEGORIENT_TWICE(TwiceMask, <)
 SEGORIENT_TWICE(TwiceMask, >)
 SEGORIENT_TWICE(TwiceMask, >=)
+SEGORIENT_TWICE(TwiceMask, ==)
+SEGORIENT_TWICE(TwiceMask, !=)
 #undef SEGORIENT_TWICE
+inline Twice operator+(float a, const Twice& b) {
+  return {a + b.first, a + b.second};
+}
 inline Twice operator-(float a, const Twice& b) {
   return {a - b.first, a - b.second};
 }
@@ -81,6 +98,9 @@ inline Twice operator/(float a, const Twice& b) {
 }
 inline TwiceMask operator&(const TwiceMask& a, const TwiceMask& b) {
   return {a.first & b.first, a.second & b.second};
+}
+inline TwiceMask operator|(const TwiceMask& a, const TwiceMask& b) {
+  return {a.first | b.first, a.second | b.second};
 }
 inline Twice select(const TwiceMask& condition, const Twice& yes, const Twice& no) {
   return {select(condition.first, yes.first, no.first),
@@ -97,7 +117,9 @@ inline Twice squareRoot(const Twice& a) {
 }
 
 inline bool any(Mask m) {
-#if SEGORIENT_LANES == 8
+#if SEGORIENT_LANES == 16
+  return _mm512_test_epi32_mask(reinterpret_cast<__m512i>(m), reinterpret_cast<__m512i>(m)) != 0;
+#elif SEGORIENT_LANES == 8
   return _mm256_movemask_ps(reinterpret_cast<__m256>(m)) != 0;
 #elif defined(__SSE2__)
   return _mm_movemask_ps(reinterpret_cast<__m128>(m)) != 0;
@@ -115,6 +137,17 @@ inline void store(float* p, Lanes a) {
   __builtin_memcpy(p, &a, sizeof(a));
 }
 
+inline bool any(const TwiceMask& m) {
+  return any(m.first | m.second);
+}
+inline Twice loadTwice(const float* p) {
+  return {load(p), load(p + kWidth)};
+}
+inline void store(float* p, const Twice& a) {
+  store(p, a.first);
+  store(p + kWidth, a.second);
+}
+
 inline Quad loadQuad(const float* p) {
   Quad q;
   __builtin_memcpy(&q, p, sizeof(q));
@@ -126,7 +159,25 @@ inline void storeQuad(float* p, Quad q) {
 
 /// x, y, z of one point a lane; p[l] points to 4 floats.
 inline Lanes3 loadPoints(const float* const* p) {
-#if SEGORIENT_LANES == 8
+#if SEGORIENT_LANES == 16
+  const auto four = [p](int first) __attribute__((always_inline)) {
+    const __m512 one = _mm512_castps128_ps512(_mm_loadu_ps(p[first]));
+    const __m512 two = _mm512_maskz_insertf32x4(0xffff, one, _mm_loadu_ps(p[first + 4]), 1);
+    const __m512 three = _mm512_maskz_insertf32x4(0xffff, two, _mm_loadu_ps(p[first + 8]), 2);
+    return _mm512_maskz_insertf32x4(0xffff, three, _mm_loadu_ps(p[first + 12]), 3);
+  };
+  const __m512 a = four(0);
+  const __m512 b = four(1);
+  const __m512 c = four(2);
+  const __m512 d = four(3);
+  const __m512 ab = _mm512_maskz_unpacklo_ps(0xffff, a, b);
+  const __m512 cd = _mm512_maskz_unpacklo_ps(0xffff, c, d);
+  const __m512 ab_z = _mm512_maskz_unpackhi_ps(0xffff, a, b);
+  const __m512 cd_z = _mm512_maskz_unpackhi_ps(0xffff, c, d);
+  return {reinterpret_cast<Lanes>(_mm512_maskz_shuffle_ps(0xffff, ab, cd, 0x44)),
+          reinterpret_cast<Lanes>(_mm512_maskz_shuffle_ps(0xffff, ab, cd, 0xee)),
+          reinterpret_cast<Lanes>(_mm512_maskz_shuffle_ps(0xffff, ab_z, cd_z, 0x44))};
+#elif SEGORIENT_LANES == 8
   typedef float Pair __attribute__((vector_size(32)));
   const auto pair = [](const float* low, const float* high) __attribute__((always_inline)) {
     return static_cast<Pair>(
@@ -189,12 +240,17 @@ inline Vector3<V> unit(const Vector3<V>& a) {
 
 /// Orthonormal vectors that with n are a right-handed frame (Duff et al., Building an orthonormal
 /// basis, revisited, JCGT 2017).
+template <typename V>
 struct Frame {
-  Lanes3 u, v, n;
+  Vector3<V> u, v, n;
 };
-inline Frame frameOf(const Lanes3& n) {
-  const Lanes sign = select(n.z < 0.0F, all(-1.0F), all(1.0F));
-  const Lanes a = -1.0F / (sign + n.z);
-  const Lanes b = n.x * n.y * a;
-  return {{1.0F + sign * n.x * n.x * a, sign * b, -sign * n.x}, {b, sign + n.y * n.y * a, -n.y}, n};
+template <typename V>
+inline Frame<V> frameOf(const Vector3<V>& n) {
+  const V zero{};
+  const V sign = select(n.z < 0.0F, zero - 1.0F, zero + 1.0F);
+  const V a = -1.0F / (sign + n.z);
+  const V b = n.x * n.y * a;
+  return {{1.0F + sign * n.x * n.x * a, sign * b, zero - sign * n.x},
+          {b, sign + n.y * n.y * a, zero - n.y},
+          n};
 }

@@ -20,7 +20,7 @@ inline Lanes3 surfaceNormals(const LocalFitJob& job, const Batch& batch, std::si
                              std::size_t used, const Plane& plane, const Lanes3& guess) {
   const std::size_t* rows = batch.rows + half * kWidth;
   const double* units = batch.unit + half * kWidth;
-  const Frame frame = frameOf(guess);
+  const Frame<Lanes> frame = frameOf(guess);
   const Quadratic q = fitQuadratics(batch, half, plane, frame);
   const Lanes3 fitted = unit(Lanes3{frame.n.x - q.c[1] * frame.u.x - q.c[2] * frame.v.x,
                                     frame.n.y - q.c[1] * frame.u.y - q.c[2] * frame.v.y,
@@ -64,21 +64,21 @@ void estimateRows(const LocalFitJob& job, std::size_t begin, std::size_t end) {
   const auto entries = static_cast<std::size_t>(job.entries);
   Batch batch(entries);
   SortingNetwork network;
-  std::vector<float> scratch(first == NormalEstimator::Plane ? 0 : 3 * entries * kWidth);
+  std::vector<float> scratch(first == NormalEstimator::Plane ? 0 : 3 * entries * kBatchRows);
   for (std::size_t i = begin; i < end; i += kBatchRows) {
     loadBatch(job, i, end, batch);
     Plane planes[2];
     fitPlanes(job, batch, planes);
     Lanes3 normals[2] = {planes[0].normal, planes[1].normal};
+    if (first == NormalEstimator::LCT) {
+      fanNormals(job, batch, planes, network, scratch.data(), normals);
+    }
+    if (first == NormalEstimator::LDT) starNormals(batch, planes, scratch.data(), normals);
     for (std::size_t half = 0; half < 2 && i + half * kWidth < end; ++half) {
       const std::size_t left = end - i - half * kWidth;
       const std::size_t used = left < kWidth ? left : kWidth;
       const Plane& plane = planes[half];
       Lanes3& normal = normals[half];
-      if (first == NormalEstimator::LCT) {
-        normal = fanNormals(job, batch, half, plane, network, scratch.data());
-      }
-      if (first == NormalEstimator::LDT) normal = starNormals(batch, half, plane, scratch.data());
       if (surface) normal = surfaceNormals(job, batch, half, used, plane, normal);
       storeNormals(job, batch.rows + half * kWidth, used, normal, plane.curvature);
       if (job.curvatures && !surface) {

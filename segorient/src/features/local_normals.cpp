@@ -51,6 +51,22 @@ namespace {
 }  // namespace avx2
 #if defined(__clang__)
 #pragma clang attribute pop
+#pragma clang attribute push(__attribute__((target("avx512f,avx512vl,avx512dq"))), \
+                             apply_to = function)
+#else
+#pragma GCC pop_options
+#pragma GCC push_options
+#pragma GCC target("avx512f,avx512vl,avx512dq")
+#endif
+namespace avx512 {
+namespace {
+#define SEGORIENT_LANES 16
+#include "local_kernels.inl"
+#undef SEGORIENT_LANES
+}  // namespace
+}  // namespace avx512
+#if defined(__clang__)
+#pragma clang attribute pop
 #else
 #pragma GCC pop_options
 #endif
@@ -62,6 +78,7 @@ using Kernel = void (*)(const LocalFitJob&, std::size_t, std::size_t);
 
 Kernel chooseKernel(bool portable_only) {
 #if defined(SEGORIENT_HAS_AVX2_KERNELS)
+  if (!portable_only && instructionSet() >= InstructionSet::Avx512) return &avx512::estimateRows;
   if (!portable_only && instructionSet() >= InstructionSet::Avx2) return &avx2::estimateRows;
 #endif
   static_cast<void>(portable_only);

@@ -28,12 +28,13 @@ struct Batch {
     store(y + at, d.y);
     store(z + at, d.z);
   }
-  /// Of each of one register's points the neighbour numbered numberOf(lane).
-  template <typename NumberOf>
-  Lanes3 offsetsAt(NumberOf&& numberOf, std::size_t half) const {
+  /// Of both registers' points.
+  Twice3 offsets(int j) const { return both(offset(j, 0), offset(j, 1)); }
+  /// Of each of one register's points the neighbour of that point's number.
+  Lanes3 offsetsAt(const std::uint32_t* number, std::size_t half) const {
     Lanes3 result{};
     for (std::size_t l = 0; l < kWidth; ++l) {
-      const std::size_t at = numberOf(l) * kBatchRows + half * kWidth + l;
+      const std::size_t at = number[l] * kBatchRows + half * kWidth + l;
       result.x[l] = x[at];
       result.y[l] = y[at];
       result.z[l] = z[at];
@@ -49,6 +50,8 @@ struct Batch {
     return result;
   }
 
+  Twice allCounts() const { return {countsOf(0), countsOf(1)}; }
+
   std::vector<float> buffer;
   float* x;
   float* y;
@@ -61,6 +64,7 @@ struct Batch {
   int first = 0;            ///< 1 where each row begins with the point itself, whose offset is zero
   int count = 0;            ///< largest of counts
   bool even = false;        ///< all counts are equal
+  bool rescaled = false;    ///< some units are not 1
 };
 
 /// The neighbours of one register's points.
@@ -95,11 +99,31 @@ inline void loadHalf(const LocalFitJob& job, std::size_t half, Batch& batch) {
   }
 }
 
+/// Asks for what the rows from `begin` on are going to read: their farthest neighbours, which are
+/// the least likely to be near in memory to those of the rows before, and the table itself further
+/// ahead, as processors do not at the ends of pages.
+inline void prefetchRows(const LocalFitJob& job, std::size_t begin, std::size_t end) {
+  constexpr int kFarthest = 3;
+  constexpr std::size_t kTableAhead = 128;
+  for (std::size_t i = begin; i < begin + kBatchRows && i < end; ++i) {
+    const std::size_t row = job.row(i);
+    const int count = job.count(row);
+    const pcl::index_t* neighbors = job.neighborhoods->indices(row);
+    for (int j = count > kFarthest ? count - kFarthest : 0; j < count; ++j) {
+      __builtin_prefetch(job.xyz + 4 * static_cast<std::size_t>(neighbors[j]));
+    }
+    if (i + kTableAhead < end) {
+      __builtin_prefetch(job.neighborhoods->indices(job.row(i + kTableAhead)));
+    }
+  }
+}
+
 /// Reads the neighbours of rows begin to begin + kBatchRows - 1; from `end` on the last row again.
 inline void loadBatch(const LocalFitJob& job, std::size_t begin, std::size_t end, Batch& batch) {
   bool selves = job.same_points;
   batch.count = 0;
   batch.even = true;
+  batch.rescaled = false;
   for (std::size_t l = 0; l < kBatchRows; ++l) {
     const std::size_t row = job.row(begin + l < end ? begin + l : end - 1);
     batch.rows[l] = row;
@@ -113,6 +137,7 @@ inline void loadBatch(const LocalFitJob& job, std::size_t begin, std::size_t end
   }
   batch.first = selves ? 1 : 0;
   for (std::size_t half = 0; half < 2; ++half) loadHalf(job, half, batch);
+  prefetchRows(job, begin + 2 * kBatchRows, end);
 }
 
 /// Scales a point's offsets to lengths around 1, where their squares would over- or underflow.
@@ -127,6 +152,7 @@ inline void rescalePoint(Batch& batch, std::size_t l) {
   if (!(largest > 0.0F) || !std::isfinite(largest)) return;
   // A power of two rounds nothing.
   batch.unit[l] = std::ldexp(1.0, std::ilogb(largest));
+  batch.rescaled = true;
   for (int j = batch.first; j < batch.count; ++j) {
     const std::size_t at = static_cast<std::size_t>(j) * kBatchRows + l;
     for (float* axis : {batch.x, batch.y, batch.z}) {
@@ -139,6 +165,7 @@ struct Plane {
   Lanes3 normal;
   Lanes curvature;
   Lanes size;  ///< root mean square distance of the neighbours
+  Lanes3 sum;  ///< of their offsets
   Mask valid;
 };
 
@@ -272,20 +299,27 @@ inline void fitAgain(const LocalFitJob& job, std::size_t l, std::size_t lane, bo
   if (in_range || !plane.valid[lane]) return;
   rescalePoint(batch, l);
   double squares = 0.0;
+  float sums[3] = {0.0F, 0.0F, 0.0F};
   for (int j = batch.first; j < batch.counts[l]; ++j) {
     const std::size_t at = static_cast<std::size_t>(j) * kBatchRows + l;
-    for (const float* axis : {batch.x, batch.y, batch.z}) {
-      squares += static_cast<double>(axis[at]) * static_cast<double>(axis[at]);
+    const float d[3] = {batch.x[at], batch.y[at], batch.z[at]};
+    for (std::size_t a = 0; a < 3; ++a) {
+      squares += static_cast<double>(d[a]) * static_cast<double>(d[a]);
+      sums[a] += d[a];
     }
   }
+  plane.sum.x[lane] = sums[0];
+  plane.sum.y[lane] = sums[1];
+  plane.sum.z[lane] = sums[2];
   plane.size[lane] = static_cast<float>(std::sqrt(squares / batch.counts[l]));
 }
 
 /// Least-squares planes. Slim or round neighbourhoods, for which float is not enough, are done
 /// again in double.
 inline void fitPlanes(const LocalFitJob& job, Batch& batch, Plane (&planes)[2]) {
-  const Twice counts{batch.countsOf(0), batch.countsOf(1)};
-  const Flattest<Twice> found = flattestDirection(scatterOf(batch), counts);
+  const Twice counts = batch.allCounts();
+  const Scatter<Twice> scatter = scatterOf(batch);
+  const Flattest<Twice> found = flattestDirection(scatter, counts);
   const Twice size = squareRoot(found.second);
   const Twice curvature = larger(Twice{}, found.lambda);
   // Below 1 % float leaves errors of 1e-5 rad. Under- and overflow of the squares end here as well.
@@ -293,8 +327,8 @@ inline void fitPlanes(const LocalFitJob& job, Batch& batch, Plane (&planes)[2]) 
   const TwiceMask good =
       (found.gap > 0.01F) & in_range & (counts >= 3.0F) & (dot(found.normal, found.normal) > 0.5F);
   const Twice3& n = found.normal;
-  planes[0] = {{n.x.first, n.y.first, n.z.first}, curvature.first, size.first, good.first};
-  planes[1] = {{n.x.second, n.y.second, n.z.second}, curvature.second, size.second, good.second};
+  planes[0] = {firstOf(n), curvature.first, size.first, firstOf(scatter.sum), good.first};
+  planes[1] = {secondOf(n), curvature.second, size.second, secondOf(scatter.sum), good.second};
   if (!any(~(good.first & good.second))) return;
   for (std::size_t l = 0; l < kBatchRows; ++l) {
     const std::size_t lane = l % kWidth;

@@ -42,11 +42,11 @@ struct Quadratic {
 };
 
 inline Quadratic fitQuadratics(const Batch& batch, std::size_t half, const Plane& plane,
-                               const Frame& frame) {
+                               const Frame<Lanes>& frame) {
   const Lanes zero{};
   const Lanes unit_length = 1.0F / plane.size;
-  const Frame scaled_frame{scaled(frame.u, unit_length), scaled(frame.v, unit_length),
-                           scaled(frame.n, unit_length)};
+  const Frame<Lanes> scaled_frame{scaled(frame.u, unit_length), scaled(frame.v, unit_length),
+                                  scaled(frame.n, unit_length)};
   Lanes x1 = zero, y1 = zero, x2 = zero, xy = zero, y2 = zero, x3 = zero, x2y = zero, xy2 = zero,
         y3 = zero, x4 = zero, x3y = zero, x2y2 = zero, xy3 = zero, y4 = zero;
   Lanes z2 = zero;
