@@ -52,11 +52,11 @@ struct RecomputationScene {
     const int end = count(i);
     std::int32_t difference = 0;
     int k = 1;
-    for (; k + 4 <= end; k += 4) {
-      difference |= (label_of[row[k]] ^ label) | (label_of[row[k + 1]] ^ label) |
-                    (label_of[row[k + 2]] ^ label) | (label_of[row[k + 3]] ^ label);
+    for (; k + 4 <= end && difference == 0; k += 4) {
+      difference = (label_of[row[k]] ^ label) | (label_of[row[k + 1]] ^ label) |
+                   (label_of[row[k + 2]] ^ label) | (label_of[row[k + 3]] ^ label);
     }
-    for (; k < end; ++k) difference |= label_of[row[k]] ^ label;
+    for (; k < end && difference == 0; ++k) difference = label_of[row[k]] ^ label;
     if (difference == 0 && isRegular(label)) return false;
     bool bent = false;
     for (int j = 1; j < end && !bent; ++j) bent = !(cosine(i, neighbor(i, j)) > flat);
