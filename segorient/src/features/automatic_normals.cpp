@@ -33,6 +33,16 @@ constexpr double kTriangulationNoise = 0.1;
 // Smallest neighbourhood beyond that.
 constexpr int kSmallestNoisy = 16;
 constexpr int kTriangulationNeighbors = 12;
+// Up to this noise cubic surfaces, which can bend at an edge, beat quadratic ones there.
+constexpr double kCubicNoise = 0.35;
+// Neighbourhoods of cubic surfaces, per unit of noise over spacing: they have nearly twice the
+// coefficients.
+constexpr double kCubicPerNoise = 150.0;
+// A cubic surface is the better one where it leaves so much less than a quadratic one does, in
+// standard deviations: noise alone makes one point in eight look so (F test). They are taken where
+// most points look so: what fits nothing on scans without edges are stray points, and they bend
+// cubic surfaces most.
+constexpr double kBetter = 0.9;
 // Near edges, where a plane fits a few neighbours as well as noise lets it, they are all on one
 // side.
 constexpr int kPlaneNeighbors = 6;
@@ -63,15 +73,16 @@ double spacingAt(const PointView& points, const Neighborhoods& table, std::size_
   return count > 1 ? sum / (count - 1) : 0.0;
 }
 
-/// Quadratic surfaces of one size.
+/// Surfaces of one size.
 struct Surfaces {
+  NormalEstimator estimator = NormalEstimator::AwASQuadratic;
   std::vector<float> normals;
   std::vector<float> residuals;
 
   void fit(const PointView& points, const Neighborhoods& table, int k, int threads,
            const std::vector<pcl::index_t>& rows) {
     LocalNormalOptions options;
-    options.estimator = NormalEstimator::AwASQuadratic;
+    options.estimator = estimator;
     options.k = k;
     options.threads = threads;
     normals.resize(4 * points.size);
@@ -198,6 +209,37 @@ std::vector<pcl::index_t> takePlanes(const PointView& points, const Neighborhood
   });
 }
 
+/// The neighbourhood of cubic surfaces for so much noise, or 0.
+int cubicSize(double noise, int available) {
+  if (noise < kTriangulationNoise || noise > kCubicNoise) return 0;
+  for (const int k : kSizes) {
+    if (k >= 24 && k >= kCubicPerNoise * noise) return k <= available ? k : 0;
+  }
+  return 0;
+}
+
+/// Gives the rows the normals of cubic surfaces, if these fit most of them better.
+/// \return whether they do
+bool takeCubics(const PointView& points, const Neighborhoods& table, int k, int threads,
+                const std::vector<pcl::index_t>& rows, float* normals) {
+  Surfaces quadratics;
+  Surfaces cubics;
+  cubics.estimator = NormalEstimator::AwASCubic;
+  quadratics.fit(points, table, k, threads, rows);
+  cubics.fit(points, table, k, threads, rows);
+  const auto better = std::count_if(rows.begin(), rows.end(), [&](pcl::index_t r) {
+    const auto row = static_cast<std::size_t>(r);
+    return static_cast<double>(cubics.residuals[row]) <
+           kBetter * static_cast<double>(quadratics.residuals[row]);
+  });
+  if (2 * static_cast<std::size_t>(better) <= rows.size()) return false;
+  for (const pcl::index_t r : rows) {
+    const std::size_t at = 4 * static_cast<std::size_t>(r);
+    std::copy_n(&cubics.normals[at], 4, normals + at);
+  }
+  return true;
+}
+
 AutomaticNormalReport estimateByNoise(const PointView& points, const Neighborhoods& neighborhoods,
                                       const Noise& estimate, int threads, float* normals) {
   AutomaticNormalReport report;
@@ -229,6 +271,11 @@ AutomaticNormalReport estimateByNoise(const PointView& points, const Neighborhoo
     options.estimator = NormalEstimator::LDT;
     options.k = report.edge_k = kTriangulationNeighbors;
     estimateNormals(points, points, neighborhoods, options, normals, nullptr, &open);
+  }
+  const int cubic_k = cubicSize(noise, neighborhoods.k() - 1);
+  if (cubic_k > 0 && takeCubics(points, neighborhoods, cubic_k, threads, open, normals)) {
+    report.cubic = true;
+    report.edge_k = cubic_k;
   }
   for (std::size_t i = 0; i < neighborhoods.size(); ++i) {
     report.undefined += isFinite(normals + 4 * i) ? 0 : 1;
@@ -276,8 +323,8 @@ std::string AutomaticNormalReport::text() const {
   out << ", " << at_edges << " that none of these fits, as at edges, ";
   if (planes > 0)
     out << planes << " of them by planes of " << kPlaneNeighbors << " and the others ";
-  out << "by " << (triangulated ? "local Delaunay triangulation" : "quadratic surfaces") << " of "
-      << edge_k;
+  const char* others = cubic ? "cubic surfaces" : "quadratic surfaces";
+  out << "by " << (triangulated ? "local Delaunay triangulation" : others) << " of " << edge_k;
   if (undefined > 0) out << ", " << undefined << " without a normal";
   return out.str();
 }

@@ -21,8 +21,7 @@ struct LocalFitJob {
   int entries = 0;  ///< most entries of a row to use, the point itself included
   float* normals = nullptr;
   LocalCurvature* curvatures = nullptr;
-  /// Standard deviation of the neighbours from the quadratic surface, one a row, or null; AwAS
-  /// only.
+  /// Standard deviation of the neighbours from the surface, one a row, or null; AwAS only.
   float* residuals = nullptr;
 
   std::size_t row(std::size_t i) const { return rows ? static_cast<std::size_t>(rows[i]) : i; }

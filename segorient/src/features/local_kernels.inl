@@ -4,8 +4,13 @@
 // The estimators for one instruction set; see lanes.inl.
 
 #include "lanes.inl"
+
 #include "plane_lanes.inl"
+
 #include "surface_lanes.inl"
+
+#include "cubic_lanes.inl"
+
 #include "triangulation_lanes.inl"
 
 inline void storeNormals(const LocalFitJob& job, const std::size_t* rows, std::size_t used,
@@ -15,45 +20,58 @@ inline void storeNormals(const LocalFitJob& job, const std::size_t* rows, std::s
   }
 }
 
-/// Normals from the surfaces, and what depends on single points: cubic surfaces and curvatures.
+/// Puts cubic surfaces in the place of the quadratic ones where neighbours determine them.
+inline void takeCubics(const Cubics& cubics, const Batch& batch, std::size_t half, Quadratic& q,
+                       double (&c)[6][kWidth]) {
+  for (std::size_t l = 0; l < kWidth; ++l) {
+    if (!q.valid[l] || !cubics.valid[l]) continue;
+    for (std::size_t i = 0; i < 6; ++i) {
+      c[i][l] = cubics.c[i][l];
+      q.c[i][l] = static_cast<float>(c[i][l]);
+    }
+    const int freedom = std::max(1, batch.counts[half * kWidth + l] - 10);
+    q.residual[l] = static_cast<float>(std::sqrt(std::max(0.0, cubics.squares[l]) / freedom));
+  }
+}
+
+/// Normals from the surfaces, and what depends on single points.
 inline Lanes3 surfaceNormals(const LocalFitJob& job, const Batch& batch, std::size_t half,
                              std::size_t used, const Plane& plane, const Lanes3& guess) {
   const std::size_t* rows = batch.rows + half * kWidth;
   const double* units = batch.unit + half * kWidth;
   const Frame<Lanes> frame = frameOf(guess);
-  const Quadratic q = fitQuadratics(batch, half, plane, frame);
+  Quadratic q = fitQuadratics(batch, half, plane, frame);
+  double c[6][kWidth];
+  for (std::size_t l = 0; job.curvatures && l < kWidth; ++l) {
+    for (std::size_t i = 0; i < 6; ++i) c[i][l] = static_cast<double>(q.c[i][l]);
+  }
+  if (job.estimator == NormalEstimator::AwASCubic) {
+    Cubics cubics;
+    fitCubics(batch, half, plane, frame, cubics);
+    takeCubics(cubics, batch, half, q, c);
+  }
   const Lanes3 fitted = unit(Lanes3{frame.n.x - q.c[1] * frame.u.x - q.c[2] * frame.v.x,
                                     frame.n.y - q.c[1] * frame.u.y - q.c[2] * frame.v.y,
                                     frame.n.z - q.c[1] * frame.u.z - q.c[2] * frame.v.z});
-  Lanes3 normal = select(q.valid, fitted, guess);
   for (std::size_t l = 0; job.residuals && l < used; ++l) {
     const float length = plane.size[l] * static_cast<float>(units[l]);
     job.residuals[rows[l]] =
         q.valid[l] ? q.residual[l] * length : std::numeric_limits<float>::infinity();
   }
-  const bool cubic = job.estimator == NormalEstimator::AwASCubic;
-  if (!cubic && !job.curvatures) return normal;
-  for (std::size_t l = 0; l < used; ++l) {
+  for (std::size_t l = 0; job.curvatures && l < used; ++l) {
     SurfaceFit fit;
     fit.valid = q.valid[l] != 0;
     fit.size = static_cast<double>(plane.size[l]) * units[l];
-    for (std::size_t i = 0; i < 6; ++i) fit.c[i] = static_cast<double>(q.c[i][l]);
+    for (std::size_t i = 0; i < 6; ++i) fit.c[i] = c[i][l];
     const Lanes3* axes[3] = {&frame.u, &frame.v, &frame.n};
     for (std::size_t a = 0; a < 3; ++a) {
       fit.axes[a][0] = static_cast<double>(axes[a]->x[l]);
       fit.axes[a][1] = static_cast<double>(axes[a]->y[l]);
       fit.axes[a][2] = static_cast<double>(axes[a]->z[l]);
     }
-    if (cubic && fit.valid && fitCubic(job, rows[l], fit)) {
-      float n[3];
-      fit.normal(n);
-      normal.x[l] = n[0];
-      normal.y[l] = n[1];
-      normal.z[l] = n[2];
-    }
-    if (job.curvatures) job.curvatures[rows[l]] = fit.curvature();
+    job.curvatures[rows[l]] = fit.curvature();
   }
-  return normal;
+  return select(q.valid, fitted, guess);
 }
 
 /// Rows [begin, end) of the job.

@@ -23,6 +23,13 @@
 #pragma GCC diagnostic ignored "-Wpsabi"
 #endif
 
+// Before a loop over an array that is to be in registers.
+#if defined(__clang__)
+#define SEGORIENT_UNROLL _Pragma("clang loop unroll(full)")
+#else
+#define SEGORIENT_UNROLL _Pragma("GCC unroll 16")
+#endif
+
 namespace segorient {
 namespace detail {
 

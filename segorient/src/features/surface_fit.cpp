@@ -5,21 +5,7 @@
 #include <cmath>
 #include <limits>
 
-#include "cholesky.h"
-
 namespace segorient::detail {
-namespace {
-
-constexpr std::size_t kOrder = 10;
-
-}  // namespace
-
-void SurfaceFit::normal(float* n) const {
-  const double length = std::sqrt(1.0 + c[1] * c[1] + c[2] * c[2]);
-  for (int i = 0; i < 3; ++i) {
-    n[i] = static_cast<float>((axes[2][i] - c[1] * axes[0][i] - c[2] * axes[1][i]) / length);
-  }
-}
 
 LocalCurvature SurfaceFit::curvature() const {
   constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
@@ -62,35 +48,6 @@ LocalCurvature SurfaceFit::curvature() const {
   result.pc1 = static_cast<float>(larger);
   result.pc2 = static_cast<float>(smaller);
   return result;
-}
-
-bool fitCubic(const LocalFitJob& job, std::size_t row, SurfaceFit& fit) {
-  const int count = job.count(row);
-  if (count < static_cast<int>(kOrder)) return false;
-  const float* p = job.queries[row];
-  const pcl::index_t* neighbors = job.neighborhoods->indices(row);
-  SquareMatrix<kOrder> m{};
-  VectorN<kOrder> x{};
-  for (int j = 0; j < count; ++j) {
-    const float* q = job.xyz + 4 * static_cast<std::size_t>(neighbors[j]);
-    double local[3] = {0, 0, 0};
-    for (int a = 0; a < 3; ++a) {
-      const double d = (static_cast<double>(q[a]) - static_cast<double>(p[a])) / fit.size;
-      for (int i = 0; i < 3; ++i) local[i] += d * fit.axes[i][a];
-    }
-    const double u = local[0];
-    const double v = local[1];
-    const VectorN<kOrder> terms{1.0,   u,         v,         u * u,     u * v,
-                                v * v, u * u * u, u * u * v, u * v * v, v * v * v};
-    for (std::size_t i = 0; i < kOrder; ++i) {
-      for (std::size_t k = 0; k <= i; ++k) m[i][k] += terms[i] * terms[k];
-      x[i] += terms[i] * local[2];
-    }
-  }
-  if (decompose(m, 1e-6) < kOrder) return false;
-  solveDecomposed(m, x);
-  for (std::size_t i = 0; i < 6; ++i) fit.c[i] = x[i];
-  return true;
 }
 
 }  // namespace segorient::detail

@@ -4,10 +4,6 @@
 
 #include <segorient/features/local_normals.h>
 
-#include <cstddef>
-
-#include "local_fit_job.h"
-
 namespace segorient::detail {
 
 /// A surface z = f(x, y) over a frame at a point, of which only what the point sees is kept: the
@@ -18,14 +14,8 @@ struct SurfaceFit {
   double c[6] = {0, 0, 0, 0, 0, 0};
   double axes[3][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};  ///< x, y, z of the frame
 
-  void normal(float* n) const;
   /// Curvatures at (0, 0), NaN where the fit is not valid.
   LocalCurvature curvature() const;
 };
-
-/// Replaces a quadratic surface by a cubic one (10 coefficients) over the same frame, in double
-/// precision, if the row determines it.
-/// \return false, and `fit` unchanged, where it does not
-bool fitCubic(const LocalFitJob& job, std::size_t row, SurfaceFit& fit);
 
 }  // namespace segorient::detail

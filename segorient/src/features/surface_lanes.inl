@@ -4,32 +4,42 @@
 // Approximation with an analytic surface, quadratic (paper, section 2.2). Included once per
 // instruction set.
 
-/// Solves the symmetric positive definite system of order 6 whose lower triangle is in m, by
-/// Cholesky decomposition without roots; x holds the right side and then the solution. \return
-/// where no pivot fell below 1e-4 of its diagonal: beyond that float would not carry it
-inline Mask solveOrder6(Lanes m[6][6], Lanes x[6]) {
-  Mask regular = Mask{} == 0;
-  Lanes inverse[6];
-  for (int j = 0; j < 6; ++j) {
-    const Lanes diagonal = m[j][j];
-    Lanes scaled_row[6];
+/// Solves symmetric positive definite systems whose lower triangles are in m, by Cholesky
+/// decomposition without roots; x holds the right sides and then the solutions. \return where no
+/// pivot fell below a share of its diagonal
+template <typename M, typename V, typename Share, int kOrder>
+inline M solveSymmetric(V (&m)[kOrder][kOrder], V (&x)[kOrder], Share least_pivot) {
+  M regular = M{} == 0;
+  V inverse[kOrder];
+  SEGORIENT_UNROLL
+  for (int j = 0; j < kOrder; ++j) {
+    const V diagonal = m[j][j];
+    V scaled_row[kOrder];
+    SEGORIENT_UNROLL
     for (int k = 0; k < j; ++k) {
       scaled_row[k] = m[j][k];         // L times D so far
       m[j][k] = m[j][k] * inverse[k];  // L
       m[j][j] -= scaled_row[k] * m[j][k];
     }
-    regular &= m[j][j] > 1e-4F * diagonal;
-    inverse[j] = 1.0F / m[j][j];
-    for (int i = j + 1; i < 6; ++i) {
+    regular &= m[j][j] > least_pivot * diagonal;
+    inverse[j] = Share(1) / m[j][j];
+    SEGORIENT_UNROLL
+    for (int i = j + 1; i < kOrder; ++i) {
+      SEGORIENT_UNROLL
       for (int k = 0; k < j; ++k) m[i][j] -= m[i][k] * m[j][k];
     }
   }
-  for (int i = 0; i < 6; ++i) {
+  SEGORIENT_UNROLL
+  for (int i = 0; i < kOrder; ++i) {
+    SEGORIENT_UNROLL
     for (int k = 0; k < i; ++k) x[i] -= m[i][k] * x[k];
   }
-  for (int i = 0; i < 6; ++i) x[i] *= inverse[i];
-  for (int i = 5; i >= 0; --i) {
-    for (int k = i + 1; k < 6; ++k) x[i] -= m[k][i] * x[k];
+  SEGORIENT_UNROLL
+  for (int i = 0; i < kOrder; ++i) x[i] *= inverse[i];
+  SEGORIENT_UNROLL
+  for (int i = kOrder - 1; i >= 0; --i) {
+    SEGORIENT_UNROLL
+    for (int k = i + 1; k < kOrder; ++k) x[i] -= m[k][i] * x[k];
   }
   return regular;
 }
@@ -91,7 +101,8 @@ inline Quadratic fitQuadratics(const Batch& batch, std::size_t half, const Plane
                    {y2, xy2, y3, x2y2, xy3, y4}};
   Lanes right[6];
   for (int i = 0; i < 6; ++i) right[i] = q.c[i];
-  q.valid = plane.valid & solveOrder6(m, q.c);
+  // Below such pivots float would not carry it.
+  q.valid = plane.valid & solveSymmetric<Mask>(m, q.c, 1e-4F);
   // The squares that are left, by the normal equations; for each point more than coefficients.
   for (int i = 0; i < 6; ++i) z2 -= right[i] * q.c[i];
   q.residual = squareRoot(larger(zero, z2) / larger(count - 6.0F, all(1.0F)));

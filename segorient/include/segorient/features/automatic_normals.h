@@ -23,7 +23,8 @@ struct AutomaticNormalReport {
   std::size_t at_edges = 0;   ///< points where none of them fits
   std::size_t planes = 0;     ///< of these, those that a plane of six neighbours does fit
   int edge_k = 0;             ///< neighbourhood used at the others
-  bool triangulated = false;  ///< by local Delaunay triangulation, else by the smallest surface
+  bool triangulated = false;  ///< by local Delaunay triangulation, ...
+  bool cubic = false;         ///< ... by cubic surfaces, else by the smallest quadratic ones
   std::size_t undefined = 0;  ///< points without a normal
 
   /// The same in a sentence.
@@ -38,7 +39,7 @@ constexpr int kMostAutomaticNeighbors = 64;
 /// large ones on noisy scans, small ones where the surface bends. Where not even the smallest is
 /// explained there is an edge; there a clean cloud gets planes of six neighbours where these are
 /// all on one side of it, else local Delaunay triangulations, which smooth least, and a noisy one
-/// the smallest surface.
+/// cubic surfaces if these fit most such points better, else the smallest quadratic ones.
 ///
 /// \param points distinct points \param neighborhoods of them, the wider the table the better up to
 ///        kMostAutomaticNeighbors; with a narrow one noisy clouds are served less well
