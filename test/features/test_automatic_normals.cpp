@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <random>
 #include <vector>
 
 #include "feature_clouds.h"
@@ -70,6 +71,33 @@ TEST(AutomaticNormals, AsGoodAsTheBestSingleEstimator) {
   }
   const Sample edges = cube(10000, 2);
   EXPECT_LT(rmsDegrees(edges, automatic(edges).normals), bestSingle(edges));
+}
+
+// A formula's surface without noise is nearly cubic everywhere, a solid with edges is not, nor is
+// what noise makes of it.
+TEST(AutomaticNormals, CubicSurfacesWhereASmoothCloudHasNoNoise) {
+  const Sample smooth = torus(20000, 2);
+  const Automatic cubic = automatic(smooth);
+  EXPECT_TRUE(cubic.report.analytic);
+  EXPECT_NE(cubic.report.text().find("cubic ones of 12"), std::string::npos);
+  EXPECT_LT(rmsDegrees(smooth, cubic.normals),
+            0.5 * rmsOf(smooth, NormalEstimator::AwASQuadratic, 10));
+  EXPECT_FALSE(automatic(cube(10000, 2)).report.analytic);
+  EXPECT_FALSE(automatic(torus(20000, 2, 0.05F * torusSpacing(20000))).report.analytic);
+}
+
+// Across a noisy edge cubic surfaces bend where small quadratic ones smooth and local
+// triangulations are noisy. Without edges nothing is to be gained.
+TEST(AutomaticNormals, CubicSurfacesAtNoisyEdges) {
+  Sample edges = cube(20000, 2);
+  std::mt19937 generator(3);
+  std::normal_distribution<float> noise(0.F, 0.13F * std::sqrt(24.F / 20000));
+  for (auto& p : edges.points)
+    p.getVector3fMap() += Eigen::Vector3f::NullaryExpr([&] { return noise(generator); });
+  const Automatic result = automatic(edges);
+  EXPECT_TRUE(result.report.cubic);
+  EXPECT_LT(rmsDegrees(edges, result.normals), 0.9 * bestSingle(edges));
+  EXPECT_FALSE(automatic(torus(20000, 2, 0.13F * torusSpacing(20000))).report.cubic);
 }
 
 // Two flat sheets that pass each other at a few spacings: where surfaces of ten neighbours take in

@@ -5,6 +5,7 @@
 
 #include <Eigen/Eigenvalues>
 #include <cmath>
+#include <cstdlib>
 #include <limits>
 #include <random>
 #include <vector>
@@ -117,8 +118,23 @@ TEST_P(AnyEstimator, SameBitsForAnyThreadsAndInstructionSet) {
     o.threads = threads;
     EXPECT_EQ(normalsOf(sample.view(), table, o), reference);
   }
+  for (const char* instruction_set : {"avx512", "avx2", "sse2"}) {
+    setenv("SEGORIENT_SIMD", instruction_set, 1);
+    EXPECT_EQ(normalsOf(sample.view(), table, o), reference) << instruction_set;
+    unsetenv("SEGORIENT_SIMD");
+  }
   o.portable = true;
   EXPECT_EQ(normalsOf(sample.view(), table, o), reference);
+}
+
+// As a search surface of its own the same cloud gives the same normals.
+TEST_P(AnyEstimator, TheSameCloudAsItsOwnSurface) {
+  const Sample sample = torus(2000, 5);
+  const Sample copy = sample;
+  const Neighborhoods table = neighborsOf(sample.view(), 12);
+  std::vector<float> normals(4 * sample.normals.size());
+  estimateNormals(sample.view(), copy.view(), table, options(), normals.data());
+  EXPECT_EQ(normals, normalsOf(sample.view(), table, options()));
 }
 
 TEST_P(AnyEstimator, FarFromTheOrigin) {

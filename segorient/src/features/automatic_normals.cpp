@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026, the segorient authors
-#include <segorient/common/median.h>
 #include <segorient/features/automatic_normals.h>
 
 #include <algorithm>
@@ -10,22 +9,17 @@
 #include <limits>
 #include <sstream>
 
-#include "local_fit_job.h"
+#include "cloud_noise.h"
 
 namespace segorient {
 namespace {
 
+using detail::CloudNoise;
+using detail::Explained;
+using detail::Surfaces;
+
 // Neighbourhoods of the quadratic surfaces that are tried.
 constexpr std::array<int, 6> kSizes{10, 16, 24, 32, 48, kMostAutomaticNeighbors};
-// The noise is what is left of quadratic surfaces through the fewest neighbours that leave
-// anything: larger ones take what the surface bends beyond a quadratic for noise.
-constexpr int kNoiseNeighbors = 8;
-// Median of a standard deviation estimated with as much freedom as they have (3).
-constexpr double kMedianShare = 0.888;
-// A residual is taken for noise up to this many of its own standard deviations.
-constexpr double kTolerance = 2.5;
-// Least noise, in spacings: less cannot be told from what a quadratic leaves of a smooth surface.
-constexpr double kLeastNoise = 0.01;
 // Up to this noise the smallest neighbourhood is the best one wherever it fits.
 constexpr double kCleanNoise = 0.03;
 // Up to this noise local triangulations beat small surfaces at edges.
@@ -43,6 +37,10 @@ constexpr double kCubicPerNoise = 150.0;
 // most points look so: what fits nothing on scans without edges are stray points, and they bend
 // cubic surfaces most.
 constexpr double kBetter = 0.9;
+// On surfaces without noise that a formula makes, cubic surfaces of a few neighbours leave less
+// than half of what quadratic ones do. Meshes and scans have such places, but nowhere near so many.
+constexpr int kCubicNeighbors = 12;
+constexpr double kNextTerm = 0.5;
 // Near edges, where a plane fits a few neighbours as well as noise lets it, they are all on one
 // side.
 constexpr int kPlaneNeighbors = 6;
@@ -54,43 +52,6 @@ constexpr double kSmallestPerNoise = 90.0;
 // Beyond this noise a few neighbours are a ball of points, whose residual hardly grows with the
 // noise and says nothing of the surface: then only the largest neighbourhood is left.
 constexpr double kSaturatedNoise = 0.45;
-// Points that the noise is estimated from.
-constexpr std::size_t kSamples = 4000;
-
-double spacingAt(const PointView& points, const Neighborhoods& table, std::size_t row) {
-  const int count = std::min(table.count(row), 7);
-  double sum = 0;
-  for (int j = 1; j < count; ++j) {
-    const float* p = points[row];
-    const float* q = points[static_cast<std::size_t>(table.indices(row)[j])];
-    double squares = 0;
-    for (int a = 0; a < 3; ++a) {
-      const double d = static_cast<double>(p[a]) - static_cast<double>(q[a]);
-      squares += d * d;
-    }
-    sum += std::sqrt(squares);
-  }
-  return count > 1 ? sum / (count - 1) : 0.0;
-}
-
-/// Surfaces of one size.
-struct Surfaces {
-  NormalEstimator estimator = NormalEstimator::AwASQuadratic;
-  std::vector<float> normals;
-  std::vector<float> residuals;
-
-  void fit(const PointView& points, const Neighborhoods& table, int k, int threads,
-           const std::vector<pcl::index_t>& rows) {
-    LocalNormalOptions options;
-    options.estimator = estimator;
-    options.k = k;
-    options.threads = threads;
-    normals.resize(4 * points.size);
-    residuals.resize(points.size);
-    detail::estimateNormals(points, points, table, options, normals.data(), nullptr,
-                            residuals.data(), &rows);
-  }
-};
 
 /// The sizes to try, largest first.
 std::vector<int> sizesFor(double noise, int available) {
@@ -130,85 +91,6 @@ double planeResidual(const PointView& points, const Neighborhoods& table, std::s
   return std::sqrt(std::max(0.0, squares - sum * sum / count) / (count - 3));
 }
 
-struct Noise {
-  double length = 0.0;  ///< standard deviation
-  double in_spacings = 0.0;
-};
-
-/// Medians over a sample: edges and creases, where surfaces do not fit, are the minority.
-Noise sampleNoise(const PointView& points, const Neighborhoods& neighborhoods, int threads) {
-  if (points.size < kSmallestNoisy || neighborhoods.size() != points.size) return {};
-  std::vector<pcl::index_t> rows;
-  const std::size_t step = std::max<std::size_t>(1, points.size / kSamples);
-  for (std::size_t i = 0; i < points.size; i += step) rows.push_back(static_cast<pcl::index_t>(i));
-  Surfaces surfaces;
-  surfaces.fit(points, neighborhoods, kNoiseNeighbors, threads, rows);
-  std::vector<float> lengths;
-  std::vector<float> ratios;
-  for (const pcl::index_t r : rows) {
-    const auto row = static_cast<std::size_t>(r);
-    const float length = surfaces.residuals[row];
-    const auto ratio =
-        static_cast<float>(static_cast<double>(length) / spacingAt(points, neighborhoods, row));
-    if (!std::isfinite(ratio)) continue;
-    lengths.push_back(length);
-    ratios.push_back(ratio);
-  }
-  return {static_cast<double>(median(std::move(lengths))) / kMedianShare,
-          static_cast<double>(median(std::move(ratios))) / kMedianShare};
-}
-
-/// Whether noise explains what a surface leaves of a neighbourhood: its standard deviation, with
-/// the scatter of such estimates.
-class Explained {
- public:
-  /// \param freedom points less coefficients
-  Explained(const PointView& points, const Neighborhoods& table, double noise, int freedom)
-      : points_(points),
-        table_(table),
-        noise_(noise),
-        scatter_(1.0 + kTolerance / std::sqrt(2.0 * freedom)) {}
-
-  bool operator()(std::size_t row, double residual) const {
-    const double least = kLeastNoise * spacingAt(points_, table_, row);
-    return residual <= scatter_ * std::max(noise_, least);
-  }
-
- private:
-  const PointView& points_;
-  const Neighborhoods& table_;
-  double noise_;
-  double scatter_;
-};
-
-/// \param residual of a row's fit
-/// \return the rows whose residual noise does not explain
-template <typename Residual>
-std::vector<pcl::index_t> unexplained(const std::vector<pcl::index_t>& rows,
-                                      const Explained& explained, Residual residual) {
-  std::vector<pcl::index_t> left;
-  for (const pcl::index_t r : rows) {
-    const auto row = static_cast<std::size_t>(r);
-    if (!explained(row, static_cast<double>(residual(row)))) left.push_back(r);
-  }
-  return left;
-}
-
-/// Gives the rows that a plane fits its normal.
-/// \return the others
-std::vector<pcl::index_t> takePlanes(const PointView& points, const Neighborhoods& table,
-                                     double noise, int threads,
-                                     const std::vector<pcl::index_t>& rows, float* normals) {
-  LocalNormalOptions options;
-  options.k = kPlaneNeighbors;
-  options.threads = threads;
-  estimateNormals(points, points, table, options, normals, nullptr, &rows);
-  const Explained explained(points, table, noise, kPlaneNeighbors + 1 - 3);
-  return unexplained(rows, explained, [&](std::size_t row) {
-    return planeResidual(points, table, row, normals + 4 * row);
-  });
-}
-
 /// The neighbourhood of cubic surfaces for so much noise, or 0.
 int cubicSize(double noise, int available) {
   if (noise < kTriangulationNoise || noise > kCubicNoise) return 0;
@@ -218,100 +100,179 @@ int cubicSize(double noise, int available) {
   return 0;
 }
 
-/// Gives the rows the normals of cubic surfaces, if these fit most of them better.
-/// \return whether they do
-bool takeCubics(const PointView& points, const Neighborhoods& table, int k, int threads,
-                const std::vector<pcl::index_t>& rows, float* normals) {
-  Surfaces quadratics;
-  Surfaces cubics;
-  cubics.estimator = NormalEstimator::AwASCubic;
-  quadratics.fit(points, table, k, threads, rows);
-  cubics.fit(points, table, k, threads, rows);
-  const auto better = std::count_if(rows.begin(), rows.end(), [&](pcl::index_t r) {
-    const auto row = static_cast<std::size_t>(r);
-    return static_cast<double>(cubics.residuals[row]) <
-           kBetter * static_cast<double>(quadratics.residuals[row]);
-  });
-  if (2 * static_cast<std::size_t>(better) <= rows.size()) return false;
-  for (const pcl::index_t r : rows) {
-    const std::size_t at = 4 * static_cast<std::size_t>(r);
-    std::copy_n(&cubics.normals[at], 4, normals + at);
+/// The estimation of one cloud, step by step: each leaves fewer points open.
+class Estimation {
+ public:
+  Estimation(const PointView& points, const Neighborhoods& table, const CloudNoise& noise,
+             int threads, float* normals)
+      : points_(points),
+        table_(table),
+        noise_(noise.length),
+        in_spacings_(std::max(detail::kLeastNoise, noise.in_spacings)),
+        threads_(threads),
+        normals_(normals),
+        open_(table.size()) {
+    for (std::size_t i = 0; i < open_.size(); ++i) open_[i] = static_cast<pcl::index_t>(i);
+    report_.noise = static_cast<float>(noise.in_spacings);
   }
-  return true;
-}
 
-AutomaticNormalReport estimateByNoise(const PointView& points, const Neighborhoods& neighborhoods,
-                                      const Noise& estimate, int threads, float* normals) {
-  AutomaticNormalReport report;
-  report.noise = static_cast<float>(estimate.in_spacings);
-  const double noise = std::max(kLeastNoise, estimate.in_spacings);
-  std::vector<pcl::index_t> open(neighborhoods.size());
-  for (std::size_t i = 0; i < open.size(); ++i) open[i] = static_cast<pcl::index_t>(i);
-  Surfaces surfaces;
-  for (const int k : sizesFor(noise, neighborhoods.k() - 1)) {
-    surfaces.fit(points, neighborhoods, k, threads, open);
-    const Explained explained(points, neighborhoods, estimate.length, k + 1 - 6);
-    for (const pcl::index_t o : open) {
-      const auto i = static_cast<std::size_t>(o);
-      std::copy_n(&surfaces.normals[4 * i], 4, normals + 4 * i);
+  AutomaticNormalReport run() {
+    takeQuadratics();
+    if (in_spacings_ < kCleanNoise && isAnalytic()) takeCubics();
+    report_.at_edges = open_.size();
+    report_.triangulated = in_spacings_ < kTriangulationNoise;
+    if (report_.triangulated) {
+      takePlanes();
+      triangulate();
+    } else {
+      takeCubicsAtEdges();
     }
-    std::vector<pcl::index_t> left =
-        unexplained(open, explained, [&](std::size_t row) { return surfaces.residuals[row]; });
-    report.surfaces.emplace_back(k, open.size() - left.size());
-    open.swap(left);
-    report.edge_k = k;
+    for (std::size_t i = 0; i < table_.size(); ++i) {
+      report_.undefined += isFinite(normals_ + 4 * i) ? 0 : 1;
+    }
+    return report_;
   }
-  report.at_edges = open.size();
-  report.triangulated = noise < kTriangulationNoise;
-  if (report.triangulated) {
-    open = takePlanes(points, neighborhoods, estimate.length, threads, open, normals);
-    report.planes = report.at_edges - open.size();
+
+ private:
+  int available() const { return table_.k() - 1; }
+
+  /// Leaves open what the residuals are not explained of.
+  template <typename Residual>
+  void keepUnexplained(int freedom, const Residual& residual) {
+    const Explained explained(points_, table_, noise_, freedom);
+    std::vector<pcl::index_t> left;
+    for (const pcl::index_t r : open_) {
+      const auto row = static_cast<std::size_t>(r);
+      if (!explained(row, static_cast<double>(residual(row)))) left.push_back(r);
+    }
+    open_.swap(left);
+  }
+
+  void takeQuadratics() {
+    for (const int k : sizesFor(in_spacings_, available())) {
+      quadratics_.fit(points_, table_, k, threads_, open_);
+      for (const pcl::index_t o : open_) {
+        quadratics_.copyNormal(static_cast<std::size_t>(o), normals_);
+      }
+      const std::size_t before = open_.size();
+      keepUnexplained(k + 1 - 6, [&](std::size_t row) { return quadratics_.residuals[row]; });
+      report_.surfaces.emplace_back(k, before - open_.size());
+      report_.edge_k = k;
+    }
+  }
+
+  /// Whether most of some rows are much nearer to a cubic surface than to a quadratic one.
+  bool areCubic(const std::vector<pcl::index_t>& rows, const Surfaces& cubics,
+                const Surfaces& quadratics, double much) const {
+    const auto nearer = std::count_if(rows.begin(), rows.end(), [&](pcl::index_t r) {
+      const auto row = static_cast<std::size_t>(r);
+      return static_cast<double>(cubics.residuals[row]) <
+             much * static_cast<double>(quadratics.residuals[row]);
+    });
+    return 2 * static_cast<std::size_t>(nearer) > rows.size();
+  }
+
+  /// Whether the cloud is of a surface without noise and smooth nearly everywhere, as a formula
+  /// makes it: then what quadratic surfaces leave is the next term of its series.
+  bool isAnalytic() {
+    if (available() < kCubicNeighbors) return false;
+    const std::vector<pcl::index_t> rows = detail::sampleRows(table_.size());
+    Surfaces cubics;
+    cubics.estimator = NormalEstimator::AwASCubic;
+    cubics.fit(points_, table_, kCubicNeighbors, threads_, rows);
+    return areCubic(rows, cubics, quadratics_, kNextTerm);
+  }
+
+  /// Cubic surfaces wherever they leave less than the quadratic ones, and where only they fit.
+  void takeCubics() {
+    std::vector<pcl::index_t> all(table_.size());
+    for (std::size_t i = 0; i < all.size(); ++i) all[i] = static_cast<pcl::index_t>(i);
+    Surfaces cubics;
+    cubics.estimator = NormalEstimator::AwASCubic;
+    cubics.fit(points_, table_, kCubicNeighbors, threads_, all);
+    report_.analytic = true;
+    for (std::size_t i = 0; i < all.size(); ++i) {
+      if (cubics.residuals[i] < quadratics_.residuals[i]) cubics.copyNormal(i, normals_);
+    }
+    keepUnexplained(kCubicNeighbors + 1 - 10,
+                    [&](std::size_t row) { return cubics.residuals[row]; });
+  }
+
+  /// Planes where these fit.
+  void takePlanes() {
     LocalNormalOptions options;
-    options.threads = threads;
+    options.k = kPlaneNeighbors;
+    options.threads = threads_;
+    estimateNormals(points_, points_, table_, options, normals_, nullptr, &open_);
+    const std::size_t before = open_.size();
+    keepUnexplained(kPlaneNeighbors + 1 - 3, [&](std::size_t row) {
+      return planeResidual(points_, table_, row, normals_ + 4 * row);
+    });
+    report_.planes = before - open_.size();
+  }
+
+  void triangulate() {
+    LocalNormalOptions options;
+    options.threads = threads_;
     options.estimator = NormalEstimator::LDT;
-    options.k = report.edge_k = kTriangulationNeighbors;
-    estimateNormals(points, points, neighborhoods, options, normals, nullptr, &open);
+    options.k = report_.edge_k = kTriangulationNeighbors;
+    estimateNormals(points_, points_, table_, options, normals_, nullptr, &open_);
   }
-  const int cubic_k = cubicSize(noise, neighborhoods.k() - 1);
-  if (cubic_k > 0 && takeCubics(points, neighborhoods, cubic_k, threads, open, normals)) {
-    report.cubic = true;
-    report.edge_k = cubic_k;
+
+  /// Cubic surfaces, if these fit most of what is open better.
+  void takeCubicsAtEdges() {
+    const int k = cubicSize(in_spacings_, available());
+    if (k == 0) return;
+    Surfaces cubics;
+    cubics.estimator = NormalEstimator::AwASCubic;
+    quadratics_.fit(points_, table_, k, threads_, open_);
+    cubics.fit(points_, table_, k, threads_, open_);
+    if (!areCubic(open_, cubics, quadratics_, kBetter)) return;
+    for (const pcl::index_t o : open_) cubics.copyNormal(static_cast<std::size_t>(o), normals_);
+    report_.cubic = true;
+    report_.edge_k = k;
   }
-  for (std::size_t i = 0; i < neighborhoods.size(); ++i) {
-    report.undefined += isFinite(normals + 4 * i) ? 0 : 1;
-  }
-  return report;
-}
+
+  const PointView& points_;
+  const Neighborhoods& table_;
+  double noise_;
+  double in_spacings_;
+  int threads_;
+  float* normals_;
+  AutomaticNormalReport report_;
+  std::vector<pcl::index_t> open_;
+  Surfaces quadratics_;
+};
 
 }  // namespace
 
 float estimateNoise(const PointView& points, const Neighborhoods& neighborhoods, int threads) {
-  return static_cast<float>(sampleNoise(points, neighborhoods, threads).in_spacings);
+  return static_cast<float>(detail::sampleNoise(points, neighborhoods, threads).in_spacings);
 }
 
 AutomaticNormalReport estimateNormalsAutomatically(const PointView& points,
                                                    const Neighborhoods& neighborhoods, int threads,
                                                    float* normals) {
-  const Noise noise = sampleNoise(points, neighborhoods, threads);
-  return estimateByNoise(points, neighborhoods, noise, threads, normals);
+  const CloudNoise noise = detail::sampleNoise(points, neighborhoods, threads);
+  return Estimation(points, neighborhoods, noise, threads, normals).run();
 }
 
 AutomaticNormalReport estimateNormalsAutomatically(const PointView& points,
                                                    const search::MedianHashIndex& index,
                                                    const Neighborhoods& neighborhoods, int threads,
                                                    float* normals) {
-  const Noise noise = sampleNoise(points, neighborhoods, threads);
+  const CloudNoise noise = detail::sampleNoise(points, neighborhoods, threads);
   const std::vector<int> sizes =
-      sizesFor(std::max(kLeastNoise, noise.in_spacings), kMostAutomaticNeighbors);
+      sizesFor(std::max(detail::kLeastNoise, noise.in_spacings), kMostAutomaticNeighbors);
   const int wanted = std::max(sizes.front(), kTriangulationNeighbors);
   const bool all = static_cast<std::size_t>(neighborhoods.k()) >= points.size;
   if (all || neighborhoods.k() > wanted) {
-    return estimateByNoise(points, neighborhoods, noise, threads, normals);
+    return Estimation(points, neighborhoods, noise, threads, normals).run();
   }
   // The nearest of each point, which the noise comes from, are the same.
   Neighborhoods wider;
   index.nearestKAll(wanted + 1, wider, false);
-  return estimateByNoise(points, wider, noise, threads, normals);
+  return Estimation(points, wider, noise, threads, normals).run();
 }
 
 std::string AutomaticNormalReport::text() const {
@@ -320,6 +281,7 @@ std::string AutomaticNormalReport::text() const {
   for (const auto& [k, count] : surfaces) {
     out << ", " << count << " points by quadratic surfaces of " << k << " neighbours";
   }
+  if (analytic) out << " or cubic ones of " << kCubicNeighbors << " where these fit better";
   out << ", " << at_edges << " that none of these fits, as at edges, ";
   if (planes > 0)
     out << planes << " of them by planes of " << kPlaneNeighbors << " and the others ";

@@ -65,12 +65,14 @@ struct FanOrder {
 };
 
 /// The keys of one register's points, as yet in the order of the neighbours.
-/// \param own 1 where rows list the point itself, which is none of its neighbours
-inline FanOrder fanKeys(const Batch& batch, std::size_t half, int count, float own,
-                        const Plane& plane, float* keys) {
+inline FanOrder fanKeys(const Batch& batch, std::size_t half, int count, const Plane& plane,
+                        float* keys) {
   FanOrder order;
   order.keys = keys + half * kWidth;
   const Frame<Lanes> frame = frameOf(plane.normal);
+  // The point itself comes first where the row has it, and is not one of those around the centre.
+  const Lanes own =
+      batch.first == 1 ? all(1.0F) : select(isNeighbor(batch.offset(0, half)), Lanes{}, all(1.0F));
   const Lanes3 center = scaled(plane.sum, 1.0F / larger(batch.countsOf(half) - own, all(1.0F)));
   const Lanes center_u = dot(center, frame.u);
   const Lanes center_v = dot(center, frame.v);
@@ -136,7 +138,7 @@ inline void fanNormals(const LocalFitJob& job, const Batch& batch, const Plane (
   if (sorted == 0) return;  // no neighbours in any lane, and no plane
   FanOrder orders[2];
   for (std::size_t half = 0; half < 2; ++half) {
-    orders[half] = fanKeys(batch, half, count, job.same_points ? 1.0F : 0.0F, planes[half], keys);
+    orders[half] = fanKeys(batch, half, count, planes[half], keys);
   }
   network.sort(keys, sorted);
   for (std::size_t half = 0; half < 2; ++half) {

@@ -20,6 +20,7 @@ struct AutomaticNormalReport {
   /// Neighbourhoods of quadratic surfaces that were tried, largest first, and how many points they
   /// fit.
   std::vector<std::pair<int, std::size_t>> surfaces;
+  bool analytic = false;      ///< so smooth that cubic surfaces are nearer at most points
   std::size_t at_edges = 0;   ///< points where none of them fits
   std::size_t planes = 0;     ///< of these, those that a plane of six neighbours does fit
   int edge_k = 0;             ///< neighbourhood used at the others
@@ -36,7 +37,8 @@ constexpr int kMostAutomaticNeighbors = 64;
 
 /// Normals without a choice to make. The noise is estimated from the residuals of quadratic
 /// surfaces; every point then gets the largest neighbourhood whose residual the noise explains:
-/// large ones on noisy scans, small ones where the surface bends. Where not even the smallest is
+/// large ones on noisy scans, small ones where the surface bends, cubic ones if without noise they
+/// are nearer to most points. Where not even the smallest is
 /// explained there is an edge; there a clean cloud gets planes of six neighbours where these are
 /// all on one side of it, else local Delaunay triangulations, which smooth least, and a noisy one
 /// cubic surfaces if these fit most such points better, else the smallest quadratic ones.

@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the segorient authors
+#include "cloud_noise.h"
+
+#include <segorient/common/median.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "local_fit_job.h"
+
+namespace segorient::detail {
+namespace {
+
+// The noise is what is left of quadratic surfaces through the fewest neighbours that leave
+// anything: larger ones take what the surface bends beyond a quadratic for noise.
+constexpr int kNoiseNeighbors = 8;
+// Median of a standard deviation estimated with as much freedom as they have (3).
+constexpr double kMedianShare = 0.888;
+constexpr std::size_t kFewestPoints = 16;
+constexpr std::size_t kSamples = 4000;
+// A residual is taken for noise up to this many of its own standard deviations.
+constexpr double kTolerance = 2.5;
+
+double spacingAt(const PointView& points, const Neighborhoods& table, std::size_t row) {
+  const int count = std::min(table.count(row), 7);
+  double sum = 0;
+  for (int j = 1; j < count; ++j) {
+    const float* p = points[row];
+    const float* q = points[static_cast<std::size_t>(table.indices(row)[j])];
+    double squares = 0;
+    for (int a = 0; a < 3; ++a) {
+      const double d = static_cast<double>(p[a]) - static_cast<double>(q[a]);
+      squares += d * d;
+    }
+    sum += std::sqrt(squares);
+  }
+  return count > 1 ? sum / (count - 1) : 0.0;
+}
+
+}  // namespace
+
+void Surfaces::fit(const PointView& points, const Neighborhoods& table, int k, int threads,
+                   const std::vector<pcl::index_t>& rows) {
+  LocalNormalOptions options;
+  options.estimator = estimator;
+  options.k = k;
+  options.threads = threads;
+  normals.resize(4 * points.size);
+  residuals.resize(points.size);
+  estimateNormals(points, points, table, options, normals.data(), nullptr, residuals.data(), &rows);
+}
+
+void Surfaces::copyNormal(std::size_t row, float* all) const {
+  std::copy_n(&normals[4 * row], 4, all + 4 * row);
+}
+
+std::vector<pcl::index_t> sampleRows(std::size_t size) {
+  std::vector<pcl::index_t> rows;
+  const std::size_t step = std::max<std::size_t>(1, size / kSamples);
+  for (std::size_t i = 0; i < size; i += step) rows.push_back(static_cast<pcl::index_t>(i));
+  return rows;
+}
+
+CloudNoise sampleNoise(const PointView& points, const Neighborhoods& neighborhoods, int threads) {
+  if (points.size < kFewestPoints || neighborhoods.size() != points.size) return {};
+  const std::vector<pcl::index_t> rows = sampleRows(points.size);
+  Surfaces surfaces;
+  surfaces.fit(points, neighborhoods, kNoiseNeighbors, threads, rows);
+  std::vector<float> lengths;
+  std::vector<float> ratios;
+  for (const pcl::index_t r : rows) {
+    const auto row = static_cast<std::size_t>(r);
+    const float length = surfaces.residuals[row];
+    const auto ratio =
+        static_cast<float>(static_cast<double>(length) / spacingAt(points, neighborhoods, row));
+    if (!std::isfinite(ratio)) continue;
+    lengths.push_back(length);
+    ratios.push_back(ratio);
+  }
+  return {static_cast<double>(median(std::move(lengths))) / kMedianShare,
+          static_cast<double>(median(std::move(ratios))) / kMedianShare};
+}
+
+Explained::Explained(const PointView& points, const Neighborhoods& table, double noise, int freedom)
+    : points_(points),
+      table_(table),
+      noise_(noise),
+      scatter_(1.0 + kTolerance / std::sqrt(2.0 * freedom)) {}
+
+bool Explained::operator()(std::size_t row, double residual) const {
+  const double least = kLeastNoise * spacingAt(points_, table_, row);
+  return residual <= scatter_ * std::max(noise_, least);
+}
+
+}  // namespace segorient::detail

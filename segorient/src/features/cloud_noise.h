@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the segorient authors
+#pragma once
+
+#include <segorient/common/neighborhoods.h>
+#include <segorient/common/point_view.h>
+#include <segorient/features/local_normals.h>
+
+#include <cstddef>
+#include <vector>
+
+namespace segorient::detail {
+
+/// Surfaces of one size at some rows; see estimateNormals().
+struct Surfaces {
+  NormalEstimator estimator = NormalEstimator::AwASQuadratic;
+  std::vector<float> normals;    ///< 4 a row
+  std::vector<float> residuals;  ///< standard deviations of the neighbours
+
+  void fit(const PointView& points, const Neighborhoods& table, int k, int threads,
+           const std::vector<pcl::index_t>& rows);
+  /// Gives a row its normal.
+  void copyNormal(std::size_t row, float* all) const;
+};
+
+/// Noise of a cloud.
+struct CloudNoise {
+  double length = 0.0;       ///< standard deviation
+  double in_spacings = 0.0;  ///< the same over the local spacing
+};
+
+/// Some thousand rows spread evenly over a table.
+std::vector<pcl::index_t> sampleRows(std::size_t size);
+
+/// Medians over a sample: edges and creases, where surfaces do not fit, are the minority. 0 for
+/// fewer than 16 points.
+CloudNoise sampleNoise(const PointView& points, const Neighborhoods& neighborhoods, int threads);
+
+/// Least noise, in spacings: less cannot be told from what a quadratic leaves of a smooth surface.
+constexpr double kLeastNoise = 0.01;
+
+/// Whether noise explains what a surface leaves of a neighbourhood: its standard deviation, with
+/// the scatter of such estimates.
+class Explained {
+ public:
+  /// \param freedom points less coefficients
+  Explained(const PointView& points, const Neighborhoods& table, double noise, int freedom);
+
+  bool operator()(std::size_t row, double residual) const;
+
+ private:
+  const PointView& points_;
+  const Neighborhoods& table_;
+  double noise_;
+  double scatter_;
+};
+
+}  // namespace segorient::detail
