@@ -34,8 +34,8 @@ struct Cubics {
 };
 
 /// The surfaces of half of a register's points.
-inline void fitCubicPart(const Batch& batch, std::size_t half, std::size_t part, const Plane& plane,
-                         const Frame<Lanes>& frame, Cubics& result) {
+SEGORIENT_APART void fitCubicPart(const Batch& batch, std::size_t half, std::size_t part,
+                                  const Plane& plane, const Frame<Lanes>& frame, Cubics& result) {
   const Doubles zero{};
   const Doubles unit_length = 1.0 / widened(plane.size, part);
   const Doubles3 u = scaled(widened(frame.u, part), unit_length);

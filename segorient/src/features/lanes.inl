@@ -208,6 +208,35 @@ inline Lanes3 loadPoints(const float* const* p) {
 #endif
 }
 
+/// The inverse of loadPoints(), with a fourth value a point.
+inline void storePoints(float* const* p, const Lanes3& a, Lanes fourth) {
+#if SEGORIENT_LANES == 16
+  const auto x = reinterpret_cast<__m512>(a.x);
+  const auto y = reinterpret_cast<__m512>(a.y);
+  const auto z = reinterpret_cast<__m512>(a.z);
+  const auto w = reinterpret_cast<__m512>(fourth);
+  const __m512 xy = _mm512_maskz_unpacklo_ps(0xffff, x, y);
+  const __m512 xy_high = _mm512_maskz_unpackhi_ps(0xffff, x, y);
+  const __m512 zw = _mm512_maskz_unpacklo_ps(0xffff, z, w);
+  const __m512 zw_high = _mm512_maskz_unpackhi_ps(0xffff, z, w);
+  const __m512 points[4] = {_mm512_maskz_shuffle_ps(0xffff, xy, zw, 0x44),
+                            _mm512_maskz_shuffle_ps(0xffff, xy, zw, 0xee),
+                            _mm512_maskz_shuffle_ps(0xffff, xy_high, zw_high, 0x44),
+                            _mm512_maskz_shuffle_ps(0xffff, xy_high, zw_high, 0xee)};
+  for (int i = 0; i < 4; ++i) {
+    const auto v = reinterpret_cast<Lanes>(points[i]);
+    storeQuad(p[i], __builtin_shufflevector(v, v, 0, 1, 2, 3));
+    storeQuad(p[4 + i], __builtin_shufflevector(v, v, 4, 5, 6, 7));
+    storeQuad(p[8 + i], __builtin_shufflevector(v, v, 8, 9, 10, 11));
+    storeQuad(p[12 + i], __builtin_shufflevector(v, v, 12, 13, 14, 15));
+  }
+#else
+  for (std::size_t l = 0; l < kWidth; ++l) {
+    storeQuad(p[l], Quad{a.x[l], a.y[l], a.z[l], fourth[l]});
+  }
+#endif
+}
+
 template <typename V>
 inline V dot(const Vector3<V>& a, const Vector3<V>& b) {
   return a.x * b.x + a.y * b.y + a.z * b.z;

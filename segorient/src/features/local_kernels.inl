@@ -15,9 +15,12 @@
 
 inline void storeNormals(const LocalFitJob& job, const std::size_t* rows, std::size_t used,
                          const Lanes3& normal, Lanes curvature) {
-  for (std::size_t l = 0; l < used; ++l) {
-    storeQuad(job.normals + 4 * rows[l], Quad{normal.x[l], normal.y[l], normal.z[l], curvature[l]});
+  float* places[kWidth];
+  float unused[4];
+  for (std::size_t l = 0; l < kWidth; ++l) {
+    places[l] = l < used ? job.normals + 4 * rows[l] : unused;
   }
+  storePoints(places, normal, curvature);
 }
 
 /// Puts cubic surfaces in the place of the quadratic ones where neighbours determine them.
@@ -35,8 +38,8 @@ inline void takeCubics(const Cubics& cubics, const Batch& batch, std::size_t hal
 }
 
 /// Normals from the surfaces, and what depends on single points.
-inline Lanes3 surfaceNormals(const LocalFitJob& job, const Batch& batch, std::size_t half,
-                             std::size_t used, const Plane& plane, const Lanes3& guess) {
+SEGORIENT_APART Lanes3 surfaceNormals(const LocalFitJob& job, const Batch& batch, std::size_t half,
+                                      std::size_t used, const Plane& plane, const Lanes3& guess) {
   const std::size_t* rows = batch.rows + half * kWidth;
   const double* units = batch.unit + half * kWidth;
   const Frame<Lanes> frame = frameOf(guess);

@@ -23,6 +23,9 @@
 #pragma GCC diagnostic ignored "-Wpsabi"
 #endif
 
+// For what has registers enough only if it is compiled on its own.
+#define SEGORIENT_APART __attribute__((noinline))
+
 // Before a loop over an array that is to be in registers.
 #if defined(__clang__)
 #define SEGORIENT_UNROLL _Pragma("clang loop unroll(full)")

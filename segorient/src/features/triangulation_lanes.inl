@@ -131,8 +131,9 @@ inline Lanes3 fanArea(const FanOrder& order, int sorted, const Corner& corner) {
 /// Local centre triangulation. The fan's triangles, weighted by their areas, sum up to the vector
 /// area of the polygon through the neighbours, whatever the centre: only their angular order
 /// depends on it.
-inline void fanNormals(const LocalFitJob& job, const Batch& batch, const Plane (&planes)[2],
-                       SortingNetwork& network, float* keys, Lanes3 (&normals)[2]) {
+SEGORIENT_APART void fanNormals(const LocalFitJob& job, const Batch& batch,
+                                const Plane (&planes)[2], SortingNetwork& network, float* keys,
+                                Lanes3 (&normals)[2]) {
   const int count = batch.count < 4096 ? batch.count : 4096;
   const int sorted = count - batch.first;
   if (sorted == 0) return;  // no neighbours in any lane, and no plane
@@ -168,8 +169,8 @@ inline void fanNormals(const LocalFitJob& job, const Batch& batch, const Plane (
 /// inversion about the point its Delaunay neighbours become the vertices of the convex hull of all
 /// inverted neighbours, together with the origin where the point lies on the neighbours' hull. All
 /// points of a batch walk around their hulls in step (Jarvis), from the nearest neighbour on.
-inline void starNormals(const Batch& batch, const Plane (&planes)[2], float* inverted,
-                        Lanes3 (&normals)[2]) {
+SEGORIENT_APART void starNormals(const Batch& batch, const Plane (&planes)[2], float* inverted,
+                                 Lanes3 (&normals)[2]) {
   const Twice3 plane_normal = both(planes[0].normal, planes[1].normal);
   const Frame<Twice> frame = frameOf(plane_normal);
   const Twice unit_length = 1.0F / Twice{planes[0].size, planes[1].size};
