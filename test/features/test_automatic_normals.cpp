@@ -86,6 +86,17 @@ TEST(AutomaticNormals, CubicSurfacesWhereASmoothCloudHasNoNoise) {
   EXPECT_FALSE(automatic(torus(20000, 2, 0.05F * torusSpacing(20000))).report.analytic);
 }
 
+// Where points are few for how much a smooth surface bends, quadratic surfaces are as good as it
+// gets; an edge of the same residuals is left to triangulations.
+TEST(AutomaticNormals, BendsAreNoEdges) {
+  const Sample smooth = torus(400, 7);
+  const Automatic bends = automatic(smooth);
+  EXPECT_LT(bends.report.at_edges, 100U);
+  EXPECT_LT(rmsDegrees(smooth, bends.normals),
+            1.1 * rmsOf(smooth, NormalEstimator::AwASQuadratic, 10));
+  EXPECT_GT(automatic(cube(400, 7)).report.at_edges, 150U);
+}
+
 // Across a noisy edge cubic surfaces bend where small quadratic ones smooth and local
 // triangulations are noisy. Without edges nothing is to be gained.
 TEST(AutomaticNormals, CubicSurfacesAtNoisyEdges) {

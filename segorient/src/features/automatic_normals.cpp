@@ -26,7 +26,7 @@ constexpr double kCleanNoise = 0.03;
 constexpr double kTriangulationNoise = 0.1;
 // Smallest neighbourhood beyond that.
 constexpr int kSmallestNoisy = 16;
-constexpr int kTriangulationNeighbors = 12;
+constexpr int kTriangulationNeighbors = 10;
 // Up to this noise cubic surfaces, which can bend at an edge, beat quadratic ones there.
 constexpr double kCubicNoise = 0.35;
 // Neighbourhoods of cubic surfaces, per unit of noise over spacing: they have nearly twice the
@@ -37,6 +37,9 @@ constexpr double kCubicPerNoise = 150.0;
 // most points look so: what fits nothing on scans without edges are stray points, and they bend
 // cubic surfaces most.
 constexpr double kBetter = 0.9;
+// Without noise, a quadratic surface that leaves less than this share of what a plane leaves has
+// found a bend, even a sharp one: of an edge through the middle it leaves a quarter.
+constexpr double kBend = 0.2;
 // On surfaces without noise that a formula makes, cubic surfaces of a few neighbours leave less
 // than half of what quadratic ones do. Meshes and scans have such places, but nowhere near so many.
 constexpr int kCubicNeighbors = 12;
@@ -71,9 +74,9 @@ std::vector<int> sizesFor(double noise, int available) {
 }
 
 // Standard deviation of the nearest neighbours, the point itself among them, from their plane.
-double planeResidual(const PointView& points, const Neighborhoods& table, std::size_t row,
+double planeResidual(const PointView& points, const Neighborhoods& table, std::size_t row, int k,
                      const float* normal) {
-  const int count = std::min(table.count(row), kPlaneNeighbors + 1);
+  const int count = std::min(table.count(row), k + 1);
   const float* origin = points[row];
   double sum = 0;
   double squares = 0;
@@ -118,7 +121,10 @@ class Estimation {
 
   AutomaticNormalReport run() {
     takeQuadratics();
-    if (in_spacings_ < kCleanNoise && isAnalytic()) takeCubics();
+    if (in_spacings_ < kCleanNoise) {
+      keepEdges();
+      if (isAnalytic()) takeCubics();
+    }
     report_.at_edges = open_.size();
     report_.triangulated = in_spacings_ < kTriangulationNoise;
     if (report_.triangulated) {
@@ -159,6 +165,25 @@ class Estimation {
       report_.surfaces.emplace_back(k, before - open_.size());
       report_.edge_k = k;
     }
+  }
+
+  /// Leaves open only what looks like an edge: where points are few for how much the surface bends,
+  /// the quadratic surfaces are the best there is.
+  void keepEdges() {
+    const int k = report_.edge_k;
+    LocalNormalOptions options;
+    options.k = k;
+    options.threads = threads_;
+    std::vector<float> planes(4 * table_.size());
+    estimateNormals(points_, points_, table_, options, planes.data(), nullptr, &open_);
+    std::vector<pcl::index_t> edges;
+    for (const pcl::index_t r : open_) {
+      const auto row = static_cast<std::size_t>(r);
+      const double plane = planeResidual(points_, table_, row, k, &planes[4 * row]);
+      if (!(static_cast<double>(quadratics_.residuals[row]) < kBend * plane)) edges.push_back(r);
+    }
+    report_.surfaces.back().second += open_.size() - edges.size();
+    open_.swap(edges);
   }
 
   /// Whether most of some rows are much nearer to a cubic surface than to a quadratic one.
@@ -206,7 +231,7 @@ class Estimation {
     estimateNormals(points_, points_, table_, options, normals_, nullptr, &open_);
     const std::size_t before = open_.size();
     keepUnexplained(kPlaneNeighbors + 1 - 3, [&](std::size_t row) {
-      return planeResidual(points_, table_, row, normals_ + 4 * row);
+      return planeResidual(points_, table_, row, kPlaneNeighbors, normals_ + 4 * row);
     });
     report_.planes = before - open_.size();
   }
