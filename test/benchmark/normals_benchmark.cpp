@@ -380,11 +380,13 @@ void timing(std::size_t count) {
   for (auto& s : seconds) std::sort(s.begin(), s.end());
   // Each step beside the search that made its table.
   std::size_t search_of = 0;
+  std::size_t pcl = 0;
+  while (std::string(steps[pcl].name) != "PCL's plane step") ++pcl;
   for (std::size_t s = 0; s < std::size(steps); ++s) {
     if (std::string(steps[s].name).rfind("own search", 0) == 0) search_of = s;
     std::printf("%-26s %7.1f ns a point  %5.2f of the search  %5.2f of PCL's step\n", steps[s].name,
                 1e9 * seconds[s][2] / static_cast<double>(count),
-                seconds[s][2] / seconds[search_of][2], seconds[s][2] / seconds[6][2]);
+                seconds[s][2] / seconds[search_of][2], seconds[s][2] / seconds[pcl][2]);
   }
 }
 

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <limits>
 #include <random>
 #include <vector>
@@ -47,6 +48,16 @@ double bestSingle(const Sample& sample) {
   return best;
 }
 
+Sample noisyCube(std::size_t count, float noise) {
+  Sample sample = cube(count, 2);
+  std::mt19937 generator(3);
+  std::normal_distribution<float> offset(0.F, noise * std::sqrt(24.F / static_cast<float>(count)));
+  for (auto& p : sample.points) {
+    p.getVector3fMap() += Eigen::Vector3f::NullaryExpr([&] { return offset(generator); });
+  }
+  return sample;
+}
+
 // Offsets of a point from a fitted surface are noise across it only: the estimate is that of the
 // normal component, over the distance to the nearest points.
 TEST(NoiseEstimate, GrowsWithTheNoise) {
@@ -80,6 +91,7 @@ TEST(AutomaticNormals, CubicSurfacesWhereASmoothCloudHasNoNoise) {
   const Automatic cubic = automatic(smooth);
   EXPECT_TRUE(cubic.report.analytic);
   EXPECT_NE(cubic.report.text().find("cubic ones of 12"), std::string::npos);
+  EXPECT_EQ(cubic.report.surfaces[0].second + cubic.report.at_edges, 20000U);
   EXPECT_LT(rmsDegrees(smooth, cubic.normals),
             0.5 * rmsOf(smooth, NormalEstimator::AwASQuadratic, 10));
   EXPECT_FALSE(automatic(cube(10000, 2)).report.analytic);
@@ -100,11 +112,7 @@ TEST(AutomaticNormals, BendsAreNoEdges) {
 // Across a noisy edge cubic surfaces bend where small quadratic ones smooth and local
 // triangulations are noisy. Without edges nothing is to be gained.
 TEST(AutomaticNormals, CubicSurfacesAtNoisyEdges) {
-  Sample edges = cube(20000, 2);
-  std::mt19937 generator(3);
-  std::normal_distribution<float> noise(0.F, 0.13F * std::sqrt(24.F / 20000));
-  for (auto& p : edges.points)
-    p.getVector3fMap() += Eigen::Vector3f::NullaryExpr([&] { return noise(generator); });
+  const Sample edges = noisyCube(20000, 0.13F);
   const Automatic result = automatic(edges);
   EXPECT_TRUE(result.report.cubic);
   EXPECT_LT(rmsDegrees(edges, result.normals), 0.9 * bestSingle(edges));
@@ -152,14 +160,39 @@ TEST(AutomaticNormals, ReportsWhatWasChosen) {
   EXPECT_NE(noisy.report.text().find("64 neighbours"), std::string::npos);
 }
 
-TEST(AutomaticNormals, SameForAnyThreads) {
-  const Sample sample = torus(5000, 4, 0.2F * torusSpacing(5000));
-  const Neighborhoods table = neighborsOf(sample.view(), 40);
-  std::vector<float> one(4 * 5000);
-  std::vector<float> four(4 * 5000);
-  estimateNormalsAutomatically(sample.view(), table, 1, one.data());
-  estimateNormalsAutomatically(sample.view(), table, 4, four.data());
-  EXPECT_EQ(one, four);
+// Every choice depends on residuals.
+TEST(AutomaticNormals, SameForAnyThreadsAndInstructionSet) {
+  for (const Sample& sample : {torus(5000, 4, 0.2F * torusSpacing(5000)), torus(5000, 4),
+                               torus(400, 7), cube(5000, 4), noisyCube(5000, 0.13F)}) {
+    const Neighborhoods table = neighborsOf(sample.view(), 40);
+    std::vector<float> one(4 * sample.normals.size());
+    estimateNormalsAutomatically(sample.view(), table, 1, one.data());
+    std::vector<float> other(one.size());
+    estimateNormalsAutomatically(sample.view(), table, 4, other.data());
+    EXPECT_EQ(one, other);
+    for (const char* instruction_set : {"avx2", "sse2"}) {
+      setenv("SEGORIENT_SIMD", instruction_set, 1);
+      estimateNormalsAutomatically(sample.view(), table, 0, other.data());
+      unsetenv("SEGORIENT_SIMD");
+      EXPECT_EQ(one, other) << instruction_set;
+    }
+  }
+}
+
+// The nearest six of scan lines are on one line, which has no plane.
+TEST(AutomaticNormals, ScanLines) {
+  Sample lines;
+  for (int i = 0; i < 20; ++i) {
+    for (int j = 0; j < 80; ++j) {
+      lines.add({static_cast<float>(j), 4.F * static_cast<float>(i), 0.F},
+                Eigen::Vector3f::UnitZ());
+    }
+  }
+  const Automatic result = automatic(lines);
+  EXPECT_EQ(result.report.undefined, 0U);
+  for (std::size_t i = 0; i < lines.normals.size(); ++i) {
+    ASSERT_NEAR(std::abs(result.normals[4 * i + 2]), 1.F, 1e-5F) << i;
+  }
 }
 
 TEST(AutomaticNormals, SeekMoreNeighborsWhereTheNoiseAsks) {
@@ -169,8 +202,9 @@ TEST(AutomaticNormals, SeekMoreNeighborsWhereTheNoiseAsks) {
     index.build(sample.view(), nullptr, {});
     std::vector<float> found(4 * 6000);
     const AutomaticNormalReport report = estimateNormalsAutomatically(
-        sample.view(), index, neighborsOf(sample.view(), 12), 0, found.data());
+        sample.view(), index, neighborsOf(sample.view(), 8), 0, found.data());
     EXPECT_EQ(report.surfaces[0].first, noise > 0.F ? kMostAutomaticNeighbors : 10);
+    EXPECT_EQ(report.analytic, noise == 0.F);
     EXPECT_EQ(found, automatic(sample).normals);
   }
 }

@@ -127,6 +127,29 @@ TEST_P(AnyEstimator, SameBitsForAnyThreadsAndInstructionSet) {
   EXPECT_EQ(normalsOf(sample.view(), table, o), reference);
 }
 
+// A row may have the point itself, and copies of it, in any place.
+TEST_P(AnyEstimator, CopiesOfThePointWhereverTheyStand) {
+  const Sample sample = torus(2000, 5, 0.2F * torusSpacing(2000));
+  const Neighborhoods table = neighborsOf(sample.view(), 14);
+  Neighborhoods first;
+  Neighborhoods last;
+  for (Neighborhoods* copies : {&first, &last}) copies->reset(table.size(), 17, false);
+  for (std::size_t i = 0; i < table.size(); ++i) {
+    std::fill_n(first.mutableIndices(i), 3, static_cast<pcl::index_t>(i));
+    std::copy_n(table.indices(i) + 1, 14, first.mutableIndices(i) + 3);
+    std::copy_n(table.indices(i) + 1, 14, last.mutableIndices(i));
+    std::fill_n(last.mutableIndices(i) + 14, 3, static_cast<pcl::index_t>(i));
+    first.setCount(i, 17);
+    last.setCount(i, 17);
+  }
+  const std::vector<float> expected = normalsOf(sample.view(), first, options());
+  const std::vector<float> normals = normalsOf(sample.view(), last, options());
+  for (std::size_t i = 0; i < table.size(); ++i) {
+    const Eigen::Map<const Eigen::Vector3f> n(&expected[4 * i]);
+    EXPECT_LT(angleBetween(n, &normals[4 * i]), 1e-4) << i;
+  }
+}
+
 // As a search surface of its own the same cloud gives the same normals.
 TEST_P(AnyEstimator, TheSameCloudAsItsOwnSurface) {
   const Sample sample = torus(2000, 5);

@@ -26,12 +26,15 @@ constexpr double kCleanNoise = 0.03;
 constexpr double kTriangulationNoise = 0.1;
 // Smallest neighbourhood beyond that.
 constexpr int kSmallestNoisy = 16;
+// The paper's number for clouds without noise.
 constexpr int kTriangulationNeighbors = 10;
 // Up to this noise cubic surfaces, which can bend at an edge, beat quadratic ones there.
 constexpr double kCubicNoise = 0.35;
 // Neighbourhoods of cubic surfaces, per unit of noise over spacing: they have nearly twice the
 // coefficients.
 constexpr double kCubicPerNoise = 150.0;
+// Points for each coefficient as with the smallest quadratic surfaces of noisy clouds.
+constexpr int kSmallestCubic = 24;
 // A cubic surface is the better one where it leaves so much less than a quadratic one does, in
 // standard deviations: noise alone makes one point in eight look so (F test). They are taken where
 // most points look so: what fits nothing on scans without edges are stray points, and they bend
@@ -73,7 +76,8 @@ std::vector<int> sizesFor(double noise, int available) {
   return sizes;
 }
 
-// Standard deviation of the nearest neighbours, the point itself among them, from their plane.
+// Standard deviation of the nearest neighbours, the point itself among them, from their plane;
+// infinite where they have none.
 double planeResidual(const PointView& points, const Neighborhoods& table, std::size_t row, int k,
                      const float* normal) {
   const int count = std::min(table.count(row), k + 1);
@@ -90,15 +94,15 @@ double planeResidual(const PointView& points, const Neighborhoods& table, std::s
     sum += offset;
     squares += offset * offset;
   }
-  if (count < 4) return std::numeric_limits<double>::infinity();
+  if (count < 4 || !isFinite(normal)) return std::numeric_limits<double>::infinity();
   return std::sqrt(std::max(0.0, squares - sum * sum / count) / (count - 3));
 }
 
 /// The neighbourhood of cubic surfaces for so much noise, or 0.
 int cubicSize(double noise, int available) {
-  if (noise < kTriangulationNoise || noise > kCubicNoise) return 0;
+  if (noise > kCubicNoise) return 0;
   for (const int k : kSizes) {
-    if (k >= 24 && k >= kCubicPerNoise * noise) return k <= available ? k : 0;
+    if (k >= kSmallestCubic && k >= kCubicPerNoise * noise) return k <= available ? k : 0;
   }
   return 0;
 }
@@ -186,13 +190,13 @@ class Estimation {
     open_.swap(edges);
   }
 
-  /// Whether most of some rows are much nearer to a cubic surface than to a quadratic one.
+  /// Whether cubic surfaces leave less than a share of what quadratic ones do of most rows.
   bool areCubic(const std::vector<pcl::index_t>& rows, const Surfaces& cubics,
-                const Surfaces& quadratics, double much) const {
+                const Surfaces& quadratics, double share) const {
     const auto nearer = std::count_if(rows.begin(), rows.end(), [&](pcl::index_t r) {
       const auto row = static_cast<std::size_t>(r);
       return static_cast<double>(cubics.residuals[row]) <
-             much * static_cast<double>(quadratics.residuals[row]);
+             share * static_cast<double>(quadratics.residuals[row]);
     });
     return 2 * static_cast<std::size_t>(nearer) > rows.size();
   }
@@ -216,11 +220,17 @@ class Estimation {
     cubics.estimator = NormalEstimator::AwASCubic;
     cubics.fit(points_, table_, kCubicNeighbors, threads_, all);
     report_.analytic = true;
+    const auto nearer = [&](std::size_t i) {
+      return cubics.residuals[i] < quadratics_.residuals[i];
+    };
     for (std::size_t i = 0; i < all.size(); ++i) {
-      if (cubics.residuals[i] < quadratics_.residuals[i]) cubics.copyNormal(i, normals_);
+      if (nearer(i)) cubics.copyNormal(i, normals_);
     }
-    keepUnexplained(kCubicNeighbors + 1 - 10,
-                    [&](std::size_t row) { return cubics.residuals[row]; });
+    const std::size_t before = open_.size();
+    keepUnexplained(kCubicNeighbors + 1 - 10, [&](std::size_t i) {
+      return nearer(i) ? cubics.residuals[i] : std::numeric_limits<float>::infinity();
+    });
+    report_.surfaces.back().second += before - open_.size();
   }
 
   /// Planes where these fit.
@@ -289,7 +299,7 @@ AutomaticNormalReport estimateNormalsAutomatically(const PointView& points,
   const CloudNoise noise = detail::sampleNoise(points, neighborhoods, threads);
   const std::vector<int> sizes =
       sizesFor(std::max(detail::kLeastNoise, noise.in_spacings), kMostAutomaticNeighbors);
-  const int wanted = std::max(sizes.front(), kTriangulationNeighbors);
+  const int wanted = std::max({sizes.front(), kTriangulationNeighbors, kCubicNeighbors});
   const bool all = static_cast<std::size_t>(neighborhoods.k()) >= points.size;
   if (all || neighborhoods.k() > wanted) {
     return Estimation(points, neighborhoods, noise, threads, normals).run();

@@ -60,7 +60,7 @@ inline int numberBits(int neighbors) {
 struct FanOrder {
   float* keys;          ///< of entry j at [j * kBatchRows]: the number of the neighbour in the last
                         ///< bits of what is sorted
-  Mask neighbors{};     ///< how many there are; keys of no neighbour come last
+  Mask counts{};        ///< of neighbours; keys of what is none come last
   Mask number_masks{};  ///< the bits of a key that are a number
 };
 
@@ -70,10 +70,10 @@ inline FanOrder fanKeys(const Batch& batch, std::size_t half, int count, const P
   FanOrder order;
   order.keys = keys + half * kWidth;
   const Frame<Lanes> frame = frameOf(plane.normal);
-  // The point itself comes first where the row has it, and is not one of those around the centre.
-  const Lanes own =
-      batch.first == 1 ? all(1.0F) : select(isNeighbor(batch.offset(0, half)), Lanes{}, all(1.0F));
-  const Lanes3 center = scaled(plane.sum, 1.0F / larger(batch.countsOf(half) - own, all(1.0F)));
+  Mask around{};
+  for (int j = batch.first; j < batch.count; ++j) around -= isNeighbor(batch.offset(j, half));
+  const Lanes3 center =
+      scaled(plane.sum, 1.0F / larger(__builtin_convertvector(around, Lanes), all(1.0F)));
   const Lanes center_u = dot(center, frame.u);
   const Lanes center_v = dot(center, frame.v);
 
@@ -96,7 +96,7 @@ inline FanOrder fanKeys(const Batch& batch, std::size_t half, int count, const P
     const Lanes slope = y / select(size > 0.0F, size, all(1.0F));
     const Lanes angle = select(x < 0.0F, 2.0F - slope, select(y < 0.0F, 4.0F + slope, slope));
     const Mask present = isNeighbor(d);
-    order.neighbors -= present;
+    order.counts -= present;
     const Lanes key = select(present, 1.0F + 0.125F * angle, all(1.75F));
     // What is no neighbour goes last and is numbered 0, which every row has: rows may be shorter.
     const Mask numbered = (reinterpret_cast<Mask>(key) & ~order.number_masks) | (present & j);
@@ -120,7 +120,7 @@ inline Lanes3 fanArea(const FanOrder& order, int sorted, const Corner& corner) {
   Lanes3 previous = start;
   Lanes3 area{};
   for (int j = 1; j <= sorted; ++j) {
-    const Mask inside = order.neighbors > j;
+    const Mask inside = order.counts > j;
     const Lanes3 next = j < sorted ? select(inside, cornerAt(j), start) : start;
     area = sum(area, cross(previous, next));
     previous = next;

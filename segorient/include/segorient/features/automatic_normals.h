@@ -18,10 +18,10 @@ namespace segorient {
 struct AutomaticNormalReport {
   float noise = 0.F;  ///< standard deviation of the noise over the local spacing
   /// Neighbourhoods of quadratic surfaces that were tried, largest first, and how many points they
-  /// fit.
+  /// were taken for; with the last one also bends, and points that only a cubic surface fits.
   std::vector<std::pair<int, std::size_t>> surfaces;
   bool analytic = false;      ///< so smooth that cubic surfaces are nearer at most points
-  std::size_t at_edges = 0;   ///< points where none of them fits
+  std::size_t at_edges = 0;   ///< the points left
   std::size_t planes = 0;     ///< of these, those that a plane of six neighbours does fit
   int edge_k = 0;             ///< neighbourhood used at the others
   bool triangulated = false;  ///< by local Delaunay triangulation, ...
@@ -38,10 +38,11 @@ constexpr int kMostAutomaticNeighbors = 64;
 /// Normals without a choice to make. The noise is estimated from the residuals of quadratic
 /// surfaces; every point then gets the largest neighbourhood whose residual the noise explains:
 /// large ones on noisy scans, small ones where the surface bends, cubic ones if without noise they
-/// are nearer to most points. Where not even the smallest is
-/// explained there is an edge; there a clean cloud gets planes of six neighbours where these are
-/// all on one side of it, else local Delaunay triangulations, which smooth least, and a noisy one
-/// cubic surfaces if these fit most such points better, else the smallest quadratic ones.
+/// are nearer to most points. Where not even the smallest is explained there is an edge, unless
+/// without noise the surface follows the neighbours so much better than a plane that it is a bend
+/// between few points. At edges a clean cloud gets planes of six neighbours where these are all on
+/// one side, else local Delaunay triangulations, which smooth least, and a noisy one cubic surfaces
+/// if these fit most such points better, else the smallest quadratic ones.
 ///
 /// \param points distinct points \param neighborhoods of them, the wider the table the better up to
 ///        kMostAutomaticNeighbors; with a narrow one noisy clouds are served less well
