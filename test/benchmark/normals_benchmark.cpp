@@ -98,11 +98,15 @@ Truth compacted(const Truth& truth) {
   return result;
 }
 
-Neighborhoods neighbors(const PointView& points, int k, int threads) {
-  search::MedianHashIndex index;
+void build(const PointView& points, int threads, search::MedianHashIndex& index) {
   search::MedianHashIndex::Options options;
   options.threads = threads;
   index.build(points, nullptr, options);
+}
+
+Neighborhoods neighbors(const PointView& points, int k, int threads) {
+  search::MedianHashIndex index;
+  build(points, threads, index);
   Neighborhoods table;
   index.nearestKAll(k + 1, table);
   return table;
@@ -177,6 +181,14 @@ std::vector<float> estimated(const Truth& truth, const Neighborhoods& table,
   return normals;
 }
 
+std::vector<std::uint8_t> regularOf(const Segmentation& segmentation) {
+  std::vector<std::uint8_t> regular;
+  for (const Segment& s : segmentation.segments) {
+    regular.push_back(s.kind == SegmentKind::Regular);
+  }
+  return regular;
+}
+
 std::vector<float> recomputed(const Truth& truth, const Neighborhoods& table,
                               std::vector<float> normals, RecomputationRule rule) {
   SegmentationOptions segmentation;
@@ -188,9 +200,7 @@ std::vector<float> recomputed(const Truth& truth, const Neighborhoods& table,
     const Segmentation segments =
         segmentByNormals(truth.view(), {normals.data(), 4, truth.size()}, table, segmentation);
     std::vector<std::int32_t> labels = segments.labels;
-    std::vector<std::uint8_t> regular;
-    for (const Segment& s : segments.segments) regular.push_back(s.kind == SegmentKind::Regular);
-    recomputeNormals(truth.view(), table, regular, options, labels, normals);
+    recomputeNormals(truth.view(), table, regularOf(segments), options, labels, normals);
   }
   return normals;
 }
@@ -286,14 +296,12 @@ void accuracy(const std::string& name, const Truth& raw) {
 class Recomputation {
  public:
   Recomputation(const Truth& truth, int k) : truth_(truth), k_(k) {
-    search::MedianHashIndex::Options options;
-    options.threads = 1;
-    index_.build(truth.view(), nullptr, options);
+    build(truth.view(), 1, index_);
     search();
     first_normals_ = estimated(truth, table_, NormalEstimator::Plane, 10);
     const Segmentation segments = segmentByNormals(
         truth.view(), {first_normals_.data(), 4, truth.size()}, table_, SegmentationOptions());
-    for (const Segment& s : segments.segments) regular_.push_back(s.kind == SegmentKind::Regular);
+    regular_ = regularOf(segments);
     first_labels_ = segments.labels;
   }
   void search() { index_.nearestKAll(k_ + 1, table_); }
@@ -324,9 +332,7 @@ void timing(std::size_t count) {
   constexpr int kNeighbors = 10;
   const pcl::PointCloud<pcl::PointXYZ>::Ptr cloud = pclCloud(truth);
   search::MedianHashIndex index;
-  search::MedianHashIndex::Options options;
-  options.threads = 1;
-  index.build(truth.view(), nullptr, options);
+  build(truth.view(), 1, index);
   Neighborhoods table;
   index.nearestKAll(kNeighbors + 1, table);
   std::vector<float> normals(4 * truth.size());

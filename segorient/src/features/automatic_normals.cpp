@@ -7,6 +7,7 @@
 #include <cmath>
 #include <iomanip>
 #include <limits>
+#include <numeric>
 #include <sstream>
 
 #include "cloud_noise.h"
@@ -107,6 +108,12 @@ int cubicSize(double noise, int available) {
   return 0;
 }
 
+std::vector<pcl::index_t> allRows(std::size_t size) {
+  std::vector<pcl::index_t> rows(size);
+  std::iota(rows.begin(), rows.end(), 0);
+  return rows;
+}
+
 /// The estimation of one cloud, step by step: each leaves fewer points open.
 class Estimation {
  public:
@@ -118,8 +125,7 @@ class Estimation {
         in_spacings_(std::max(detail::kLeastNoise, noise.in_spacings)),
         threads_(threads),
         normals_(normals),
-        open_(table.size()) {
-    for (std::size_t i = 0; i < open_.size(); ++i) open_[i] = static_cast<pcl::index_t>(i);
+        open_(allRows(table.size())) {
     report_.noise = static_cast<float>(noise.in_spacings);
   }
 
@@ -146,16 +152,23 @@ class Estimation {
  private:
   int available() const { return table_.k() - 1; }
 
-  /// Leaves open what the residuals are not explained of.
+  /// Closes the points that a condition holds for. \return how many
+  template <typename Condition>
+  std::size_t close(const Condition& condition) {
+    const auto left = std::remove_if(open_.begin(), open_.end(), [&](pcl::index_t r) {
+      return condition(static_cast<std::size_t>(r));
+    });
+    const auto closed = static_cast<std::size_t>(open_.end() - left);
+    open_.erase(left, open_.end());
+    return closed;
+  }
+
+  /// Closes the points whose residuals noise explains. \return how many
   template <typename Residual>
-  void keepUnexplained(int freedom, const Residual& residual) {
+  std::size_t closeExplained(int freedom, const Residual& residual) {
     const Explained explained(points_, table_, noise_, freedom);
-    std::vector<pcl::index_t> left;
-    for (const pcl::index_t r : open_) {
-      const auto row = static_cast<std::size_t>(r);
-      if (!explained(row, static_cast<double>(residual(row)))) left.push_back(r);
-    }
-    open_.swap(left);
+    return close(
+        [&](std::size_t row) { return explained(row, static_cast<double>(residual(row))); });
   }
 
   void takeQuadratics() {
@@ -164,9 +177,8 @@ class Estimation {
       for (const pcl::index_t o : open_) {
         quadratics_.copyNormal(static_cast<std::size_t>(o), normals_);
       }
-      const std::size_t before = open_.size();
-      keepUnexplained(k + 1 - 6, [&](std::size_t row) { return quadratics_.residuals[row]; });
-      report_.surfaces.emplace_back(k, before - open_.size());
+      report_.surfaces.emplace_back(
+          k, closeExplained(k + 1 - 6, [&](std::size_t i) { return quadratics_.residuals[i]; }));
       report_.edge_k = k;
     }
   }
@@ -175,28 +187,20 @@ class Estimation {
   /// the quadratic surfaces are the best there is.
   void keepEdges() {
     const int k = report_.edge_k;
-    LocalNormalOptions options;
-    options.k = k;
-    options.threads = threads_;
-    std::vector<float> planes(4 * table_.size());
-    estimateNormals(points_, points_, table_, options, planes.data(), nullptr, &open_);
-    std::vector<pcl::index_t> edges;
-    for (const pcl::index_t r : open_) {
-      const auto row = static_cast<std::size_t>(r);
-      const double plane = planeResidual(points_, table_, row, k, &planes[4 * row]);
-      if (!(static_cast<double>(quadratics_.residuals[row]) < kBend * plane)) edges.push_back(r);
-    }
-    report_.surfaces.back().second += open_.size() - edges.size();
-    open_.swap(edges);
+    Surfaces planes(NormalEstimator::Plane);
+    planes.fit(points_, table_, k, threads_, open_);
+    report_.surfaces.back().second += close([&](std::size_t row) {
+      const double plane = planeResidual(points_, table_, row, k, &planes.normals[4 * row]);
+      return static_cast<double>(quadratics_.residuals[row]) < kBend * plane;
+    });
   }
 
   /// Whether cubic surfaces leave less than a share of what quadratic ones do of most rows.
-  bool areCubic(const std::vector<pcl::index_t>& rows, const Surfaces& cubics,
-                const Surfaces& quadratics, double share) const {
+  bool areCubic(const std::vector<pcl::index_t>& rows, const Surfaces& cubics, double share) const {
     const auto nearer = std::count_if(rows.begin(), rows.end(), [&](pcl::index_t r) {
       const auto row = static_cast<std::size_t>(r);
       return static_cast<double>(cubics.residuals[row]) <
-             share * static_cast<double>(quadratics.residuals[row]);
+             share * static_cast<double>(quadratics_.residuals[row]);
     });
     return 2 * static_cast<std::size_t>(nearer) > rows.size();
   }
@@ -206,31 +210,25 @@ class Estimation {
   bool isAnalytic() {
     if (available() < kCubicNeighbors) return false;
     const std::vector<pcl::index_t> rows = detail::sampleRows(table_.size());
-    Surfaces cubics;
-    cubics.estimator = NormalEstimator::AwASCubic;
+    Surfaces cubics(NormalEstimator::AwASCubic);
     cubics.fit(points_, table_, kCubicNeighbors, threads_, rows);
-    return areCubic(rows, cubics, quadratics_, kNextTerm);
+    return areCubic(rows, cubics, kNextTerm);
   }
 
   /// Cubic surfaces wherever they leave less than the quadratic ones, and where only they fit.
   void takeCubics() {
-    std::vector<pcl::index_t> all(table_.size());
-    for (std::size_t i = 0; i < all.size(); ++i) all[i] = static_cast<pcl::index_t>(i);
-    Surfaces cubics;
-    cubics.estimator = NormalEstimator::AwASCubic;
-    cubics.fit(points_, table_, kCubicNeighbors, threads_, all);
+    Surfaces cubics(NormalEstimator::AwASCubic);
+    cubics.fit(points_, table_, kCubicNeighbors, threads_, allRows(table_.size()));
     report_.analytic = true;
     const auto nearer = [&](std::size_t i) {
       return cubics.residuals[i] < quadratics_.residuals[i];
     };
-    for (std::size_t i = 0; i < all.size(); ++i) {
+    for (std::size_t i = 0; i < table_.size(); ++i) {
       if (nearer(i)) cubics.copyNormal(i, normals_);
     }
-    const std::size_t before = open_.size();
-    keepUnexplained(kCubicNeighbors + 1 - 10, [&](std::size_t i) {
+    report_.surfaces.back().second += closeExplained(kCubicNeighbors + 1 - 10, [&](std::size_t i) {
       return nearer(i) ? cubics.residuals[i] : std::numeric_limits<float>::infinity();
     });
-    report_.surfaces.back().second += before - open_.size();
   }
 
   /// Planes where these fit.
@@ -239,11 +237,9 @@ class Estimation {
     options.k = kPlaneNeighbors;
     options.threads = threads_;
     estimateNormals(points_, points_, table_, options, normals_, nullptr, &open_);
-    const std::size_t before = open_.size();
-    keepUnexplained(kPlaneNeighbors + 1 - 3, [&](std::size_t row) {
+    report_.planes = closeExplained(kPlaneNeighbors + 1 - 3, [&](std::size_t row) {
       return planeResidual(points_, table_, row, kPlaneNeighbors, normals_ + 4 * row);
     });
-    report_.planes = before - open_.size();
   }
 
   void triangulate() {
@@ -258,11 +254,10 @@ class Estimation {
   void takeCubicsAtEdges() {
     const int k = cubicSize(in_spacings_, available());
     if (k == 0) return;
-    Surfaces cubics;
-    cubics.estimator = NormalEstimator::AwASCubic;
+    Surfaces cubics(NormalEstimator::AwASCubic);
     quadratics_.fit(points_, table_, k, threads_, open_);
     cubics.fit(points_, table_, k, threads_, open_);
-    if (!areCubic(open_, cubics, quadratics_, kBetter)) return;
+    if (!areCubic(open_, cubics, kBetter)) return;
     for (const pcl::index_t o : open_) cubics.copyNormal(static_cast<std::size_t>(o), normals_);
     report_.cubic = true;
     report_.edge_k = k;

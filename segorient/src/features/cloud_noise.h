@@ -2,6 +2,7 @@
 // Copyright (c) 2026, the segorient authors
 #pragma once
 
+#include <segorient/common/fast_vector.h>
 #include <segorient/common/neighborhoods.h>
 #include <segorient/common/point_view.h>
 #include <segorient/features/local_normals.h>
@@ -13,10 +14,12 @@ namespace segorient::detail {
 
 /// Surfaces of one size at some rows; see estimateNormals().
 struct Surfaces {
-  NormalEstimator estimator = NormalEstimator::AwASQuadratic;
-  std::vector<float> normals;    ///< 4 a row
-  std::vector<float> residuals;  ///< standard deviations of the neighbours
+  NormalEstimator estimator;
+  // Of a cloud's many rows perhaps a few: the others' memory is never touched.
+  FastVector<float> normals;    ///< 4 a row
+  FastVector<float> residuals;  ///< standard deviations of the neighbours
 
+  explicit Surfaces(NormalEstimator e = NormalEstimator::AwASQuadratic) : estimator(e) {}
   void fit(const PointView& points, const Neighborhoods& table, int k, int threads,
            const std::vector<pcl::index_t>& rows);
   /// Gives a row its normal.

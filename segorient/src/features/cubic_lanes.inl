@@ -73,9 +73,7 @@ SEGORIENT_APART void fitCubicPart(const Batch& batch, std::size_t half, std::siz
       }
     }
   }
-  float counts[kWidth];
-  store(counts, batch.countsOf(half));
-  const Doubles count = widened(counts + part * kDoubles);
+  const Doubles count = widened(batch.countsOf(half), part);
   sums[0][0] = count;
   constexpr int kDegree[10] = {0, 1, 1, 2, 2, 2, 3, 3, 3, 3};
   constexpr int kPower[10] = {0, 0, 1, 0, 1, 2, 0, 1, 2, 3};  // of y

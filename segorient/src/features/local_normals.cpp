@@ -4,6 +4,7 @@
 #include <segorient/common/threads.h>
 #include <segorient/features/local_normals.h>
 
+#include "../common/kernel_macros.h"
 #include "local_fit_job.h"
 #include "surface_fit.h"
 
@@ -23,16 +24,6 @@
 #pragma GCC diagnostic ignored "-Wpsabi"
 #endif
 
-// For what has registers enough only if it is compiled on its own.
-#define SEGORIENT_APART __attribute__((noinline))
-
-// Before a loop over an array that is to be in registers.
-#if defined(__clang__)
-#define SEGORIENT_UNROLL _Pragma("clang loop unroll(full)")
-#else
-#define SEGORIENT_UNROLL _Pragma("GCC unroll 16")
-#endif
-
 namespace segorient {
 namespace detail {
 
@@ -45,7 +36,7 @@ namespace {
 }  // namespace portable
 
 #if defined(__x86_64__)
-#define SEGORIENT_HAS_AVX2_KERNELS
+#define SEGORIENT_X86_KERNELS
 #if defined(__clang__)
 #pragma clang attribute push(__attribute__((target("avx2"))), apply_to = function)
 #else
@@ -86,7 +77,7 @@ namespace {
 using Kernel = void (*)(const LocalFitJob&, std::size_t, std::size_t);
 
 Kernel chooseKernel(bool portable_only) {
-#if defined(SEGORIENT_HAS_AVX2_KERNELS)
+#if defined(SEGORIENT_X86_KERNELS)
   if (!portable_only && instructionSet() >= InstructionSet::Avx512) return &avx512::estimateRows;
   if (!portable_only && instructionSet() >= InstructionSet::Avx2) return &avx2::estimateRows;
 #endif

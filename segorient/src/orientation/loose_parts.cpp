@@ -6,8 +6,9 @@
 
 #include <algorithm>
 #include <map>
-#include <numeric>
 #include <utility>
+
+#include "../common/disjoint_sets.h"
 
 namespace segorient::detail {
 namespace {
@@ -50,19 +51,13 @@ std::vector<float> agreementOf(const std::vector<std::int32_t>& part_of,
 std::vector<std::int32_t> agreeingGroups(const std::vector<BorderVote>& votes,
                                          const std::vector<std::int8_t>& signs,
                                          const std::vector<bool>& chosen) {
-  std::vector<std::int32_t> group(signs.size());
-  std::iota(group.begin(), group.end(), 0);
-  const auto find = [&](std::int32_t s) {
-    while (group[at(s)] != s) s = group[at(s)] = group[at(group[at(s)])];
-    return s;
-  };
+  DisjointSets sets(signs.size());
   for (const BorderVote& v : votes) {
     if (!chosen[at(v.a)] || !chosen[at(v.b)]) continue;
-    if (v.weight * static_cast<float>(signs[at(v.a)] * signs[at(v.b)]) > 0.F) {
-      group[at(find(v.b))] = find(v.a);
-    }
+    if (v.weight * static_cast<float>(signs[at(v.a)] * signs[at(v.b)]) > 0.F) sets.join(v.a, v.b);
   }
-  for (std::size_t s = 0; s < group.size(); ++s) group[s] = find(static_cast<std::int32_t>(s));
+  std::vector<std::int32_t> group(signs.size());
+  for (std::size_t s = 0; s < group.size(); ++s) group[s] = sets.find(static_cast<std::int32_t>(s));
   return group;
 }
 

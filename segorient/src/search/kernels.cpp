@@ -15,6 +15,8 @@
 #include <limits>
 #include <vector>
 
+#include "../common/kernel_macros.h"
+
 #if defined(__x86_64__) && (defined(__GNUC__) || defined(__clang__))
 #define SEGORIENT_X86 1
 #include <immintrin.h>
@@ -23,16 +25,6 @@
 #endif
 
 #define SEGORIENT_INLINE inline __attribute__((always_inline))
-
-// For what has registers enough only if it is compiled on its own.
-#define SEGORIENT_APART __attribute__((noinline))
-
-// Before a loop over an array that is to be in registers, at any level of optimisation.
-#if defined(__clang__)
-#define SEGORIENT_UNROLL _Pragma("clang loop unroll(full)")
-#else
-#define SEGORIENT_UNROLL _Pragma("GCC unroll 16")
-#endif
 
 namespace segorient::search {
 namespace {

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026, the segorient authors
-#include <numeric>
-
+#include "../common/disjoint_sets.h"
 #include "small_adjacency.h"
 
 namespace segorient::segmentation {
@@ -185,16 +184,7 @@ void CleanUp::extractEdges(SegmentationReport& report) {
 
 // Pass 3: union-find over the small segments that touch.
 void CleanUp::connectSmall() {
-  std::vector<std::int32_t> parent(state_.clusters.size());
-  std::iota(parent.begin(), parent.end(), 0);
-  const auto find = [&](std::int32_t s) {
-    while (parent[static_cast<std::size_t>(s)] != s) {
-      auto& up = parent[static_cast<std::size_t>(s)];
-      up = parent[static_cast<std::size_t>(up)];
-      s = up;
-    }
-    return s;
-  };
+  detail::DisjointSets sets(state_.clusters.size());
   for (std::uint32_t slot = 0; slot < adjacency_.size(); ++slot) {
     const std::int32_t own = state_.labels[adjacency_.point(slot)];
     if (!isSmall(own)) continue;
@@ -202,16 +192,13 @@ void CleanUp::connectSmall() {
       const std::int32_t other = state_.labels[q];
       if (other == own || !isSmall(other)) return;
       if (PairLimits::facing(state_.nodes[adjacency_.point(slot)], state_.nodes[q])) return;
-      const std::int32_t a = find(own);
-      const std::int32_t b = find(other);
-      // The smaller label stays the root: the result does not depend on the order of the unions.
-      if (a != b) parent[static_cast<std::size_t>(std::max(a, b))] = std::min(a, b);
+      sets.join(own, other);
     });
   }
   std::vector<std::int8_t> sign(state_.clusters.size(), 1);
   for (std::size_t s = 0; s < state_.clusters.size(); ++s) {
     Cluster& cluster = state_.clusters[s];
-    const auto root = static_cast<std::size_t>(find(static_cast<std::int32_t>(s)));
+    const auto root = static_cast<std::size_t>(sets.find(static_cast<std::int32_t>(s)));
     if (root == s || cluster.size == 0) continue;
     Cluster& target = state_.clusters[root];
     if (target.normal.dot(cluster.normal) < 0.0) sign[s] = -1;
@@ -224,7 +211,7 @@ void CleanUp::connectSmall() {
     const std::size_t p = adjacency_.point(slot);
     const std::int32_t own = state_.labels[p];
     if (sign[static_cast<std::size_t>(own)] < 0) flip(p);
-    state_.labels[p] = find(own);
+    state_.labels[p] = sets.find(own);
   }
 }
 
