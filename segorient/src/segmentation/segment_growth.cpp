@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026, the segorient authors
 #include <cstring>
+#include <functional>
+#include <limits>
 #include <memory>
 
 #include "growth_state.h"
@@ -16,58 +18,57 @@ std::uint32_t orderedBits(float curvature) {
   return (bits & 0x80000000U) != 0 ? ~bits : bits | 0x80000000U;
 }
 
-/// Seeds in the order of (curvature, index). Sorted by the upper bits at first, into about as many
-/// buckets as there are points; those of one bucket are put in their exact order when growing comes
-/// to it and most of them are taken.
+/// Seeds in the order of (curvature, index): a heap of blocks of points by the first seed that each
+/// has left. A block whose seed was taken by another segment is looked through again, which happens
+/// rarely: far fewer points are seeds than not.
 class SeedOrder {
  public:
-  explicit SeedOrder(const std::vector<Node>& nodes)
-      : nodes_(nodes), shift_(32U - bitsFor(nodes.size())), starts_((1U << (32U - shift_)) + 1, 0) {
-    for (const Node& p : nodes_) {
-      if (usable(p)) ++starts_[bucketOf(p) + 1];
+  explicit SeedOrder(const GrowthState& state) : nodes_(state.nodes), labels_(state.labels) {
+    firsts_.reserve(nodes_.size() / kBlock + 1);
+    for (std::size_t first = 0; first < nodes_.size(); first += kBlock) {
+      const std::uint64_t key = firstOf(first);
+      if (key != kNone) firsts_.push_back(key);
     }
-    for (std::size_t b = 1; b < starts_.size(); ++b) starts_[b] += starts_[b - 1];
-    points_.resize(starts_.back());
-    std::vector<std::size_t> next(starts_.begin(), starts_.end() - 1);
-    for (std::size_t i = 0; i < nodes_.size(); ++i) {
-      if (usable(nodes_[i])) points_[next[bucketOf(nodes_[i])]++] = static_cast<pcl::index_t>(i);
-    }
+    std::make_heap(firsts_.begin(), firsts_.end(), std::greater<>());
   }
 
-  template <typename Visit>
-  void forEachUnlabelled(const std::vector<std::int32_t>& labels, Visit&& visit) {
-    for (std::size_t b = 0; b + 1 < starts_.size(); ++b) {
-      const auto begin = points_.begin() + static_cast<std::ptrdiff_t>(starts_[b]);
-      const auto end = points_.begin() + static_cast<std::ptrdiff_t>(starts_[b + 1]);
-      if (begin == end) continue;
-      const auto left = std::remove_if(
-          begin, end, [&](pcl::index_t p) { return labels[static_cast<std::size_t>(p)] >= 0; });
-      const auto earlier = [&](pcl::index_t p, pcl::index_t q) {
-        const std::uint32_t a = orderedBits(nodes_[static_cast<std::size_t>(p)].curvature);
-        const std::uint32_t c = orderedBits(nodes_[static_cast<std::size_t>(q)].curvature);
-        return a != c ? a < c : p < q;
-      };
-      // On exact planes all are equal.
-      if (!std::is_sorted(begin, left, earlier)) std::sort(begin, left, earlier);
-      for (auto it = begin; it != left; ++it) {
-        if (labels[static_cast<std::size_t>(*it)] < 0) visit(static_cast<std::size_t>(*it));
+  /// The next point without a label; false when all have one.
+  bool next(std::size_t& seed) {
+    while (!firsts_.empty()) {
+      seed = static_cast<std::size_t>(firsts_.front() & 0xffffffffU);
+      if (labels_[seed] < 0) return true;
+      std::pop_heap(firsts_.begin(), firsts_.end(), std::greater<>());
+      firsts_.back() = firstOf(seed / kBlock * kBlock);
+      if (firsts_.back() == kNone) {
+        firsts_.pop_back();
+      } else {
+        std::push_heap(firsts_.begin(), firsts_.end(), std::greater<>());
       }
     }
+    return false;
   }
 
  private:
-  static unsigned bitsFor(std::size_t points) {
-    unsigned bits = 1;
-    while (bits < 16 && (std::size_t{1} << bits) < points) ++bits;
-    return bits;
-  }
+  static constexpr std::size_t kBlock = 64;
+  static constexpr std::uint64_t kNone = std::numeric_limits<std::uint64_t>::max();
+
   static bool usable(const Node& p) { return std::isfinite(p.nx + p.ny + p.nz + p.x + p.y + p.z); }
-  std::size_t bucketOf(const Node& p) const { return orderedBits(p.curvature) >> shift_; }
+
+  // Curvature above, index below.
+  std::uint64_t firstOf(std::size_t begin) const {
+    std::uint64_t least = kNone;
+    const std::size_t end = std::min(nodes_.size(), begin + kBlock);
+    for (std::size_t p = begin; p < end; ++p) {
+      if (labels_[p] >= 0 || !usable(nodes_[p])) continue;
+      const std::uint64_t key = std::uint64_t{orderedBits(nodes_[p].curvature)} << 32U | p;
+      least = std::min(least, key);
+    }
+    return least;
+  }
 
   const std::vector<Node>& nodes_;
-  unsigned shift_;  ///< bits that the buckets leave out
-  std::vector<std::size_t> starts_;
-  std::vector<pcl::index_t> points_;
+  const std::vector<std::int32_t>& labels_;
+  std::vector<std::uint64_t> firsts_;
 };
 
 /// Grows one segment after the other; the queue is one array for all of them. The arrays are held
@@ -214,9 +215,9 @@ void grow(const SegmentationOptions& options, GrowthState& state) {
   state.labels.assign(n, -1);
   state.signs.assign(n, 1);
   state.on_border.assign(n, 1);
-  SeedOrder seeds(state.nodes);
+  SeedOrder seeds(state);
   Grower grower(options, state);
-  seeds.forEachUnlabelled(state.labels, [&](std::size_t seed) { grower.grow(seed); });
+  for (std::size_t seed = 0; seeds.next(seed);) grower.grow(seed);
 }
 
 }  // namespace segorient::segmentation
