@@ -2,6 +2,7 @@
 // Copyright (c) 2026, the segorient authors
 #pragma once
 
+#include <segorient/common/fast_vector.h>
 #include <segorient/common/neighborhoods.h>
 #include <segorient/common/point_view.h>
 #include <segorient/segmentation/region_growing.h>
@@ -98,10 +99,12 @@ struct GrowthState {
   float scale = 1.F;  ///< coordinates of the nodes for one unit of the cloud
   PairLimits limits;
   float typical_offset = 0.F;  ///< of a neighbour from a tangent plane, in spacings: the noise
-  std::vector<Node> nodes;
+  FastVector<Node> nodes;
   std::vector<std::int32_t> labels;  ///< -1 = none
   std::vector<std::int8_t> signs;
-  std::vector<std::uint8_t> on_border;  ///< 0 = surely no neighbour in another segment
+  /// Ascending: labelled points that had a neighbour in another segment, or in none, when growing
+  /// ended. No other point has one as long as points only move across borders.
+  std::vector<pcl::index_t> border;
   std::vector<Cluster> clusters;
   std::vector<std::uint8_t> strips;  ///< by cluster: 1 = has no inside, see findStrips()
   std::vector<SegmentKind> kinds;    ///< by cluster, after the clean-up
@@ -136,7 +139,9 @@ std::size_t settleEdges(const SegmentationOptions& options, GrowthState& state);
 /// \return how many segments became part of another one
 std::size_t uniteSmooth(const SegmentationOptions& options, GrowthState& state);
 
-/// Final labels and segment data.
-Segmentation finish(const PointView& points, const GrowthState& state);
+/// Final segment data.
+/// \param labels those of the state, or a copy of them if it goes on being used; signs likewise
+Segmentation finish(const PointView& points, const GrowthState& state,
+                    std::vector<std::int32_t> labels, std::vector<std::int8_t> signs);
 
 }  // namespace segorient::segmentation

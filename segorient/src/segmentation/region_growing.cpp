@@ -2,6 +2,8 @@
 // Copyright (c) 2026, the segorient authors
 #include <segorient/segmentation/region_growing.h>
 
+#include <utility>
+
 #include "growth_state.h"
 
 namespace segorient {
@@ -25,7 +27,9 @@ Segmentation segmentByNormals(const PointView& points, const PointView& normals,
     counts.grown = state.clusters.size();
     for (const auto& cluster : state.clusters) counts.small += cluster.size < options.small_size;
     segmentation::cleanUp(options, state, counts);
-    result = segmentation::finish(points, state);
+    result = faces == nullptr ? segmentation::finish(points, state, std::move(state.labels),
+                                                     std::move(state.signs))
+                              : segmentation::finish(points, state, state.labels, state.signs);
     for (const Segment& segment : result.segments) {
       counts.regular += segment.kind == SegmentKind::Regular;
       counts.connected += segment.kind == SegmentKind::Connected;
@@ -33,7 +37,10 @@ Segmentation segmentByNormals(const PointView& points, const PointView& normals,
     }
     if (faces != nullptr) {
       counts.united = segmentation::uniteSmooth(options, state);
-      *faces = counts.united > 0 ? segmentation::finish(points, state) : result;
+      *faces = counts.united > 0
+                   ? segmentation::finish(points, state, std::move(state.labels),
+                                          std::move(state.signs))
+                   : result;
     }
   }
   if (report != nullptr) *report = counts;

@@ -220,20 +220,20 @@ void CleanUp::connectSmall() {
 void findStrips(const SegmentationOptions& options, GrowthState& state) {
   // The inside of a band of w spacings is about 1 - 2 / w of it.
   constexpr std::uint32_t kPointsPerInner = 4;
-  std::vector<std::uint32_t> inner(state.clusters.size(), 0);
-  for (std::size_t p = 0; p < state.nodes.size(); ++p) {
+  std::vector<std::uint32_t> inner;
+  inner.reserve(state.clusters.size());
+  for (const Cluster& cluster : state.clusters) inner.push_back(cluster.size);
+  for (const pcl::index_t index : state.border) {
+    const auto p = static_cast<std::size_t>(index);
     const std::int32_t label = state.labels[p];
-    if (label < 0) continue;
+    const pcl::index_t* row = state.neighborhoods->indices(p);
+    const int count = std::min(state.neighborhoods->count(p), kRing + 1);
     bool inside = true;
-    if (state.on_border[p] != 0) {
-      const pcl::index_t* row = state.neighborhoods->indices(p);
-      const int count = std::min(state.neighborhoods->count(p), kRing + 1);
-      for (int j = 1; j < count && inside; ++j) {
-        const auto q = static_cast<std::size_t>(row[j]);
-        inside = state.labels[q] == label || !state.limits.near(state.nodes[p], state.nodes[q]);
-      }
+    for (int j = 1; j < count && inside; ++j) {
+      const auto q = static_cast<std::size_t>(row[j]);
+      inside = state.labels[q] == label || !state.limits.near(state.nodes[p], state.nodes[q]);
     }
-    inner[static_cast<std::size_t>(label)] += inside ? 1U : 0U;
+    inner[static_cast<std::size_t>(label)] -= inside ? 0U : 1U;
   }
   for (std::size_t s = 0; s < inner.size(); ++s) {
     const std::uint32_t size = state.clusters[s].size;

@@ -2,6 +2,7 @@
 // Copyright (c) 2026, the segorient authors
 #include <Eigen/Eigenvalues>
 #include <array>
+#include <utility>
 
 #include "growth_state.h"
 #include "segment_order.h"
@@ -49,31 +50,30 @@ void setShape(const Moments& m, Segment& segment) {
   segment.rms = static_cast<float>(std::sqrt(std::max(0.0, solver.eigenvalues()[0])));
 }
 
-void measure(const PointView& points, const GrowthState& state, Segmentation& result) {
-  std::vector<Moments> moments(result.segments.size());
-  for (std::size_t s = 0; s < moments.size(); ++s) {
-    const float* origin = points[static_cast<std::size_t>(*result.begin(s))];
-    for (std::size_t c = 0; c < 3; ++c) moments[s].origin[c] = static_cast<double>(origin[c]);
-  }
+Moments momentsOf(const PointView& points, const GrowthState& state, const pcl::index_t* begin,
+                  const pcl::index_t* end) {
+  Moments m;
+  const float* origin = points[static_cast<std::size_t>(*begin)];
+  for (std::size_t c = 0; c < 3; ++c) m.origin[c] = static_cast<double>(origin[c]);
   const double scale = 1.0 / static_cast<double>(state.scale);
-  for (std::size_t p = 0; p < result.labels.size(); ++p) {
-    if (result.labels[p] < 0) continue;
-    Moments& m = moments[static_cast<std::size_t>(result.labels[p])];
+  for (const pcl::index_t* it = begin; it != end; ++it) {
+    const auto p = static_cast<std::size_t>(*it);
     const double side = static_cast<double>(state.nodes[p].spacing) * scale;
     m.area += side * side;
     m.add(points[p]);
   }
-  for (std::size_t s = 0; s < moments.size(); ++s) setShape(moments[s], result.segments[s]);
+  return m;
 }
 
 }  // namespace
 
-Segmentation finish(const PointView& points, const GrowthState& state) {
+Segmentation finish(const PointView& points, const GrowthState& state,
+                    std::vector<std::int32_t> labels, std::vector<std::int8_t> signs) {
   std::size_t count = 0;
   std::vector<std::uint32_t> sizes;
   sizes.reserve(state.clusters.size());
   for (const Cluster& cluster : state.clusters) sizes.push_back(cluster.size);
-  const std::vector<std::int32_t> rank = rankLabels(state.labels, sizes, count);
+  const std::vector<std::int32_t> rank = rankLabels(labels, sizes, count);
   Segmentation result;
   result.segments.resize(count);
   for (std::size_t s = 0; s < rank.size(); ++s) {
@@ -89,14 +89,15 @@ Segmentation finish(const PointView& points, const GrowthState& state) {
     segment.kind = state.kinds[s];
     segment.size = state.clusters[s].size;
   }
-  result.labels.resize(state.labels.size());
-  for (std::size_t p = 0; p < state.labels.size(); ++p) {
-    const std::int32_t label = state.labels[p];
-    result.labels[p] = label < 0 ? -1 : rank[static_cast<std::size_t>(label)];
+  for (std::int32_t& label : labels) {
+    if (label >= 0) label = rank[static_cast<std::size_t>(label)];
   }
-  result.signs = state.signs;
+  result.labels = std::move(labels);
+  result.signs = std::move(signs);
   fillMembers(result);
-  measure(points, state, result);
+  for (std::size_t s = 0; s < count; ++s) {
+    setShape(momentsOf(points, state, result.begin(s), result.end(s)), result.segments[s]);
+  }
   return result;
 }
 

@@ -66,7 +66,7 @@ class SeedOrder {
     return least;
   }
 
-  const std::vector<Node>& nodes_;
+  const FastVector<Node>& nodes_;
   const std::vector<std::int32_t>& labels_;
   std::vector<std::uint64_t> firsts_;
 };
@@ -75,7 +75,8 @@ class SeedOrder {
 /// by plain pointers: this loop is most of the time that segmentation takes.
 class Grower {
  public:
-  Grower(const SegmentationOptions& options, GrowthState& state)
+  Grower(const SegmentationOptions& options, GrowthState& state,
+         std::vector<std::uint8_t>& on_border)
       : hood_(*state.neighborhoods),
         limits_(state.limits),
         row_size_(state.neighbors),
@@ -86,7 +87,7 @@ class Grower {
         nodes_(state.nodes.data()),
         labels_(state.labels.data()),
         signs_(state.signs.data()),
-        on_border_(state.on_border.data()),
+        on_border_(on_border.data()),
         clusters_(state.clusters),
         queue_(new pcl::index_t[state.nodes.size()]) {
     for (std::size_t p = 0; p < state.nodes.size() && full_; ++p)
@@ -199,7 +200,7 @@ class Grower {
   Node* nodes_;
   std::int32_t* labels_;
   std::int8_t* signs_;
-  std::uint8_t* on_border_;
+  std::uint8_t* on_border_;  ///< 0 = surely no neighbour in another segment
   std::vector<Cluster>& clusters_;
   std::unique_ptr<pcl::index_t[]> queue_;
   std::size_t tail_ = 0;
@@ -208,16 +209,32 @@ class Grower {
   double threshold_ = 0.0;  ///< squared length that the sum must have along a candidate
 };
 
+// Eight at a time: nearly all are 0.
+void listBorder(const std::vector<std::uint8_t>& on_border, GrowthState& state) {
+  const std::size_t n = on_border.size();
+  for (std::size_t first = 0; first < n; first += sizeof(std::uint64_t)) {
+    std::uint64_t any = 0;
+    const std::size_t count = std::min(sizeof any, n - first);
+    std::memcpy(&any, on_border.data() + first, count);
+    if (any == 0) continue;
+    for (std::size_t p = first; p < first + count; ++p) {
+      if (on_border[p] != 0 && state.labels[p] >= 0)
+        state.border.push_back(static_cast<pcl::index_t>(p));
+    }
+  }
+}
+
 }  // namespace
 
 void grow(const SegmentationOptions& options, GrowthState& state) {
   const std::size_t n = state.nodes.size();
   state.labels.assign(n, -1);
   state.signs.assign(n, 1);
-  state.on_border.assign(n, 1);
+  std::vector<std::uint8_t> on_border(n, 1);
   SeedOrder seeds(state);
-  Grower grower(options, state);
+  Grower grower(options, state, on_border);
   for (std::size_t seed = 0; seeds.next(seed);) grower.grow(seed);
+  listBorder(on_border, state);
 }
 
 }  // namespace segorient::segmentation

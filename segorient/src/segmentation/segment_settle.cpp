@@ -36,18 +36,19 @@ struct Vector {
 
 /// A regular segment near a point, with its flattest points near there and their mean plane.
 struct Candidate {
-  std::int32_t label = -1;
-  std::size_t count = 0;
-  std::array<std::int32_t, kWitnesses> points{};
-  std::array<float, kWitnesses> curvature{};
+  std::int32_t label;
+  std::size_t count;
+  std::array<pcl::index_t, kWitnesses> points;
+  std::array<float, kWitnesses> curvature;  ///< ascending
   Vector center;
   Vector normal;
 
-  bool wants(float value) const {
-    return (count < kWitnesses) | (value < curvature[kWitnesses - 1]);
+  void start(std::int32_t of) {
+    label = of;
+    count = 0;
   }
-  void offer(std::int32_t point, float value) {
-    if (!wants(value)) return;
+  void offer(pcl::index_t point, float value) {
+    if (count == kWitnesses && !(value < curvature[kWitnesses - 1])) return;
     for (std::size_t i = 0; i < count; ++i) {
       if (points[i] == point) return;
     }
@@ -60,6 +61,47 @@ struct Candidate {
     points[at] = point;
   }
 };
+using Candidates = std::array<Candidate, kCandidates>;
+
+/// The points around one, in the order in which they were added. Those in several rows come once,
+/// but for a few. Which are new nobody can guess: no branches.
+class PointsAround {
+ public:
+  /// \param p is not to be among them
+  void restart(pcl::index_t p) {
+    ++turn_;
+    size_ = 0;
+    center_ = p;
+  }
+  /// \param count at most kReach + 1
+  void add(const pcl::index_t* row, int count) {
+    for (int j = 0; j < count; ++j) {
+      std::uint64_t& last = last_[slotOf(row[j])];
+      const std::uint64_t tag = tagOf(row[j]);
+      points_[size_] = row[j];
+      size_ += (last != tag) & (row[j] != center_) ? 1U : 0U;
+      last = tag;
+    }
+  }
+  const pcl::index_t* begin() const { return points_.data(); }
+  const pcl::index_t* end() const { return points_.data() + size_; }
+
+  static constexpr std::size_t kMost = (kReach + 1) * (kReach + 1);
+
+ private:
+  static constexpr std::size_t kSlots = 1024;
+
+  static std::size_t slotOf(pcl::index_t p) { return static_cast<std::size_t>(p) % kSlots; }
+  std::uint64_t tagOf(pcl::index_t p) const {
+    return turn_ << 32U | static_cast<std::uint32_t>(p);
+  }
+
+  std::array<std::uint64_t, kSlots> last_{};  ///< by slot: the last point that came, and its turn
+  std::uint64_t turn_ = 0;
+  pcl::index_t center_ = -1;
+  std::array<pcl::index_t, kMost> points_;
+  std::size_t size_ = 0;
+};
 
 class Settler {
  public:
@@ -69,14 +111,15 @@ class Settler {
         cos_alpha_(std::cos(std::min(options.alpha, kRightAngle))) {}
 
   /// Label that a point should have.
-  std::int32_t settle(std::size_t p) const {
+  std::int32_t settle(std::size_t p, PointsAround& around) const {
     const std::int32_t own = state_.labels[p];
     const bool own_regular = isRegular(own);
     if (own_regular && !meetsOther(p)) return own;
-    std::array<Candidate, kCandidates> candidates;
+    Candidates candidates;
     const std::size_t count = listCandidates(p, candidates);
     if (count == 0 || (own_regular && count == 1)) return own;
-    gatherWitnesses(p, candidates, count, own_regular);
+    listAround(p, own_regular, around);
+    for (std::size_t i = 0; i < count; ++i) setWitnesses(around, candidates[i]);
     const Candidate* best = nullptr;
     const Candidate* found = nullptr;
     for (std::size_t i = 0; i < count; ++i) {
@@ -93,6 +136,18 @@ class Settler {
     return own_regular || std::abs(offset(p, *best)) <= reach ? best->label : own;
   }
 
+  void fetchRow(std::size_t p) const { __builtin_prefetch(state_.neighborhoods->indices(p)); }
+  void fetchAround(std::size_t p) const {
+    const pcl::index_t* row = state_.neighborhoods->indices(p);
+    const int size = reach(p);
+    for (int j = 0; j < size; ++j) {
+      const auto q = static_cast<std::size_t>(row[j]);
+      __builtin_prefetch(&state_.nodes[q]);
+      __builtin_prefetch(&state_.labels[q]);
+      __builtin_prefetch(state_.neighborhoods->indices(q));
+    }
+  }
+
  private:
   bool isRegular(std::int32_t label) const {
     return label >= 0 && state_.isFace(label, small_size_);
@@ -102,7 +157,7 @@ class Settler {
     return std::min(state_.neighborhoods->count(row), kReach + 1);
   }
 
-  std::size_t listCandidates(std::size_t p, std::array<Candidate, kCandidates>& candidates) const {
+  std::size_t listCandidates(std::size_t p, Candidates& candidates) const {
     std::size_t count = 0;
     const pcl::index_t* row = state_.neighborhoods->indices(p);
     const int size = reach(p);
@@ -113,7 +168,7 @@ class Settler {
       const auto last = candidates.begin() + static_cast<std::ptrdiff_t>(count);
       const auto found = std::find_if(candidates.begin(), last,
                                       [&](const Candidate& c) { return c.label == label; });
-      if (found == last) candidates[count++].label = label;
+      if (found == last) candidates[count++].start(label);
     }
     return count;
   }
@@ -129,50 +184,33 @@ class Settler {
     return false;
   }
 
-  // From the neighbours and their neighbours: those nearest to an edge have its bad normals
-  // themselves. For most points the far half of the neighbours will do, whose own ones reach
-  // farthest; the few that are in no face yet, at corners first of all, take what they can get.
-  void gatherWitnesses(std::size_t p, std::array<Candidate, kCandidates>& candidates,
-                       std::size_t count, bool far_half) const {
+  // The neighbours and their neighbours: those nearest to an edge have its bad normals themselves.
+  // For most points the far half of the neighbours will do, whose own ones reach farthest; the few
+  // that are in no face yet, at corners first of all, take what they can get.
+  void listAround(std::size_t p, bool far_half, PointsAround& around) const {
     const pcl::index_t* row = state_.neighborhoods->indices(p);
     const int size = reach(p);
-    offerRow(p, p, candidates, count);
+    around.restart(static_cast<pcl::index_t>(p));
+    around.add(row, size);
     for (int j = far_half ? std::max(1, size / 2) : 1; j < size; ++j) {
       const auto middle = static_cast<std::size_t>(row[j]);
       if (state_.limits.near(state_.nodes[p], state_.nodes[middle])) {
-        offerRow(p, middle, candidates, count);
+        around.add(state_.neighborhoods->indices(middle), reach(middle));
       }
     }
-    for (std::size_t c = 0; c < count; ++c) setPlane(candidates[c]);
   }
 
-  // The neighbours of `middle` as witnesses. Near a border nobody can guess which neighbour is in
-  // which segment: what each candidate may take is found without branches.
-  void offerRow(std::size_t p, std::size_t middle, std::array<Candidate, kCandidates>& candidates,
-                std::size_t count) const {
-    const pcl::index_t* row = state_.neighborhoods->indices(middle);
-    const int size = reach(middle);
-    std::array<std::int32_t, kReach + 1> labels;
-    std::array<float, kReach + 1> curvatures;
-    for (int i = 0; i < size; ++i) {
-      const auto q = static_cast<std::size_t>(row[i]);
-      labels[static_cast<std::size_t>(i)] = state_.labels[q];
-      curvatures[static_cast<std::size_t>(i)] = state_.nodes[q].curvature;
+  void setWitnesses(const PointsAround& around, Candidate& candidate) const {
+    std::array<pcl::index_t, PointsAround::kMost> members;
+    std::size_t count = 0;
+    for (const pcl::index_t q : around) {
+      members[count] = q;
+      count += state_.labels[static_cast<std::size_t>(q)] == candidate.label ? 1U : 0U;
     }
-    for (std::size_t c = 0; c < count; ++c) {
-      Candidate& candidate = candidates[c];
-      std::uint32_t wanted = 0;
-      for (int i = 0; i < size; ++i) {
-        const auto at = static_cast<std::size_t>(i);
-        const auto same = static_cast<std::uint32_t>(labels[at] == candidate.label);
-        wanted |= (same & static_cast<std::uint32_t>(candidate.wants(curvatures[at]))) << i;
-      }
-      for (; wanted != 0; wanted &= wanted - 1) {
-        const auto i = static_cast<std::size_t>(__builtin_ctz(wanted));
-        if (static_cast<std::size_t>(row[i]) != p)
-          candidate.offer(static_cast<std::int32_t>(row[i]), curvatures[i]);
-      }
+    for (std::size_t i = 0; i < count; ++i) {
+      candidate.offer(members[i], state_.nodes[static_cast<std::size_t>(members[i])].curvature);
     }
+    setPlane(candidate);
   }
 
   // Flat points count more: on exact planes those that an edge has no part in decide alone, under
@@ -256,10 +294,16 @@ std::size_t settleOnce(const SegmentationOptions& options, const std::vector<pcl
   std::vector<std::int32_t> wanted(border.size());
   const Settler settler(options, state);
   const auto n = static_cast<std::ptrdiff_t>(border.size());
-#pragma omp parallel for num_threads(resolveThreads(options.threads)) schedule(dynamic, 256)
-  for (std::ptrdiff_t i = 0; i < n; ++i) {
-    const auto at = static_cast<std::size_t>(i);
-    wanted[at] = settler.settle(static_cast<std::size_t>(border[at]));
+#pragma omp parallel num_threads(resolveThreads(options.threads))
+  {
+    PointsAround around;
+#pragma omp for schedule(dynamic, 256)
+    for (std::ptrdiff_t i = 0; i < n; ++i) {
+      const auto at = static_cast<std::size_t>(i);
+      if (at + 8 < border.size()) settler.fetchRow(static_cast<std::size_t>(border[at+8]));
+      if (at + 4 < border.size()) settler.fetchAround(static_cast<std::size_t>(border[at+4]));
+      wanted[at] = settler.settle(static_cast<std::size_t>(border[at]), around);
+    }
   }
   std::size_t moved = 0;
   for (std::size_t i = 0; i < border.size(); ++i) {
@@ -279,11 +323,7 @@ std::size_t settleOnce(const SegmentationOptions& options, const std::vector<pcl
 }  // namespace
 
 std::size_t settleEdges(const SegmentationOptions& options, GrowthState& state) {
-  std::vector<pcl::index_t> border;
-  for (std::size_t p = 0; p < state.nodes.size(); ++p) {
-    if (state.on_border[p] != 0 && state.labels[p] >= 0)
-      border.push_back(static_cast<pcl::index_t>(p));
-  }
+  std::vector<pcl::index_t> border = state.border;
   std::size_t moved = settleOnce(options, border, state);
   // At a corner the points around it may have been in no face, either.
   for (std::size_t last = moved; last > 0;) {

@@ -198,9 +198,10 @@ class BorderTest {
 // Neighbours of the first ring in two regular segments, by border.
 std::vector<Pair> collectPairs(const SegmentationOptions& options, const GrowthState& state) {
   std::vector<Pair> pairs;
-  for (std::size_t p = 0; p < state.nodes.size(); ++p) {
+  for (const pcl::index_t index : state.border) {
+    const auto p = static_cast<std::size_t>(index);
     const std::int32_t own = state.labels[p];
-    if (state.on_border[p] == 0 || own < 0 || !state.isFace(own, options.small_size)) continue;
+    if (!state.isFace(own, options.small_size)) continue;
     const pcl::index_t* row = state.neighborhoods->indices(p);
     const int count = std::min(state.rowSize(p), kRing + 1);
     for (int j = 1; j < count; ++j) {

@@ -6,15 +6,19 @@ namespace segorient::segmentation {
 
 SmallAdjacency::SmallAdjacency(const GrowthState& state, std::size_t small_size)
     : state_(state),
-      slots_(state.nodes.size(), kNone),
+      slots_(state.nodes.size()),
       heads_(state.clusters.size(), kNone),
       tails_(state.clusters.size(), kNone),
-      stamps_(state.nodes.size(), 0) {
+      stamps_(state.nodes.size()) {
+  std::vector<std::uint8_t> is_small;
+  is_small.reserve(state.clusters.size());
+  for (std::size_t s = 0; s < state.clusters.size(); ++s)
+    is_small.push_back(state.isFace(static_cast<std::int32_t>(s), small_size) ? 0 : 1);
   for (std::size_t p = 0; p < state.nodes.size(); ++p) {
     const std::int32_t label = state.labels[p];
-    if (label < 0 || state.isFace(label, small_size)) continue;
+    if (label < 0 || is_small[static_cast<std::size_t>(label)] == 0) continue;
     const auto slot = static_cast<std::uint32_t>(points_.size());
-    slots_[p] = slot;
+    slots_[p] = slot + 1;
     points_.push_back(static_cast<pcl::index_t>(p));
     next_.push_back(kNone);
     const auto segment = static_cast<std::size_t>(label);
@@ -33,14 +37,13 @@ SmallAdjacency::SmallAdjacency(const GrowthState& state, std::size_t small_size)
 void SmallAdjacency::listReverse() {
   reverse_starts_.assign(points_.size() + 1, 0);
   if (points_.empty()) return;
-  const std::uint32_t* slots = slots_.data();
   const std::int32_t* labels = state_.labels.data();
   const auto visitReverse = [&](std::size_t p, auto&& visit) {
     const pcl::index_t* row = state_.neighborhoods->indices(p);
     const int count = state_.rowSize(p);
     bool any = false;
     for (int j = 1; j < count; ++j) {
-      const std::uint32_t slot = slots[row[j]];
+      const std::uint32_t slot = this->slot(static_cast<std::size_t>(row[j]));
       if (slot == kNone || labels[row[j]] == labels[p]) continue;
       visit(slot);
       any = true;
@@ -48,10 +51,9 @@ void SmallAdjacency::listReverse() {
     return any;
   };
   std::vector<pcl::index_t> sources;
-  for (std::size_t p = 0; p < state_.nodes.size(); ++p) {
-    if (state_.on_border[p] == 0 || labels[p] < 0) continue;
-    if (visitReverse(p, [&](std::uint32_t slot) { ++reverse_starts_[slot + 1]; })) {
-      sources.push_back(static_cast<pcl::index_t>(p));
+  for (const pcl::index_t p : state_.border) {
+    if (visitReverse(static_cast<std::size_t>(p), [&](std::uint32_t slot) { ++reverse_starts_[slot + 1]; })) {
+      sources.push_back(p);
     }
   }
   for (std::size_t s = 0; s < points_.size(); ++s) reverse_starts_[s + 1] += reverse_starts_[s];

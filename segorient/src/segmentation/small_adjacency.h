@@ -2,11 +2,32 @@
 // Copyright (c) 2026, the segorient authors
 #pragma once
 
+#include <cstdlib>
 #include <limits>
+#include <memory>
+#include <new>
 
 #include "growth_state.h"
 
 namespace segorient::segmentation {
+
+/// Numbers that are 0 until they are set. Takes memory only where it is looked at: most points of
+/// most clouds are nowhere near a small segment.
+class ZeroedArray {
+ public:
+  explicit ZeroedArray(std::size_t size)
+      : numbers_(static_cast<std::uint32_t*>(std::calloc(size + 1, sizeof(std::uint32_t)))) {
+    if (numbers_ == nullptr) throw std::bad_alloc();
+  }
+  std::uint32_t& operator[](std::size_t i) { return numbers_.get()[i]; }
+  std::uint32_t operator[](std::size_t i) const { return numbers_.get()[i]; }
+
+ private:
+  struct Free {
+    void operator()(std::uint32_t* numbers) const { std::free(numbers); }
+  };
+  std::unique_ptr<std::uint32_t, Free> numbers_;
+};
 
 /// The points of small segments and strips ("slots"), their neighbours in both directions (two
 /// points are neighbours if either is among the other's), and the small segments as lists of
@@ -20,7 +41,7 @@ class SmallAdjacency {
   std::uint32_t size() const { return static_cast<std::uint32_t>(points_.size()); }
   std::size_t point(std::uint32_t slot) const { return static_cast<std::size_t>(points_[slot]); }
   /// Slot of a point, kNone for points of segments that were regular from the start.
-  std::uint32_t slot(std::size_t point) const { return slots_[point]; }
+  std::uint32_t slot(std::size_t point) const { return slots_[point] - 1; }
 
   /// visit(point) for each labelled neighbour of a slot's point that no gap parts from it.
   /// Neighbours in both directions come twice.
@@ -53,7 +74,7 @@ class SmallAdjacency {
   void forEachAround(std::int32_t label, Visit&& visit) {
     around_.clear();
     if (first_stamp_ > kMostStamps) {
-      std::fill(stamps_.begin(), stamps_.end(), 0U);
+      stamps_ = ZeroedArray(state_.nodes.size());
       first_stamp_ = 1;
     }
     for (std::uint32_t s = heads_[static_cast<std::size_t>(label)]; s != kNone; s = next_[s]) {
@@ -87,12 +108,12 @@ class SmallAdjacency {
 
   const GrowthState& state_;
   std::vector<pcl::index_t> points_;
-  std::vector<std::uint32_t> slots_;
+  ZeroedArray slots_;  ///< by point: its slot + 1
   std::vector<std::uint32_t> heads_, tails_, next_;
   std::vector<std::size_t> reverse_starts_;
   std::vector<pcl::index_t> reverse_;
   /// By point: where it is in around_, plus first_stamp_; less = not in it.
-  std::vector<std::uint32_t> stamps_;
+  ZeroedArray stamps_;
   std::uint32_t first_stamp_ = 1;
   std::vector<Around> around_;
 };
