@@ -118,8 +118,8 @@ class Grower {
   }
 
  private:
-  static constexpr std::size_t kRowsAhead = 10;
-  static constexpr std::size_t kNodesAhead = 3;
+  static constexpr std::size_t kRowsAhead = 32;
+  static constexpr std::size_t kNodesAhead = 12;
   static constexpr int kMaskBits = 32;
   static constexpr float kRightAngle = 1.5707963F;
 
