@@ -4,6 +4,7 @@
 
 #include <array>
 
+#include "distinct_points.h"
 #include "growth_state.h"
 
 namespace segorient::segmentation {
@@ -63,46 +64,6 @@ struct Candidate {
 };
 using Candidates = std::array<Candidate, kCandidates>;
 
-/// The points around one, in the order in which they were added. Those in several rows come once,
-/// but for a few. Which are new nobody can guess: no branches.
-class PointsAround {
- public:
-  /// \param p is not to be among them
-  void restart(pcl::index_t p) {
-    ++turn_;
-    size_ = 0;
-    center_ = p;
-  }
-  /// \param count at most kReach + 1
-  void add(const pcl::index_t* row, int count) {
-    for (int j = 0; j < count; ++j) {
-      std::uint64_t& last = last_[slotOf(row[j])];
-      const std::uint64_t tag = tagOf(row[j]);
-      points_[size_] = row[j];
-      size_ += (last != tag) & (row[j] != center_) ? 1U : 0U;
-      last = tag;
-    }
-  }
-  const pcl::index_t* begin() const { return points_.data(); }
-  const pcl::index_t* end() const { return points_.data() + size_; }
-
-  static constexpr std::size_t kMost = (kReach + 1) * (kReach + 1);
-
- private:
-  static constexpr std::size_t kSlots = 1024;
-
-  static std::size_t slotOf(pcl::index_t p) { return static_cast<std::size_t>(p) % kSlots; }
-  std::uint64_t tagOf(pcl::index_t p) const {
-    return turn_ << 32U | static_cast<std::uint32_t>(p);
-  }
-
-  std::array<std::uint64_t, kSlots> last_{};  ///< by slot: the last point that came, and its turn
-  std::uint64_t turn_ = 0;
-  pcl::index_t center_ = -1;
-  std::array<pcl::index_t, kMost> points_;
-  std::size_t size_ = 0;
-};
-
 class Settler {
  public:
   Settler(const SegmentationOptions& options, const GrowthState& state)
@@ -111,7 +72,7 @@ class Settler {
         cos_alpha_(std::cos(std::min(options.alpha, kRightAngle))) {}
 
   /// Label that a point should have.
-  std::int32_t settle(std::size_t p, PointsAround& around) const {
+  std::int32_t settle(std::size_t p, DistinctPoints& around) const {
     const std::int32_t own = state_.labels[p];
     const bool own_regular = isRegular(own);
     if (own_regular && !meetsOther(p)) return own;
@@ -187,25 +148,30 @@ class Settler {
   // The neighbours and their neighbours: those nearest to an edge have its bad normals themselves.
   // For most points the far half of the neighbours will do, whose own ones reach farthest; the few
   // that are in no face yet, at corners first of all, take what they can get.
-  void listAround(std::size_t p, bool far_half, PointsAround& around) const {
+  void listAround(std::size_t p, bool far_half, DistinctPoints& around) const {
     const pcl::index_t* row = state_.neighborhoods->indices(p);
     const int size = reach(p);
-    around.restart(static_cast<pcl::index_t>(p));
-    around.add(row, size);
+    around.restart();
+    addRow(p, p, around);
     for (int j = far_half ? std::max(1, size / 2) : 1; j < size; ++j) {
       const auto middle = static_cast<std::size_t>(row[j]);
-      if (state_.limits.near(state_.nodes[p], state_.nodes[middle])) {
-        around.add(state_.neighborhoods->indices(middle), reach(middle));
-      }
+      if (state_.limits.near(state_.nodes[p], state_.nodes[middle])) addRow(p, middle, around);
     }
   }
 
-  void setWitnesses(const PointsAround& around, Candidate& candidate) const {
-    std::array<pcl::index_t, PointsAround::kMost> members;
+  void addRow(std::size_t p, std::size_t middle, DistinctPoints& around) const {
+    const pcl::index_t* row = state_.neighborhoods->indices(middle);
+    const int size = reach(middle);
+    around.reserve(static_cast<std::size_t>(size) + 1);
+    for (int j = 0; j < size; ++j) around.add(row[j], static_cast<std::size_t>(row[j]) != p);
+  }
+
+  void setWitnesses(const DistinctPoints& around, Candidate& candidate) const {
+    std::array<pcl::index_t, (kReach + 1) * (kReach + 1)> members;
     std::size_t count = 0;
-    for (const pcl::index_t q : around) {
-      members[count] = q;
-      count += state_.labels[static_cast<std::size_t>(q)] == candidate.label ? 1U : 0U;
+    for (std::size_t i = 0; i < around.size(); ++i) {
+      members[count] = around[i];
+      count += state_.labels[static_cast<std::size_t>(around[i])] == candidate.label ? 1U : 0U;
     }
     for (std::size_t i = 0; i < count; ++i) {
       candidate.offer(members[i], state_.nodes[static_cast<std::size_t>(members[i])].curvature);
@@ -296,7 +262,7 @@ std::size_t settleOnce(const SegmentationOptions& options, const std::vector<pcl
   const auto n = static_cast<std::ptrdiff_t>(border.size());
 #pragma omp parallel num_threads(resolveThreads(options.threads))
   {
-    PointsAround around;
+    DistinctPoints around;
 #pragma omp for schedule(dynamic, 256)
     for (std::ptrdiff_t i = 0; i < n; ++i) {
       const auto at = static_cast<std::size_t>(i);

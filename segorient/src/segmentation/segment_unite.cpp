@@ -6,6 +6,7 @@
 #include <numeric>
 #include <utility>
 
+#include "distinct_points.h"
 #include "growth_state.h"
 
 namespace segorient::segmentation {
@@ -159,26 +160,30 @@ class BorderTest {
 
   // Points of the two segments among the neighbours' neighbours, and theirs in turn.
   void listPatch(const Pair& pair, int rings) {
-    patch_.assign(1, pair.p);
+    found_.restart();
+    found_.reserve(1);
+    found_.add(static_cast<pcl::index_t>(pair.p), true);
+    std::size_t inner = 0;
     for (int ring = 0; ring < rings; ++ring) {
-      const std::size_t inner = patch_.size();
-      for (std::size_t j = 0; j < inner; ++j) {
-        forEachNear(patch_[j], [&](std::uint32_t i) {
-          if (state_.labels[i] == pair.a || state_.labels[i] == pair.b) patch_.push_back(i);
-        });
-      }
-      std::sort(patch_.begin(), patch_.end());
-      patch_.erase(std::unique(patch_.begin(), patch_.end()), patch_.end());
+      const std::size_t outer = found_.size();
+      for (; inner < outer; ++inner) addNear(static_cast<std::size_t>(found_[inner]), pair);
     }
+    patch_.clear();
+    for (std::size_t i = 0; i < found_.size(); ++i)
+      patch_.push_back(static_cast<std::uint32_t>(found_[i]));
+    std::sort(patch_.begin(), patch_.end());
+    patch_.erase(std::unique(patch_.begin(), patch_.end()), patch_.end());
   }
 
-  template <typename Visit>
-  void forEachNear(std::uint32_t p, Visit&& visit) const {
+  void addNear(std::size_t p, const Pair& pair) {
     const pcl::index_t* row = state_.neighborhoods->indices(p);
     const int count = state_.rowSize(p);
+    found_.reserve(static_cast<std::size_t>(count) + 1);
     for (int j = 0; j < count; ++j) {
-      const auto q = static_cast<std::uint32_t>(row[j]);
-      if (state_.limits.near(state_.nodes[p], state_.nodes[q])) visit(q);
+      const auto q = static_cast<std::size_t>(row[j]);
+      const std::int32_t label = state_.labels[q];
+      found_.add(row[j], ((label == pair.a) | (label == pair.b)) &
+                             state_.limits.near(state_.nodes[p], state_.nodes[q]));
     }
   }
 
@@ -192,6 +197,7 @@ class BorderTest {
   const GrowthState& state_;
   float cos_alpha_;
   double most_slope_;
+  DistinctPoints found_;
   std::vector<std::uint32_t> patch_;
 };
 
