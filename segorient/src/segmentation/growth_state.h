@@ -98,6 +98,7 @@ struct GrowthState {
   int neighbors = 0;  ///< entries of each row to use, the first one (the point itself) included
   float scale = 1.F;  ///< coordinates of the nodes for one unit of the cloud
   PairLimits limits;
+  bool scattered = false;  ///< neighbours are far from each other in memory
   float typical_offset = 0.F;  ///< of a neighbour from a tangent plane, in spacings: the noise
   FastVector<Node> nodes;
   std::vector<std::int32_t> labels;  ///< -1 = none
@@ -113,6 +114,16 @@ struct GrowthState {
   bool isFace(std::int32_t label, std::size_t small_size) const {
     const auto at = static_cast<std::size_t>(label);
     return clusters[at].size >= small_size && strips[at] == 0;
+  }
+  /// Ask the memory for what is looked at soon: a row of the table, or what is known of the points
+  /// in it.
+  void fetchRow(std::size_t row) const { __builtin_prefetch(neighborhoods->indices(row)); }
+  void fetchPoints(std::size_t row, int count) const {
+    const pcl::index_t* points = neighborhoods->indices(row);
+    for (int j = 0; j < count; ++j) {
+      __builtin_prefetch(nodes.data() + points[j]);
+      __builtin_prefetch(labels.data() + points[j]);
+    }
   }
   int rowSize(std::size_t row) const { return std::min(neighborhoods->count(row), neighbors); }
 };

@@ -50,19 +50,22 @@ void setShape(const Moments& m, Segment& segment) {
   segment.rms = static_cast<float>(std::sqrt(std::max(0.0, solver.eigenvalues()[0])));
 }
 
-Moments momentsOf(const PointView& points, const GrowthState& state, const pcl::index_t* begin,
-                  const pcl::index_t* end) {
-  Moments m;
-  const float* origin = points[static_cast<std::size_t>(*begin)];
-  for (std::size_t c = 0; c < 3; ++c) m.origin[c] = static_cast<double>(origin[c]);
+// Point by point, not segment by segment: in whatever order the points are, each is read once.
+void measure(const PointView& points, const GrowthState& state, Segmentation& result) {
+  std::vector<Moments> moments(result.segments.size());
+  for (std::size_t s = 0; s < moments.size(); ++s) {
+    const float* origin = points[static_cast<std::size_t>(*result.begin(s))];
+    for (std::size_t c = 0; c < 3; ++c) moments[s].origin[c] = static_cast<double>(origin[c]);
+  }
   const double scale = 1.0 / static_cast<double>(state.scale);
-  for (const pcl::index_t* it = begin; it != end; ++it) {
-    const auto p = static_cast<std::size_t>(*it);
+  for (std::size_t p = 0; p < result.labels.size(); ++p) {
+    if (result.labels[p] < 0) continue;
+    Moments& m = moments[static_cast<std::size_t>(result.labels[p])];
     const double side = static_cast<double>(state.nodes[p].spacing) * scale;
     m.area += side * side;
     m.add(points[p]);
   }
-  return m;
+  for (std::size_t s = 0; s < moments.size(); ++s) setShape(moments[s], result.segments[s]);
 }
 
 }  // namespace
@@ -95,9 +98,7 @@ Segmentation finish(const PointView& points, const GrowthState& state,
   result.labels = std::move(labels);
   result.signs = std::move(signs);
   fillMembers(result);
-  for (std::size_t s = 0; s < count; ++s) {
-    setShape(momentsOf(points, state, result.begin(s), result.end(s)), result.segments[s]);
-  }
+  measure(points, state, result);
   return result;
 }
 

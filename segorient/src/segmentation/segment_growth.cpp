@@ -79,6 +79,7 @@ class Grower {
          std::vector<std::uint8_t>& on_border)
       : hood_(*state.neighborhoods),
         limits_(state.limits),
+        scattered_(state.scattered),
         row_size_(state.neighbors),
         cos_alpha_(options.alpha < kRightAngle ? std::cos(options.alpha) : 0.F),
         cos_beta_(options.beta < kRightAngle ? std::cos(options.beta) : -1.F),
@@ -100,10 +101,15 @@ class Grower {
     tail_ = 0;
     accept(seed, 1);
     for (std::size_t head = 0; head < tail_; ++head) {
-      // Fetches ahead: rows, and the points in the farther half of a row, where growing has not
-      // been yet. Not in a function of its own, which compilers leave out as one without effects.
+      // Fetches ahead: rows, the labels of points in them unless they are likely to be here, and
+      // the points in the farther half of a row, where growing has not been yet. Not in a function of its own, which compilers leave out as one without effects.
       if (head + kRowsAhead < tail_) {
         __builtin_prefetch(hood_.indices(static_cast<std::size_t>(queue_[head + kRowsAhead])));
+      }
+      if (scattered_ && head + kLabelsAhead < tail_) {
+        const auto p = static_cast<std::size_t>(queue_[head + kLabelsAhead]);
+        const pcl::index_t* row = hood_.indices(p);
+        for (int j = 1, end = rowSize(p); j < end; ++j) __builtin_prefetch(labels_ + row[j]);
       }
       if (head + kNodesAhead < tail_) {
         const auto p = static_cast<std::size_t>(queue_[head + kNodesAhead]);
@@ -119,6 +125,7 @@ class Grower {
 
  private:
   static constexpr std::size_t kRowsAhead = 32;
+  static constexpr std::size_t kLabelsAhead = 16;
   static constexpr std::size_t kNodesAhead = 12;
   static constexpr int kMaskBits = 32;
   static constexpr float kRightAngle = 1.5707963F;
@@ -191,6 +198,7 @@ class Grower {
 
   const Neighborhoods& hood_;
   PairLimits limits_;
+  bool scattered_;
   int row_size_;
   bool full_ = true;  ///< no row is shorter
   float cos_alpha_;

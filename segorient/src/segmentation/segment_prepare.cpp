@@ -173,6 +173,23 @@ float typicalOffset(const GrowthState& state) {
   return kDeviationPerMedian * *middle;
 }
 
+// Whether most points are far from their nearest neighbour in memory: then nothing that growing
+// comes to is in a cache already.
+bool isScattered(const Neighborhoods& hood) {
+  constexpr std::size_t kSamples = 1024;
+  constexpr std::size_t kFar = 4096;  // points whose labels alone fill half a first-level cache
+  const std::size_t step = std::max<std::size_t>(1, hood.size() / kSamples);
+  std::size_t seen = 0;
+  std::size_t far = 0;
+  for (std::size_t i = 0; i < hood.size(); i += step) {
+    if (hood.count(i) < 2) continue;
+    const auto nearest = static_cast<std::size_t>(hood.indices(i)[1]);
+    ++seen;
+    far += (nearest > i ? nearest - i : i - nearest) > kFar ? 1U : 0U;
+  }
+  return 2 * far > seen;
+}
+
 }  // namespace
 
 void prepare(const PointView& points, const PointView& normals, const SegmentationOptions& options,
@@ -186,6 +203,7 @@ void prepare(const PointView& points, const PointView& normals, const Segmentati
   state.limits.gap_sqr = options.max_gap > 0.F ? options.max_gap * options.max_gap : kNoLimit;
   state.limits.offset = kNoLimit;
   state.typical_offset = typicalOffset(state);
+  state.scattered = isScattered(*state.neighborhoods);
   if (options.max_offset > 0.F) {
     // Two deviations of a noisy neighbour, and never so much that a wall of one spacing would leak.
     state.limits.offset = std::clamp(2.F * state.typical_offset, options.max_offset,
