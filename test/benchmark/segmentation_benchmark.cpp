@@ -99,7 +99,7 @@ CloudSegmentation segment(const std::vector<float>& xyz, const std::vector<float
                           const SegmentationOptions& options = {}) {
   CloudSegmentation::Input input;
   input.points = viewOf(xyz);
-  input.normals = normals;
+  input.normals = viewOf(normals);
   input.neighbors = k;
   input.unite_smooth = true;
   CloudSegmentation result;

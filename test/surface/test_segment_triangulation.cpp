@@ -33,7 +33,7 @@ Cloud::Ptr toPcl(const LabelledCloud& in) {
 Segmentation facesOf(const LabelledCloud& in) {
   CloudSegmentation::Input input;
   input.points = {in.xyz.data(), 4, in.size()};
-  input.normals = in.normals;
+  input.normals = {in.normals.data(), 4, in.size()};
   CloudSegmentation segmentation;
   EXPECT_TRUE(segmentation.compute(input, {}));
   return segmentation.segmentation();

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <type_traits>
 
 #include "segment_order.h"
 
@@ -16,13 +17,20 @@ namespace {
 // one.
 bool fits(const Neighborhoods& table, std::size_t points) {
   if (table.size() != points) return false;
-  for (std::size_t row = 0; row < points; ++row) {
+  // Negative ones are too large as well.
+  using Unsigned = std::make_unsigned_t<pcl::index_t>;
+  bool bad = false;
+  for (std::size_t row = 0; row < points && !bad; ++row) {
     const pcl::index_t* entries = table.indices(row);
-    for (int j = 0; j < table.count(row); ++j) {
-      if (entries[j] < 0 || static_cast<std::size_t>(entries[j]) >= points) return false;
-    }
+    for (int j = 0, count = table.count(row); j < count; ++j)
+      bad |= static_cast<Unsigned>(entries[j]) >= static_cast<Unsigned>(points);
   }
-  return true;
+  return !bad;
+}
+
+void copyNormal(const NormalView& normals, std::size_t i, float* to) {
+  std::copy_n(normals[i], 3, to);
+  to[3] = normals[i][normals.curvature];
 }
 
 // The table of the compact cloud by queries to a search on the original one. Duplicates in an
@@ -51,7 +59,7 @@ void searchEach(const CloudSegmentation::Search& search, const std::vector<pcl::
 
 // The segments of the distinct points as segments of the whole cloud.
 Segmentation expand(const Segmentation& compact, const std::vector<pcl::index_t>& row_of_point,
-                    const std::vector<float>& normals) {
+                    const NormalView& normals) {
   Segmentation result;
   const std::size_t n = row_of_point.size();
   result.labels.assign(n, -1);
@@ -80,7 +88,7 @@ Segmentation expand(const Segmentation& compact, const std::vector<pcl::index_t>
     // A duplicate may come with the opposite normal.
     const auto& reference =
         result.segments[static_cast<std::size_t>(result.labels[p])].reference_normal;
-    const float* n_p = &normals[4 * p];
+    const float* n_p = normals[p];
     const float along = n_p[0] * reference[0] + n_p[1] * reference[1] + n_p[2] * reference[2];
     if (along * static_cast<float>(result.signs[p]) < 0.F) {
       result.signs[p] = static_cast<std::int8_t>(-result.signs[p]);
@@ -105,7 +113,7 @@ void CloudSegmentation::clear() {
 
 bool CloudSegmentation::compute(const Input& input, const SegmentationOptions& options) {
   clear();
-  if (input.normals.size() != 4 * input.points.size || input.points.size == 0) return false;
+  if (input.normals.size != input.points.size || input.points.size == 0) return false;
   neighbors_ = std::max(input.neighbors, 1);
   united_ = input.unite_smooth;
   if (input.table != nullptr) return computeWithTable(input, options);
@@ -115,22 +123,26 @@ bool CloudSegmentation::compute(const Input& input, const SegmentationOptions& o
 
 bool CloudSegmentation::computeWithTable(const Input& input, const SegmentationOptions& options) {
   if (!fits(*input.table, input.points.size)) return false;
-  std::vector<float> normals = input.normals;
+  NormalView normals = input.normals;
+  std::vector<float> masked;
   if (input.indices != nullptr) {
     std::vector<char> wanted(input.points.size, 0);
     for (const pcl::index_t i : *input.indices) {
       if (i >= 0 && static_cast<std::size_t>(i) < wanted.size())
         wanted[static_cast<std::size_t>(i)] = 1;
     }
+    masked.resize(4 * wanted.size());
     for (std::size_t i = 0; i < wanted.size(); ++i) {
-      if (wanted[i] == 0) normals[4 * i] = std::numeric_limits<float>::quiet_NaN();
+      copyNormal(input.normals, i, &masked[4 * i]);
+      if (wanted[i] == 0) masked[4 * i] = std::numeric_limits<float>::quiet_NaN();
     }
+    normals = {masked.data(), 4, wanted.size()};
   }
   SegmentationOptions used = options;
   used.neighbors = neighbors_;
   table_ = input.table;
-  result_ = segmentByNormals(input.points, {normals.data(), 4, input.points.size}, *table_, used,
-                             &report_, united_ ? &faces_ : nullptr);
+  result_ =
+      segmentByNormals(input.points, normals, *table_, used, &report_, united_ ? &faces_ : nullptr);
   return true;
 }
 
@@ -149,7 +161,7 @@ void CloudSegmentation::computeCompact(const Input& input, const SegmentationOpt
   std::vector<float> normals(4 * compact.size());
   for (std::size_t row = 0; row < compact.size(); ++row) {
     source_.push_back(pointAt(static_cast<std::size_t>(compact.source[row])));
-    std::copy_n(&input.normals[4 * static_cast<std::size_t>(source_.back())], 4, &normals[4 * row]);
+    copyNormal(input.normals, static_cast<std::size_t>(source_.back()), &normals[4 * row]);
   }
   const int k = static_cast<int>(std::min<std::size_t>(static_cast<std::size_t>(neighbors_) + 1,
                                                        std::max<std::size_t>(compact.size(), 1)));

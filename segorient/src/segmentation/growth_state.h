@@ -98,7 +98,7 @@ struct GrowthState {
   int neighbors = 0;  ///< entries of each row to use, the first one (the point itself) included
   float scale = 1.F;  ///< coordinates of the nodes for one unit of the cloud
   PairLimits limits;
-  bool scattered = false;  ///< neighbours are far from each other in memory
+  bool scattered = false;      ///< neighbours are far from each other in memory
   float typical_offset = 0.F;  ///< of a neighbour from a tangent plane, in spacings: the noise
   FastVector<Node> nodes;
   std::vector<std::int32_t> labels;  ///< -1 = none
@@ -129,7 +129,7 @@ struct GrowthState {
 };
 
 /// Scales and packs the points, finds the local spacing and the limits.
-void prepare(const PointView& points, const PointView& normals, const SegmentationOptions& options,
+void prepare(const PointView& points, const NormalView& normals, const SegmentationOptions& options,
              GrowthState& state);
 
 /// Region growing.

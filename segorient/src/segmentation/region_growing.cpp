@@ -8,7 +8,7 @@
 
 namespace segorient {
 
-Segmentation segmentByNormals(const PointView& points, const PointView& normals,
+Segmentation segmentByNormals(const PointView& points, const NormalView& normals,
                               const Neighborhoods& neighborhoods,
                               const SegmentationOptions& options, SegmentationReport* report,
                               Segmentation* faces) {
@@ -37,10 +37,9 @@ Segmentation segmentByNormals(const PointView& points, const PointView& normals,
     }
     if (faces != nullptr) {
       counts.united = segmentation::uniteSmooth(options, state);
-      *faces = counts.united > 0
-                   ? segmentation::finish(points, state, std::move(state.labels),
-                                          std::move(state.signs))
-                   : result;
+      *faces = counts.united > 0 ? segmentation::finish(points, state, std::move(state.labels),
+                                                        std::move(state.signs))
+                                 : result;
     }
   }
   if (report != nullptr) *report = counts;

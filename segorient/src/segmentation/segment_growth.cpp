@@ -102,7 +102,8 @@ class Grower {
     accept(seed, 1);
     for (std::size_t head = 0; head < tail_; ++head) {
       // Fetches ahead: rows, the labels of points in them unless they are likely to be here, and
-      // the points in the farther half of a row, where growing has not been yet. Not in a function of its own, which compilers leave out as one without effects.
+      // the points in the farther half of a row, where growing has not been yet. Not in a function
+      // of its own, which compilers leave out as one without effects.
       if (head + kRowsAhead < tail_) {
         __builtin_prefetch(hood_.indices(static_cast<std::size_t>(queue_[head + kRowsAhead])));
       }

@@ -98,7 +98,7 @@ float sqrSpacing(const float* sqr_distances, int count) {
   return found > 0 ? sum / static_cast<float>(found) : 0.F;
 }
 
-void packNodes(const PointView& points, const PointView& normals, const Scaling& scaling,
+void packNodes(const PointView& points, const NormalView& normals, const Scaling& scaling,
                int threads, GrowthState& state) {
   const Neighborhoods& hood = *state.neighborhoods;
   const auto n = static_cast<std::ptrdiff_t>(points.size);
@@ -131,7 +131,7 @@ void packNodes(const PointView& points, const PointView& normals, const Scaling&
       node.ny = unit[1];
       node.nz = unit[2];
     }
-    node.curvature = m[3];
+    node.curvature = m[normals.curvature];
     if (!use_table) continue;
     const float mean = sqrSpacing(hood.sqrDistances(row), hood.count(row)) * square;
     node.spacing = std::sqrt(mean * kSqrSpacingPerMean);
@@ -192,7 +192,7 @@ bool isScattered(const Neighborhoods& hood) {
 
 }  // namespace
 
-void prepare(const PointView& points, const PointView& normals, const SegmentationOptions& options,
+void prepare(const PointView& points, const NormalView& normals, const SegmentationOptions& options,
              GrowthState& state) {
   const int threads = resolveThreads(options.threads);
   const Scaling scaling = scalingOf(points);

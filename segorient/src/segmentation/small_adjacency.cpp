@@ -52,7 +52,8 @@ void SmallAdjacency::listReverse() {
   };
   std::vector<pcl::index_t> sources;
   for (const pcl::index_t p : state_.border) {
-    if (visitReverse(static_cast<std::size_t>(p), [&](std::uint32_t slot) { ++reverse_starts_[slot + 1]; })) {
+    if (visitReverse(static_cast<std::size_t>(p),
+                     [&](std::uint32_t slot) { ++reverse_starts_[slot + 1]; })) {
       sources.push_back(p);
     }
   }

@@ -48,7 +48,7 @@ bool triangulateCloud(const PointView& points, const std::vector<float>& normals
   if (segmentation.labels.empty()) {
     CloudSegmentation::Input input;
     input.points = points;
-    input.normals = normals;
+    input.normals = {normals.data(), 4, normals.size() / 4};
     input.indices = indices;
     SegmentationOptions segmentation_options;
     segmentation_options.threads = options.threads;

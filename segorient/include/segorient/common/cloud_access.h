@@ -71,4 +71,12 @@ PointView normalView(const pcl::PointCloud<PointNT>& cloud) {
   return view;
 }
 
+/// The same with curvatures.
+template <typename PointNT>
+NormalView curvedNormalView(const pcl::PointCloud<PointNT>& cloud) {
+  if (cloud.empty()) return normalView(cloud);
+  const PointNT& first = cloud.points.front();
+  return {normalView(cloud), static_cast<std::size_t>(&first.curvature - &first.normal_x)};
+}
+
 }  // namespace segorient

@@ -20,6 +20,18 @@ struct PointView {
   const float* operator[](std::size_t i) const { return data + i * stride; }
 };
 
+/// Read-only view of normals with their curvatures: curvature i is the float at
+/// `data + i * stride + curvature`.
+struct NormalView : PointView {
+  std::size_t curvature = 3;  ///< floats from the normal to its curvature
+
+  NormalView() = default;
+  NormalView(const PointView& normals, std::size_t curvature_offset = 3)  // NOLINT: as good as one
+      : PointView(normals), curvature(curvature_offset) {}
+  NormalView(const float* first, std::size_t floats, std::size_t rows)
+      : PointView{first, floats, rows} {}
+};
+
 /// Whether all three coordinates of a row are finite.
 inline bool isFinite(const float* p) {
   return std::isfinite(p[0]) && std::isfinite(p[1]) && std::isfinite(p[2]);

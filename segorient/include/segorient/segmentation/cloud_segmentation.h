@@ -21,8 +21,8 @@ class CloudSegmentation {
                                    std::vector<float>& sqr_distances)>;
 
   struct Input {
-    PointView points;            ///< the whole cloud
-    std::vector<float> normals;  ///< of the whole cloud, 4 floats a point: normal and curvature
+    PointView points;    ///< the whole cloud
+    NormalView normals;  ///< of the whole cloud
     const pcl::Indices* indices =
         nullptr;                           ///< points to segment, null = all; bad ones are left out
     const Neighborhoods* table = nullptr;  ///< of the whole cloud, or null to search; outlives this

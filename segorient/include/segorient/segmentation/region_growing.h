@@ -66,7 +66,7 @@ struct SegmentationReport {
 /// nearest neighbours.
 ///
 /// \param points all rows finite where the normal is finite
-/// \param normals row = unit normal and curvature (4 floats); points with a NaN normal get label -1
+/// \param normals unit normals and curvatures; points with a NaN normal get label -1
 /// \param neighborhoods of every point; rows without distances are measured anew
 /// \param faces where not null: the segments once more, those united whose common border is smooth.
 ///        Beta keeps segments so flat that each can be seen through a plane, as triangulation and
@@ -74,7 +74,7 @@ struct SegmentationReport {
 ///        again. A border is smooth where growing could have crossed it but for beta, and the
 ///        surface bends there by less than alpha more than its curvature on both sides explains.
 /// \return empty if the sizes of the three do not agree
-Segmentation segmentByNormals(const PointView& points, const PointView& normals,
+Segmentation segmentByNormals(const PointView& points, const NormalView& normals,
                               const Neighborhoods& neighborhoods,
                               const SegmentationOptions& options,
                               SegmentationReport* report = nullptr, Segmentation* faces = nullptr);

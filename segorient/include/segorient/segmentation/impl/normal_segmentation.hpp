@@ -191,10 +191,7 @@ bool NormalSegmentation<PointT, NormalT>::segment() {
     const CloudPoints<PointT> points(*input_);
     CloudSegmentation::Input input;
     input.points = points.view();
-    input.normals.reserve(4 * normals_->size());
-    for (const NormalT& n : *normals_) {
-      input.normals.insert(input.normals.end(), {n.normal_x, n.normal_y, n.normal_z, n.curvature});
-    }
+    input.normals = curvedNormalView(*normals_);
     if (!fake_indices_) input.indices = indices_.get();
     input.table = neighborhoods_.get();
     input.neighbors = static_cast<int>(neighbors_);
