@@ -3,7 +3,11 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
 #include <numeric>
+#include <random>
 #include <set>
 
 #include "partition_quality.h"
@@ -330,6 +334,52 @@ TEST(RegionGrowing, ScaleDoesNotMatter) {
     const Segmentation t = segmentByNormals(viewOf(scaled), viewOf(in.normals), table, {});
     EXPECT_EQ(s.labels, t.labels) << scale;
   }
+}
+
+TEST(RegionGrowing, NormalsAndCurvaturesMayLieApart) {
+  const Prepared in(sample("bracket", bracket(), 8000, 6));
+  constexpr std::size_t kStride = 7;
+  constexpr std::size_t kCurvature = 5;
+  // Numbers that no stage may read.
+  std::vector<float> apart(kStride * in.cloud.size(), std::numeric_limits<float>::quiet_NaN());
+  for (std::size_t i = 0; i < in.cloud.size(); ++i) {
+    std::copy_n(&in.normals[4 * i], 3, &apart[kStride * i]);
+    apart[kStride * i + kCurvature] = in.normals[4 * i + 3];
+  }
+  const NormalView view(PointView{apart.data(), kStride, in.cloud.size()}, kCurvature);
+  const Segmentation s = segmentByNormals(viewOf(in.cloud.xyz), viewOf(in.normals), in.table, {});
+  const Segmentation t = segmentByNormals(viewOf(in.cloud.xyz), view, in.table, {});
+  EXPECT_EQ(s.labels, t.labels);
+  EXPECT_EQ(s.signs, t.signs);
+}
+
+// Memory is asked for ahead in another way where neighbours are far from each other in memory, and
+// the segments of the same cloud in the other order must be the same ones.
+TEST(RegionGrowing, OrderInMemoryDoesNotMatter) {
+  const LabelledCloud cloud = sample("bracket", bracket(), 30000, 9, 0.1);
+  const auto segmentIn = [&](const std::vector<std::size_t>& order) {
+    LabelledCloud moved = cloud;
+    for (std::size_t i = 0; i < order.size(); ++i)
+      std::copy_n(&cloud.xyz[4 * order[i]], 4, &moved.xyz[4 * i]);
+    const Segmentation s = Prepared(moved).segment();
+    std::vector<int> labels(order.size());
+    for (std::size_t i = 0; i < order.size(); ++i) labels[order[i]] = s.labels[i];
+    return labels;
+  };
+  std::vector<std::size_t> order(cloud.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::shuffle(order.begin(), order.end(), std::mt19937(1));
+  const std::vector<int> scattered = segmentIn(order);
+  const auto cell = [&](std::size_t i) {
+    const float* p = &cloud.xyz[4 * i];
+    return std::array<float, 3>{std::floor(20.F * p[0]), std::floor(20.F * p[1]),
+                                std::floor(20.F * p[2])};
+  };
+  std::stable_sort(order.begin(), order.end(),
+                   [&](std::size_t a, std::size_t b) { return cell(a) < cell(b); });
+  const std::vector<int> coherent = segmentIn(order);
+  EXPECT_GE(adjustedRandIndex(scattered, coherent), 0.98);
+  EXPECT_GE(adjustedRandIndex(scattered, cloud.face), 0.9);
 }
 
 TEST(RegionGrowing, MeasuresSegments) {
