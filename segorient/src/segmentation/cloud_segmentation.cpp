@@ -19,13 +19,20 @@ bool fits(const Neighborhoods& table, std::size_t points) {
   if (table.size() != points) return false;
   // Negative ones are too large as well.
   using Unsigned = std::make_unsigned_t<pcl::index_t>;
-  bool bad = false;
-  for (std::size_t row = 0; row < points && !bad; ++row) {
-    const pcl::index_t* entries = table.indices(row);
-    for (int j = 0, count = table.count(row); j < count; ++j)
-      bad |= static_cast<Unsigned>(entries[j]) >= static_cast<Unsigned>(points);
+  const auto outside = [&](const pcl::index_t* entries, std::size_t count) {
+    bool any = false;
+    for (std::size_t i = 0; i < count; ++i)
+      any |= static_cast<Unsigned>(entries[i]) >= static_cast<Unsigned>(points);
+    return any;
+  };
+  bool full = true;
+  for (std::size_t row = 0; row < points && full; ++row) full = table.count(row) == table.k();
+  // Nearly always all rows are one row after the other.
+  if (full) return !outside(table.indices(0), points * static_cast<std::size_t>(table.k()));
+  for (std::size_t row = 0; row < points; ++row) {
+    if (outside(table.indices(row), static_cast<std::size_t>(table.count(row)))) return false;
   }
-  return !bad;
+  return true;
 }
 
 void copyNormal(const NormalView& normals, std::size_t i, float* to) {
