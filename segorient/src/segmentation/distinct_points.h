@@ -29,7 +29,7 @@ class DistinctPoints {
     std::uint64_t& last = last_[static_cast<std::size_t>(point) % kSlots];
     const std::uint64_t tag = turn_ << 32U | static_cast<std::uint32_t>(point);
     points_[size_] = point;
-    size_ += wanted & (last != tag) ? 1U : 0U;
+    size_ += (wanted & (last != tag)) ? 1U : 0U;
     last = wanted ? tag : last;
   }
   std::size_t size() const { return size_; }

@@ -22,7 +22,7 @@ class CloudSegmentation {
 
   struct Input {
     PointView points;    ///< the whole cloud
-    NormalView normals;  ///< of the whole cloud
+    NormalView normals;  ///< of the whole cloud; both are needed until compute() returns
     const pcl::Indices* indices =
         nullptr;                           ///< points to segment, null = all; bad ones are left out
     const Neighborhoods* table = nullptr;  ///< of the whole cloud, or null to search; outlives this
