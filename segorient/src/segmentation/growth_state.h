@@ -115,16 +115,8 @@ struct GrowthState {
     const auto at = static_cast<std::size_t>(label);
     return clusters[at].size >= small_size && strips[at] == 0;
   }
-  /// Ask the memory for what is looked at soon: a row of the table, or what is known of the points
-  /// in it.
+  /// Asks the memory for a row of the table that is looked at soon.
   void fetchRow(std::size_t row) const { __builtin_prefetch(neighborhoods->indices(row)); }
-  void fetchPoints(std::size_t row, int count) const {
-    const pcl::index_t* points = neighborhoods->indices(row);
-    for (int j = 0; j < count; ++j) {
-      __builtin_prefetch(nodes.data() + points[j]);
-      __builtin_prefetch(labels.data() + points[j]);
-    }
-  }
   int rowSize(std::size_t row) const { return std::min(neighborhoods->count(row), neighbors); }
 };
 

@@ -29,11 +29,8 @@ constexpr float kClearlyOff = 0.2F;
 /// are: the smaller label gets them, so that grids have straight borders.
 constexpr float kTie = 1e-3F;
 
-/// How much earlier than it is looked at the memory is asked for a row, for the points in it, and
-/// for theirs.
+/// How many points earlier than it is looked at the memory is asked for a row.
 constexpr std::size_t kRowsAhead = 12;
-constexpr std::size_t kPointsAhead = 6;
-constexpr std::size_t kWitnessesAhead = 2;
 
 struct Vector {
   float x = 0.F, y = 0.F, z = 0.F;
@@ -101,22 +98,6 @@ class Settler {
     if (best == nullptr || best->label == own) return own;
     const float reach = state_.limits.offset * state_.nodes[p].spacing;
     return own_regular || std::abs(offset(p, *best)) <= reach ? best->label : own;
-  }
-
-  /// Asks the memory for what settle() looks at: at first where it is, then that.
-  void fetchAround(std::size_t p) const {
-    const int size = reach(p);
-    state_.fetchPoints(p, size);
-    const pcl::index_t* row = state_.neighborhoods->indices(p);
-    for (int j = 0; j < size; ++j) state_.fetchRow(static_cast<std::size_t>(row[j]));
-  }
-  void fetchWitnesses(std::size_t p) const {
-    if (isRegular(state_.labels[p]) && !meetsOther(p)) return;
-    const pcl::index_t* row = state_.neighborhoods->indices(p);
-    for (int size = reach(p), j = size / 2; j < size; ++j) {
-      const auto middle = static_cast<std::size_t>(row[j]);
-      state_.fetchPoints(middle, reach(middle));
-    }
   }
 
  private:
@@ -278,10 +259,6 @@ std::size_t settleOnce(const SegmentationOptions& options, const std::vector<pcl
       const auto at = static_cast<std::size_t>(i);
       if (at + kRowsAhead < border.size())
         state.fetchRow(static_cast<std::size_t>(border[at + kRowsAhead]));
-      if (at + kPointsAhead < border.size())
-        settler.fetchAround(static_cast<std::size_t>(border[at + kPointsAhead]));
-      if (state.scattered && at + kWitnessesAhead < border.size())
-        settler.fetchWitnesses(static_cast<std::size_t>(border[at + kWitnessesAhead]));
       wanted[at] = settler.settle(static_cast<std::size_t>(border[at]), around);
     }
   }
