@@ -116,7 +116,7 @@ void timeStage(const std::string& name, const Cloud& cloud, int threads) {
   segorient::LocalNormalOptions normal_options;
   normal_options.k = 0;
   segorient::estimateNormals(compact.view(), neighborhoods, normal_options, normals.data());
-  const segorient::PointView normal_view{normals.data(), 4, compact.size()};
+  const segorient::NormalView normal_view{normals.data(), 4, compact.size()};
   const segorient::Segmentation segmentation =
       segorient::segmentByNormals(compact.view(), normal_view, neighborhoods, {});
   std::size_t regular = 0;

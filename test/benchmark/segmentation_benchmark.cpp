@@ -74,6 +74,11 @@ PointView viewOf(const std::vector<float>& rows) {
   return {rows.data(), 4, rows.size() / 4};
 }
 
+// Rows of normal and curvature.
+NormalView normalsOf(const std::vector<float>& rows) {
+  return {rows.data(), 4, rows.size() / 4};
+}
+
 Neighborhoods search(const std::vector<float>& xyz, int k, double* seconds = nullptr) {
   search::MedianHashIndex::Options options;
   options.threads = 1;
@@ -99,7 +104,7 @@ CloudSegmentation segment(const std::vector<float>& xyz, const std::vector<float
                           const SegmentationOptions& options = {}) {
   CloudSegmentation::Input input;
   input.points = viewOf(xyz);
-  input.normals = viewOf(normals);
+  input.normals = normalsOf(normals);
   input.neighbors = k;
   input.unite_smooth = true;
   CloudSegmentation result;
@@ -232,11 +237,11 @@ void speed(std::size_t n) {
         search_times.push_back(seconds);
         normals = planeNormals(cloud.xyz, table, k);
         const double start = cpuSeconds();
-        const Segmentation s = segmentByNormals(cloud.view(), viewOf(normals), table, options);
+        const Segmentation s = segmentByNormals(cloud.view(), normalsOf(normals), table, options);
         times.push_back(cpuSeconds() - start);
         const double again = cpuSeconds();
         Segmentation united;
-        segmentByNormals(cloud.view(), viewOf(normals), table, options, nullptr, &united);
+        segmentByNormals(cloud.view(), normalsOf(normals), table, options, nullptr, &united);
         face_times.push_back(cpuSeconds() - again);
       }
       double theirs = 0;

@@ -57,7 +57,7 @@ struct FaceSegments {
   }
 
   PointView points() const { return pointsOf(cloud); }
-  PointView normalView() const { return {normals.data(), 4, cloud.size()}; }
+  NormalView normalView() const { return {normals.data(), 4, cloud.size()}; }
 };
 
 /// Whether the segments' signs undo exactly what was turned, up to one sign for all.

@@ -17,6 +17,11 @@ inline PointView viewOf(const std::vector<float>& rows) {
   return {rows.data(), 4, rows.size() / 4};
 }
 
+/// Rows of normal and curvature.
+inline NormalView normalsOf(const std::vector<float>& rows) {
+  return {rows.data(), 4, rows.size() / 4};
+}
+
 inline Neighborhoods neighborsOf(const LabelledCloud& cloud, int k) {
   search::MedianHashIndex index;
   index.build(viewOf(cloud.xyz), nullptr, {});
@@ -41,7 +46,7 @@ struct Prepared {
 
   Segmentation segment(const SegmentationOptions& options = {},
                        SegmentationReport* report = nullptr) const {
-    return segmentByNormals(viewOf(cloud.xyz), viewOf(normals), table, options, report);
+    return segmentByNormals(viewOf(cloud.xyz), normalsOf(normals), table, options, report);
   }
 
   LabelledCloud cloud;

@@ -22,7 +22,7 @@ struct Result {
 
 Result segmentBoth(const Prepared& in, const SegmentationOptions& options = {}) {
   Result r;
-  r.segments = segmentByNormals(viewOf(in.cloud.xyz), viewOf(in.normals), in.table, options,
+  r.segments = segmentByNormals(viewOf(in.cloud.xyz), normalsOf(in.normals), in.table, options,
                                 &r.report, &r.faces);
   return r;
 }

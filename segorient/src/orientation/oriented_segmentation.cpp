@@ -47,10 +47,12 @@ bool labelsInRange(const Segmentation& segmentation, std::size_t rows) {
                      [&](std::int32_t label) { return label < segments; });
 }
 
-std::vector<float> compactNormals(const CompactCloud& cloud, const PointView& normals) {
-  std::vector<float> out(4 * cloud.size(), 0.F);
+std::vector<float> compactNormals(const CompactCloud& cloud, const NormalView& normals) {
+  std::vector<float> out(4 * cloud.size());
   for (std::size_t i = 0; i < cloud.size(); ++i) {
-    unitVector(normals[static_cast<std::size_t>(cloud.source[i])], &out[4 * i]);
+    const float* normal = normals[static_cast<std::size_t>(cloud.source[i])];
+    unitVector(normal, &out[4 * i]);
+    out[4 * i + 3] = normal[normals.curvature];
   }
   return out;
 }
@@ -132,7 +134,7 @@ void invertTurned(const std::vector<SegmentOrientationResult>& results,
 
 }  // namespace
 
-OrientedSegmentation orientSegmentation(const PointView& points, const PointView& normals,
+OrientedSegmentation orientSegmentation(const PointView& points, const NormalView& normals,
                                         const Segmentation* segmentation, int k,
                                         const SegmentationOptions& segmentation_options,
                                         const OrientationOptions& options,
@@ -143,7 +145,7 @@ OrientedSegmentation orientSegmentation(const PointView& points, const PointView
 
   const CompactCloud cloud = compactCloud(points, nullptr, options.threads);
   const std::vector<float> distinct_normals = compactNormals(cloud, normals);
-  const PointView normal_view{distinct_normals.data(), 4, cloud.size()};
+  const NormalView normal_view{distinct_normals.data(), 4, cloud.size()};
   const Neighborhoods neighborhoods =
       findNeighbors(cloud, k > 0 ? k : defaultNeighbors(options), search, options.threads);
 

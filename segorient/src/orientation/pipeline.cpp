@@ -67,7 +67,7 @@ struct Working {
   Segmentation segmentation;
   OrientationResult orientation;
 
-  PointView normalView() const { return {normals.data(), 4, cloud.size()}; }
+  NormalView normalView() const { return {normals.data(), 4, cloud.size()}; }
 };
 
 std::size_t peakMemory() {

@@ -27,7 +27,7 @@ bool fits(const Neighborhoods& table, std::size_t points) {
   };
   bool full = true;
   for (std::size_t row = 0; row < points && full; ++row) full = table.count(row) == table.k();
-  // Nearly always all rows are one row after the other.
+  // Nearly always all rows are full, so that the entries follow one another.
   if (full) return !outside(table.indices(0), points * static_cast<std::size_t>(table.k()));
   for (std::size_t row = 0; row < points; ++row) {
     if (outside(table.indices(row), static_cast<std::size_t>(table.count(row)))) return false;

@@ -12,8 +12,9 @@
 namespace segorient::segmentation {
 
 /// The points of some rows of neighbours, in the order in which they were added. Rows next to each
-/// other share most of their points; these come once, but for a few that come twice. Which of them
-/// are new nobody can guess: no branches.
+/// other share most of their points, and these are dropped; of points that share a slot some may
+/// stay, more the more points there are for the slots. Which of them are new nobody can guess: no
+/// branches.
 class DistinctPoints {
  public:
   void restart() {
@@ -34,12 +35,14 @@ class DistinctPoints {
   }
   std::size_t size() const { return size_; }
   pcl::index_t operator[](std::size_t i) const { return points_[i]; }
+  const pcl::index_t* begin() const { return points_.data(); }
+  const pcl::index_t* end() const { return points_.data() + size_; }
 
  private:
   static constexpr std::size_t kSlots = 1024;
 
   std::array<std::uint64_t, kSlots> last_{};  ///< by slot: the last point that came, and its turn
-  std::uint64_t turn_ = 0;
+  std::uint64_t turn_ = 1;
   std::vector<pcl::index_t> points_;
   std::size_t size_ = 0;
 };

@@ -103,8 +103,9 @@ struct GrowthState {
   FastVector<Node> nodes;
   std::vector<std::int32_t> labels;  ///< -1 = none
   std::vector<std::int8_t> signs;
-  /// Ascending: labelled points that had a neighbour in another segment, or in none, when growing
-  /// ended. No other point has one as long as points only move across borders.
+  /// Ascending: all labelled points that had a neighbour in another segment, or in none, when
+  /// growing ended, and some that had none any more. The clean-up moves points across these borders
+  /// only, and leaves the list as it is.
   std::vector<pcl::index_t> border;
   std::vector<Cluster> clusters;
   std::vector<std::uint8_t> strips;  ///< by cluster: 1 = has no inside, see findStrips()

@@ -114,7 +114,6 @@ void packNodes(const PointView& points, const NormalView& normals, const Scaling
     const float* p = points[row];
     const float* m = normals[row];
     Node& node = nodes[row];
-    node.spacing = 0.F;
     node.x = (p[0] - scaling.center[0]) * scaling.scale;
     node.y = (p[1] - scaling.center[1]) * scaling.scale;
     node.z = (p[2] - scaling.center[2]) * scaling.scale;

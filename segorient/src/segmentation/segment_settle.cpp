@@ -18,6 +18,8 @@ constexpr std::size_t kCandidates = 6;
 /// Neighbours of each row that are looked at, where the table has as many: the normals were taken
 /// from them, so that twice as far there are normals that an edge has no part in.
 constexpr int kReach = 24;
+/// The neighbours' rows and the point's own one.
+constexpr std::size_t kMostAround = (kReach + 1) * (kReach + 1);
 /// 80 degrees. The normal of a point right at an edge may lean far over; near a right angle to the
 /// reference normal its sign would be arbitrary.
 constexpr double kMostLean = 1.3962634;
@@ -153,12 +155,12 @@ class Settler {
   void addRow(std::size_t p, std::size_t middle, DistinctPoints& around) const {
     const pcl::index_t* row = state_.neighborhoods->indices(middle);
     const int size = reach(middle);
-    around.reserve(static_cast<std::size_t>(size) + 1);
+    around.reserve(static_cast<std::size_t>(size));
     for (int j = 0; j < size; ++j) around.add(row[j], static_cast<std::size_t>(row[j]) != p);
   }
 
   void setWitnesses(const DistinctPoints& around, Candidate& candidate) const {
-    std::array<pcl::index_t, (kReach + 1) * (kReach + 1)> members;
+    std::array<pcl::index_t, kMostAround> members;
     std::size_t count = 0;
     for (std::size_t i = 0; i < around.size(); ++i) {
       members[count] = around[i];
@@ -280,18 +282,16 @@ std::size_t settleOnce(const SegmentationOptions& options, const std::vector<pcl
 }  // namespace
 
 std::size_t settleEdges(const SegmentationOptions& options, GrowthState& state) {
-  std::vector<pcl::index_t> border = state.border;
-  std::size_t moved = settleOnce(options, border, state);
+  std::size_t moved = settleOnce(options, state.border, state);
   // At a corner the points around it may have been in no face, either.
-  for (std::size_t last = moved; last > 0;) {
-    border.erase(std::remove_if(border.begin(), border.end(),
-                                [&](pcl::index_t p) {
-                                  return state.isFace(state.labels[static_cast<std::size_t>(p)],
-                                                      options.small_size);
-                                }),
-                 border.end());
-    last = settleOnce(options, border, state);
-    moved += last;
+  std::vector<pcl::index_t> loose;
+  for (std::size_t last = moved; last > 0; moved += last) {
+    loose.clear();
+    std::copy_if(
+        state.border.begin(), state.border.end(), std::back_inserter(loose), [&](pcl::index_t p) {
+          return !state.isFace(state.labels[static_cast<std::size_t>(p)], options.small_size);
+        });
+    last = settleOnce(options, loose, state);
   }
   return moved;
 }

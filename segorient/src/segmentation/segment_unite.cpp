@@ -115,7 +115,8 @@ class BorderTest {
     Eigen::Vector3d center_b = Eigen::Vector3d::Zero();
     int count_a = 0;
     int count_b = 0;
-    for (const std::uint32_t i : patch_) {
+    for (const pcl::index_t index : patch_) {
+      const auto i = static_cast<std::size_t>(index);
       const bool in_a = state_.labels[i] == pair.a;
       (in_a ? center_a : center_b) += position(state_.nodes[i]) - middle;
       ++(in_a ? count_a : count_b);
@@ -135,8 +136,9 @@ class BorderTest {
     frame.col(0) = frame.col(1).cross(frame.col(2));
     Eigen::Matrix<double, 8, 8> products = Eigen::Matrix<double, 8, 8>::Zero();
     const Eigen::Matrix3d local = frame.transpose() / static_cast<double>(p.spacing);
-    for (const std::uint32_t i : patch_) {
-      const Eigen::Vector3d v = local * (position(state_.nodes[i]) - middle);
+    for (const pcl::index_t i : patch_) {
+      const Eigen::Vector3d v =
+          local * (position(state_.nodes[static_cast<std::size_t>(i)]) - middle);
       Eigen::Matrix<double, 8, 1> row;
       row << 1, v.x(), v.y(), v.x() * v.x(), v.x() * v.y(), v.y() * v.y(), std::abs(v.x()), v.z();
       products.selfadjointView<Eigen::Lower>().rankUpdate(row);
@@ -161,24 +163,29 @@ class BorderTest {
   // Points of the two segments among the neighbours' neighbours, and theirs in turn.
   void listPatch(const Pair& pair, int rings) {
     found_.restart();
-    found_.reserve(1);
-    found_.add(static_cast<pcl::index_t>(pair.p), true);
-    std::size_t inner = 0;
+    patch_.assign(1, static_cast<pcl::index_t>(pair.p));
+    ring_ = patch_;
     for (int ring = 0; ring < rings; ++ring) {
-      const std::size_t outer = found_.size();
-      for (; inner < outer; ++inner) addNear(static_cast<std::size_t>(found_[inner]), pair);
+      const std::size_t first = found_.size();
+      for (const pcl::index_t p : ring_) addNear(static_cast<std::size_t>(p), pair);
+      next_.assign(found_.begin() + first, found_.end());
+      std::sort(next_.begin(), next_.end());
+      next_.erase(std::unique(next_.begin(), next_.end()), next_.end());
+      // What is there twice must not have all of its neighbours twice in the next ring.
+      ring_.clear();
+      std::set_difference(next_.begin(), next_.end(), patch_.begin(), patch_.end(),
+                          std::back_inserter(ring_));
+      next_.clear();
+      std::merge(patch_.begin(), patch_.end(), ring_.begin(), ring_.end(),
+                 std::back_inserter(next_));
+      patch_.swap(next_);
     }
-    patch_.clear();
-    for (std::size_t i = 0; i < found_.size(); ++i)
-      patch_.push_back(static_cast<std::uint32_t>(found_[i]));
-    std::sort(patch_.begin(), patch_.end());
-    patch_.erase(std::unique(patch_.begin(), patch_.end()), patch_.end());
   }
 
   void addNear(std::size_t p, const Pair& pair) {
     const pcl::index_t* row = state_.neighborhoods->indices(p);
     const int count = state_.rowSize(p);
-    found_.reserve(static_cast<std::size_t>(count) + 1);
+    found_.reserve(static_cast<std::size_t>(count));
     for (int j = 0; j < count; ++j) {
       const auto q = static_cast<std::size_t>(row[j]);
       const std::int32_t label = state_.labels[q];
@@ -198,7 +205,8 @@ class BorderTest {
   float cos_alpha_;
   double most_slope_;
   DistinctPoints found_;
-  std::vector<std::uint32_t> patch_;
+  std::vector<pcl::index_t> patch_;  ///< ascending
+  std::vector<pcl::index_t> ring_, next_;
 };
 
 // Neighbours of the first ring in two regular segments, by border.

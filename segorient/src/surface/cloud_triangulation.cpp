@@ -40,7 +40,7 @@ Segmentation restrictTo(const Segmentation& s, const pcl::Indices& indices, std:
 
 }  // namespace
 
-bool triangulateCloud(const PointView& points, const std::vector<float>& normals,
+bool triangulateCloud(const PointView& points, const NormalView& normals,
                       const Segmentation& segmentation, const pcl::Indices* indices,
                       const TriangulationOptions& options, bool all,
                       std::vector<SegmentMesh>& meshes) {
@@ -48,7 +48,7 @@ bool triangulateCloud(const PointView& points, const std::vector<float>& normals
   if (segmentation.labels.empty()) {
     CloudSegmentation::Input input;
     input.points = points;
-    input.normals = {normals.data(), 4, normals.size() / 4};
+    input.normals = normals;
     input.indices = indices;
     SegmentationOptions segmentation_options;
     segmentation_options.threads = options.threads;

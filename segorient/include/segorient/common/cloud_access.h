@@ -60,23 +60,60 @@ class CloudPoints {
   PointView view_;
 };
 
-/// Normals of a PCL cloud as a PointView, in place (normal_x, normal_y, normal_z are consecutive in
-/// every type that PCL_ADD_NORMAL4D made).
+/// Normals and curvatures of a PCL cloud as a NormalView: in place where normal_x, normal_y,
+/// normal_z are consecutive floats in the point type and the curvature is a float behind them, as
+/// in all types of PCL; otherwise as a copy that this object owns.
 template <typename PointNT>
-PointView normalView(const pcl::PointCloud<PointNT>& cloud) {
-  PointView view;
-  view.size = cloud.size();
-  view.stride = sizeof(PointNT) / sizeof(float);
-  if (!cloud.empty()) view.data = &cloud.points.front().normal_x;
-  return view;
-}
+class CloudNormals {
+ public:
+  CloudNormals() = default;
+  /// \param cloud must outlive this object
+  explicit CloudNormals(const pcl::PointCloud<PointNT>& cloud) { assign(cloud); }
 
-/// The same with curvatures.
-template <typename PointNT>
-NormalView curvedNormalView(const pcl::PointCloud<PointNT>& cloud) {
-  if (cloud.empty()) return normalView(cloud);
-  const PointNT& first = cloud.points.front();
-  return {normalView(cloud), static_cast<std::size_t>(&first.curvature - &first.normal_x)};
-}
+  void assign(const pcl::PointCloud<PointNT>& cloud) {
+    view_ = NormalView{};
+    view_.size = cloud.size();
+    if (cloud.empty()) return;
+    const PointNT& first = cloud.points.front();
+    if (inPlace(first)) {
+      view_.data = reinterpret_cast<const float*>(&first.normal_x);
+      view_.stride = sizeof(PointNT) / sizeof(float);
+      view_.curvature =
+          static_cast<std::size_t>(address(first.curvature) - address(first.normal_x)) /
+          sizeof(float);
+      return;
+    }
+    copy_.resize(4 * cloud.size());
+    for (std::size_t i = 0; i < cloud.size(); ++i) {
+      copy_[4 * i] = static_cast<float>(cloud[i].normal_x);
+      copy_[4 * i + 1] = static_cast<float>(cloud[i].normal_y);
+      copy_[4 * i + 2] = static_cast<float>(cloud[i].normal_z);
+      copy_[4 * i + 3] = static_cast<float>(cloud[i].curvature);
+    }
+    view_ = NormalView{copy_.data(), 4, cloud.size()};
+  }
+
+  const NormalView& view() const { return view_; }
+
+ private:
+  template <typename Member>
+  static const char* address(const Member& member) {
+    return reinterpret_cast<const char*>(&member);
+  }
+  static bool inPlace(const PointNT& p) {
+    if (!std::is_same_v<std::decay_t<decltype(p.normal_x)>, float> ||
+        !std::is_same_v<std::decay_t<decltype(p.curvature)>, float> ||
+        sizeof(PointNT) % sizeof(float) != 0) {
+      return false;
+    }
+    const std::ptrdiff_t to_curvature = address(p.curvature) - address(p.normal_x);
+    return address(p.normal_y) == address(p.normal_x) + sizeof(float) &&
+           address(p.normal_z) == address(p.normal_x) + 2 * sizeof(float) && to_curvature > 0 &&
+           static_cast<std::size_t>(to_curvature) % sizeof(float) == 0;
+  }
+
+  std::vector<float> copy_;
+  NormalView view_;
+};
 
 }  // namespace segorient

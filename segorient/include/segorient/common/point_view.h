@@ -23,13 +23,15 @@ struct PointView {
 /// Read-only view of normals with their curvatures: curvature i is the float at
 /// `data + i * stride + curvature`.
 struct NormalView : PointView {
-  std::size_t curvature = 3;  ///< floats from the normal to its curvature
+  std::size_t curvature = 3;  ///< floats from the start of a normal to its curvature
 
   NormalView() = default;
-  NormalView(const PointView& normals, std::size_t curvature_offset = 3)  // NOLINT: as good as one
-      : PointView(normals), curvature(curvature_offset) {}
+  /// Rows that start with normal and curvature.
   NormalView(const float* first, std::size_t floats, std::size_t rows)
       : PointView{first, floats, rows} {}
+  /// \param curvature_offset in PCL's types 4 or more, see CloudNormals in common/cloud_access.h
+  NormalView(const PointView& normals, std::size_t curvature_offset)
+      : PointView(normals), curvature(curvature_offset) {}
 };
 
 /// Whether all three coordinates of a row are finite.

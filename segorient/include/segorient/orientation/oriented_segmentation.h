@@ -20,12 +20,13 @@ struct OrientedSegmentation {
 
 /// Orients a cloud that has normals: the stage after segmentation, on any rows (NaN and repeated
 /// points included). A row that repeats a point follows that point.
-/// \param normals one a row, signs arbitrary; NaN = the point has none
+/// \param normals one a row, signs arbitrary; NaN = the point has none. Curvatures tell where
+///        segments start, so constant ones will do
 /// \param segmentation of these rows, or null to make one by `segmentation_options`
 /// \param k neighbours of a point, itself not counted; <= 0 = 32 for AUTO and 12 for the others
 /// \param search finds neighbours among the rows; empty = a search of our own
 /// \return empty if the sizes do not agree or a label is out of range
-OrientedSegmentation orientSegmentation(const PointView& points, const PointView& normals,
+OrientedSegmentation orientSegmentation(const PointView& points, const NormalView& normals,
                                         const Segmentation* segmentation, int k,
                                         const SegmentationOptions& segmentation_options,
                                         const OrientationOptions& options,

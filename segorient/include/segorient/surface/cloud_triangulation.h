@@ -9,13 +9,13 @@
 namespace segorient {
 
 /// What SegmentTriangulation does that does not depend on the point type.
-/// \param normals 4 floats a point (normal, curvature); only needed where `segmentation` is empty,
-/// and
-///        the cloud is segmented then
+/// \param normals one a point; only looked at where `segmentation` is empty, and the cloud is
+///        segmented then
 /// \param segmentation of the whole cloud, or empty
 /// \param indices points to use, null = all; bad ones are left out
-/// \return false if the segmentation is not of this cloud
-bool triangulateCloud(const PointView& points, const std::vector<float>& normals,
+/// \return false if the segmentation, or the normals that one is to be made from, are not of this
+///         cloud
+bool triangulateCloud(const PointView& points, const NormalView& normals,
                       const Segmentation& segmentation, const pcl::Indices* indices,
                       const TriangulationOptions& options, bool all,
                       std::vector<SegmentMesh>& meshes);

@@ -42,6 +42,7 @@ bool SegmentOrientation<PointT, NormalT>::orient() {
     return false;
   }
   const CloudPoints<PointT> points(*input_);
+  const CloudNormals<NormalT> normals(*normals_);
   auto hints = std::make_shared<OrientationHints>(hints_);
   detail::addViewpoints(*input_, *hints);
   if (keep_orientation_) detail::addNormals(*normals_, *hints);
@@ -50,7 +51,7 @@ bool SegmentOrientation<PointT, NormalT>::orient() {
   options.hints = hints;
   SegmentationOptions segmentation_options = segmentation_options_;
   segmentation_options.threads = options.threads;
-  result_ = orientSegmentation(points.view(), normalView(*normals_), segmentation_.get(),
+  result_ = orientSegmentation(points.view(), normals.view(), segmentation_.get(),
                                k_ > 0 ? std::max(1, k_ - 1) : 0, segmentation_options, options,
                                searchFunction());
   if (result_.orientation.point_signs.empty()) {

@@ -189,9 +189,10 @@ bool NormalSegmentation<PointT, NormalT>::segment() {
               normals_ ? normals_->size() : std::size_t{0}, input_->size());
   } else {
     const CloudPoints<PointT> points(*input_);
+    const CloudNormals<NormalT> normals(*normals_);
     CloudSegmentation::Input input;
     input.points = points.view();
-    input.normals = curvedNormalView(*normals_);
+    input.normals = normals.view();
     if (!fake_indices_) input.indices = indices_.get();
     input.table = neighborhoods_.get();
     input.neighbors = static_cast<int>(neighbors_);

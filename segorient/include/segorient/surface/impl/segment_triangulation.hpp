@@ -44,15 +44,10 @@ template <typename PointNT>
 void SegmentTriangulation<PointNT>::performReconstruction(std::vector<pcl::Vertices>& polygons) {
   polygons.clear();
   const CloudPoints<PointNT> points(*input_);
-  std::vector<float> normals;
-  if (segmentation_.labels.empty()) {
-    normals.reserve(4 * input_->size());
-    for (const PointNT& p : *input_) {
-      normals.insert(normals.end(), {p.normal_x, p.normal_y, p.normal_z, p.curvature});
-    }
-  }
+  const CloudNormals<PointNT> normals(*input_);
   const pcl::Indices* indices = fake_indices_ ? nullptr : indices_.get();
-  if (!triangulateCloud(points.view(), normals, segmentation_, indices, options_, all_, meshes_)) {
+  if (!triangulateCloud(points.view(), normals.view(), segmentation_, indices, options_, all_,
+                        meshes_)) {
     PCL_ERROR("[segorient::SegmentTriangulation] the segmentation is not of this cloud\n");
     return;
   }
