@@ -41,15 +41,15 @@ TEST_P(ClosedSolid, IsOrientedOutwardWithoutAFlip) {
 
 INSTANTIATE_TEST_SUITE_P(
     Auto, ClosedSolid,
-    testing::Values(Solid{"cube", cube(), 0, 0.999}, Solid{"prism", octagonalPrism(), 0, 0.999},
-                    Solid{"steps", steppedSolid(), 0, 0.999},
-                    Solid{"holes", holedSolid(), 0, 0.999}, Solid{"bracket", bracket(), 0, 0.999},
-                    Solid{"cylinder", cylinder(), 0, 0.999},
-                    Solid{"plate4", plate(4, 8000), 0, 0.999},
-                    Solid{"plate2", plate(2, 8000), 0, 0.999}, Solid{"cube", cube(), 0.25, 0.998},
-                    Solid{"cube", cube(), 0.7, 0.99}, Solid{"cube", cube(), 1.5, 0.97},
-                    Solid{"steps", steppedSolid(), 0.7, 0.99},
-                    Solid{"plate2", plate(2, 8000), 0.15, 0.99}));
+    testing::Values(
+        Solid{"cube", cube(), 0, 0.999}, Solid{"prism", octagonalPrism(), 0, 0.999},
+        Solid{"steps", steppedSolid(), 0, 0.999}, Solid{"holes", holedSolid(), 0, 0.999},
+        Solid{"bracket", bracket(), 0, 0.999}, Solid{"cylinder", cylinder(), 0, 0.999},
+        Solid{"plate4", plate(4, 8000), 0, 0.999}, Solid{"plate2", plate(2, 8000), 0, 0.999},
+        Solid{"cube", cube(), 0.25, 0.998}, Solid{"cube", cube(), 0.7, 0.99},
+        Solid{"cube", cube(), 1.5, 0.97}, Solid{"steps", steppedSolid(), 0.7, 0.99},
+        Solid{"plate2", plate(2, 8000), 0.15, 0.99}, Solid{"plate2", plate(2, 8000), 0.25, 0.99},
+        Solid{"plate1", plate(1, 8000), 0, 0.995}, Solid{"plate1.5", plate(1.5, 8000), 0.1, 0.99}));
 
 std::vector<float> wave(std::size_t n, unsigned seed, std::vector<float>& normals) {
   std::mt19937 rng(seed);

@@ -105,6 +105,23 @@ TEST(Noise, ThinWallsAreNotNoise) {
   EXPECT_FALSE(needsDenoising(level));
 }
 
+// Two spacings apart and with noise of a quarter, the other wall is among the 8 nearest, and looks
+// like noise of a third. A single noisy sheet is no two walls.
+TEST(Noise, OfThinWallsIsThatOfEachWall) {
+  const auto level = [](const std::vector<Face>& faces, double sigma) {
+    const LabelledCloud cloud = sample("solid", faces, 8000, 8, sigma);
+    return measureNoise(viewOf(cloud.xyz), neighborsOf(cloud.xyz));
+  };
+  const NoiseLevel walls = level(plate(2, 8000), 0.25);
+  EXPECT_TRUE(walls.thin);
+  EXPECT_NEAR(walls.fine, 0.23F, 0.04F);
+  EXPECT_FALSE(needsDenoising(walls));
+  EXPECT_FALSE(level(plate(2, 8000), 0).thin) << "clean walls are told apart anyway";
+  for (const double sigma : {0.25, 0.5, 1.0, 2.0}) {
+    EXPECT_FALSE(level(cube(), sigma).thin) << sigma;
+  }
+}
+
 TEST(Denoising, BringsPointsNearerToTheSurface) {
   std::mt19937 rng(9);
   std::uniform_real_distribution<float> unit(0.F, 1.F);

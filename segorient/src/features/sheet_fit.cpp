@@ -226,7 +226,7 @@ Plane fitDominant(const Offsets& o, const Plane& start, float tolerance) {
   return plane;
 }
 
-WallSplit splitWalls(const Offsets& o, const Eigen::Vector3f& normal) {
+WallSplit splitWalls(const Offsets& o, const Eigen::Vector3f& normal, float most_apart) {
   constexpr std::size_t kLeast = 4;  // fewer points have no plane with a residual
   std::array<float, kSheetNeighbors + 1> t;
   const auto n = static_cast<std::size_t>(o.n) + 1;
@@ -272,10 +272,7 @@ WallSplit splitWalls(const Offsets& o, const Eigen::Vector3f& normal) {
   }
   const float low = t[at];
   const float high = t[at + 1];
-  // Walls farther apart than that are told apart by their offset alone, and what else looks like
-  // two classes at such a distance (clutter, a narrow bore) need not be walls.
-  constexpr float kNear = 1.25F;
-  if (apart > kNear) return split;
+  if (apart > most_apart) return split;
   // Two classes, each thin, well apart, with nothing in between: two walls.
   if (total - between >= 0.2F * total || apart <= kLeastApart || high - low <= 0.15F * apart)
     return split;

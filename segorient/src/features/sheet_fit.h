@@ -89,7 +89,8 @@ struct WallSplit {
   float above = std::numeric_limits<float>::infinity();
   bool found = false;
 };
-WallSplit splitWalls(const Offsets& offsets, const Eigen::Vector3f& normal);
+/// \param most_apart walls farther apart than that many spacings are left to their offset alone
+WallSplit splitWalls(const Offsets& offsets, const Eigen::Vector3f& normal, float most_apart);
 Plane fitWithin(const Offsets& offsets, const Eigen::Vector3f& normal, const WallSplit& split);
 
 }  // namespace segorient::detail

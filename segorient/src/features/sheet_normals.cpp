@@ -33,13 +33,63 @@ float residualOver(const Offsets& o, int k) {
   return std::sqrt(p.lambda[0] * m.n / (m.n - 3.F));
 }
 
+/// Walls farther apart than that are told apart by their offset alone, and what else looks like two
+/// classes at such a distance (clutter, a narrow bore) need not be walls.
+constexpr float kWallsApart = 1.25F;
+/// In noisy thin clouds, where a point strays from its wall by as much as that: of walls farther
+/// apart, 32 neighbours hardly reach the other one.
+constexpr float kThinWallsApart = 2.F;
+
+struct OwnWall {
+  Plane plane;
+  WallSplit split;
+};
+
+// From a plane over all, the one over the point's own wall.
+OwnWall fitOwnWall(const Offsets& o, const Plane& start, float most_apart) {
+  OwnWall own{start, {}};
+  for (int round = 0; round < 2; ++round) {
+    own.split = detail::splitWalls(o, own.plane.normal, most_apart);
+    if (!own.split.found) break;
+    const Plane refined = detail::fitWithin(o, own.plane.normal, own.split);
+    if (!refined.valid) break;
+    own.plane = refined;
+  }
+  return own;
+}
+
+// Distance from the plane over the k nearest of the point's own wall; NaN where there is one only.
+float wallResidual(const Offsets& o, int k) {
+  Moments all;
+  all.addOrigin();
+  for (std::size_t j = 0; j < static_cast<std::size_t>(o.n); ++j) all.add(o.x[j], o.y[j], o.z[j]);
+  const Plane start = fitPlane(all);
+  if (!start.valid) return std::numeric_limits<float>::quiet_NaN();
+  const auto [plane, split] = fitOwnWall(o, start, kThinWallsApart);
+  if (!split.found) return std::numeric_limits<float>::quiet_NaN();
+  Offsets own = o;
+  own.n = 0;
+  for (std::size_t j = 0; j < static_cast<std::size_t>(o.n); ++j) {
+    const float t = o.along(j, plane.normal);
+    if (!(t > split.below && t < split.above)) continue;
+    const auto to = static_cast<std::size_t>(own.n++);
+    own.x[to] = o.x[j];
+    own.y[to] = o.y[j];
+    own.z[to] = o.z[j];
+  }
+  return residualOver(own, k);
+}
+
+// From here on, noise hides what the smallest neighbourhoods could tell.
+constexpr float kNoisy = 0.13F;
+
 // Noise hides what small neighbourhoods could tell: the first of 8, 12, 18 and 32 that it leaves.
 // In a small neighbourhood a plane tilts by about noise / (2 radius), and these keep that below 15
 // degrees.
 int smallestScale(float noise) {
   if (noise >= 0.31F) return 3;
   if (noise >= 0.24F) return 2;
-  return noise >= 0.13F ? 1 : 0;
+  return noise >= kNoisy ? 1 : 0;
 }
 
 struct PointFit {
@@ -48,7 +98,8 @@ struct PointFit {
   WallSplit split;
 };
 
-PointFit fitPoint(const Offsets& o, int smallest, float noise, const SheetNormalOptions& options) {
+PointFit fitPoint(const Offsets& o, int smallest, const NoiseLevel& noise,
+                  const SheetNormalOptions& options) {
   // A fit this much worse than the noise spans an edge, a wall or strong curvature. Beyond a third
   // of a spacing, planes through single triples of points are no longer worth comparing.
   constexpr float kMostNoise = 0.33F;
@@ -57,17 +108,15 @@ PointFit fitPoint(const Offsets& o, int smallest, float noise, const SheetNormal
   fit.plane = adaptive.plane;
   fit.curvature = adaptive.curvature;
   if (!fit.plane.valid) return fit;
-  if (options.dominant_plane && noise < kMostNoise &&
-      std::sqrt(fit.plane.lambda[0]) > 0.03F + 2.F * noise) {
-    const Plane dominant = detail::fitDominant(o, fit.plane, 0.1F + 2.F * noise);
+  if (options.dominant_plane && noise.fine < kMostNoise &&
+      std::sqrt(fit.plane.lambda[0]) > 0.03F + 2.F * noise.fine) {
+    const Plane dominant = detail::fitDominant(o, fit.plane, 0.1F + 2.F * noise.fine);
     if (dominant.valid) fit.plane = dominant;
   }
-  for (int round = 0; options.split_walls && round < 2; ++round) {
-    fit.split = detail::splitWalls(o, fit.plane.normal);
-    if (!fit.split.found) break;
-    const Plane own = detail::fitWithin(o, fit.plane.normal, fit.split);
-    if (!own.valid) break;
-    fit.plane = own;
+  if (options.split_walls) {
+    const OwnWall own = fitOwnWall(o, fit.plane, noise.thin ? kThinWallsApart : kWallsApart);
+    fit.plane = own.plane;
+    fit.split = own.split;
   }
   return fit;
 }
@@ -114,23 +163,36 @@ void judgeReliability(const std::vector<float>& lopsided, SheetNormals& out) {
 
 NoiseLevel measureNoise(const PointView& points, const Neighborhoods& nb, int threads) {
   constexpr std::size_t kSamples = 4096;
+  constexpr int kFine = 8;
+  // Of noise alone, one point in 200 looks like two walls; of two walls with noise between a
+  // quarter and a third of their distance, one in ten to two. Without noise, walls do no harm to
+  // planes.
+  constexpr float kThinShare = 0.1F;
   const std::size_t step = std::max<std::size_t>(1, points.size / kSamples);
   const std::size_t n = (points.size + step - 1) / step;
   std::vector<float> fine(n);
   std::vector<float> coarse(n);
+  std::vector<float> walls(n);
   const int t = resolveThreads(threads);
 #pragma omp parallel for num_threads(t) schedule(dynamic, 64)
   for (std::size_t s = 0; s < n; ++s) {
     const std::size_t i = s * step;
     const Offsets o = gatherOffsets(points, nb, i, detail::meanDistance(points, nb, i, 6));
-    fine[s] = residualOver(o, 8);
+    fine[s] = residualOver(o, kFine);
     coarse[s] = residualOver(o, kSheetNeighbors);
+    walls[s] = wallResidual(o, kFine);
   }
-  const auto drop = [](std::vector<float>& v) {
-    v.erase(std::remove_if(v.begin(), v.end(), [](float r) { return !std::isfinite(r); }), v.end());
-    return median(std::move(v));
-  };
-  return {drop(fine), drop(coarse)};
+  for (std::vector<float>* v : {&fine, &coarse, &walls}) {
+    v->erase(std::remove_if(v->begin(), v->end(), [](float r) { return !std::isfinite(r); }),
+             v->end());
+  }
+  NoiseLevel noise;
+  noise.fine = median(std::move(fine));
+  noise.coarse = median(std::move(coarse));
+  noise.thin = noise.fine >= kNoisy &&
+               static_cast<float>(walls.size()) >= kThinShare * static_cast<float>(n);
+  if (noise.thin) noise.fine = median(std::move(walls));
+  return noise;
 }
 
 SheetNormals estimateSheetNormals(const PointView& points, const Neighborhoods& nb,
@@ -143,8 +205,9 @@ SheetNormals estimateSheetNormals(const PointView& points, const Neighborhoods& 
   out.below.resize(n);
   out.above.resize(n);
   out.reliable.resize(n);
-  out.noise = measureNoise(points, nb, options.threads).fine;
-  const int smallest = smallestScale(out.noise);
+  const NoiseLevel noise = measureNoise(points, nb, options.threads);
+  out.noise = noise.fine;
+  const int smallest = smallestScale(noise.fine);
   constexpr int kSizes[] = {8, 12, 18, kSheetNeighbors};
   out.scale = kSizes[smallest];
 
@@ -154,7 +217,7 @@ SheetNormals estimateSheetNormals(const PointView& points, const Neighborhoods& 
   for (std::size_t i = 0; i < n; ++i) {
     out.spacing[i] = detail::meanDistance(points, nb, i, 6);
     const Offsets o = gatherOffsets(points, nb, i, out.spacing[i]);
-    store(fitPoint(o, smallest, out.noise, options), i, out, lopsided);
+    store(fitPoint(o, smallest, noise, options), i, out, lopsided);
   }
   judgeReliability(lopsided, out);
   return out;

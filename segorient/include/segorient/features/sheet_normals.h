@@ -33,9 +33,9 @@ struct SheetNormals {
   std::vector<float> below;      ///< lower end of the offsets of p's own sheet
   std::vector<float> above;      ///< upper end
   std::vector<std::uint8_t> reliable;  ///< 1 where the fit is central and as good as most
-  float noise = 0.F;     ///< median residual of the smallest neighbourhoods, in spacings
-  float residual = 0.F;  ///< median residual of the final fits, in spacings
-  int scale = 0;         ///< smallest neighbourhood that the noise allowed
+  float noise = 0.F;                   ///< see NoiseLevel::fine
+  float residual = 0.F;                ///< median residual of the final fits, in spacings
+  int scale = 0;                       ///< smallest neighbourhood that the noise allowed
 };
 
 /// Estimates sheet normals.
@@ -54,8 +54,13 @@ SheetNormals estimateSheetNormals(const PointView& points, const Neighborhoods& 
 
 /// How noisy a cloud is, from some thousand of its points.
 struct NoiseLevel {
-  float fine = 0.F;    ///< median rms distance from a plane over 8 neighbours, in spacings
-  float coarse = 0.F;  ///< the same over 32
+  /// Median rms distance from a plane over 8 neighbours, in spacings; in clouds of thin walls from
+  /// a plane over 8 of the point's own wall.
+  float fine = 0.F;
+  float coarse = 0.F;  ///< the same over 32, whatever walls they are of
+  /// Noisy, and many points see two walls less than two spacings apart: what 8 neighbours tell is
+  /// the walls' distance as much as noise.
+  bool thin = false;
 };
 NoiseLevel measureNoise(const PointView& points, const Neighborhoods& neighborhoods,
                         int threads = 0);
