@@ -250,6 +250,44 @@ TEST(LooseParts, AreFoundByTheirBorders) {
   }
 }
 
+// The same where it is the largest of four parts that its borders turn the wrong way: of the others
+// none is better off if it is turned, too.
+TEST(LooseParts, MayBeTheLargest) {
+  Balls ball;
+  addBall(ball, {0, 0, 0}, 1, 6000, 1.F);
+  const std::size_t n = ball.xyz.size() / 4;
+  Segmentation segmentation;
+  segmentation.signs.assign(n, 1);
+  segmentation.segments.resize(4);
+  for (std::size_t i = 0; i < n; ++i) {
+    const float* p = &ball.xyz[4 * i];
+    const float z = p[2];
+    segmentation.labels.push_back(z < -0.5F ? 0 : z < 0.F ? 1 : z < 0.6F ? 2 : 3);
+    ++segmentation.segments[static_cast<std::size_t>(segmentation.labels[i])].size;
+    // How much of a border says the wrong thing: most of the largest's, less of that between the
+    // southern ones.
+    const double wave = std::sin(12.0 * static_cast<double>(std::atan2(p[1], p[0])));
+    const bool at_largest = z >= 0.F && (z < 0.12F || (z >= 0.48F && z < 0.6F));
+    const bool in_south = z >= -0.5F && z < -0.38F;
+    if ((at_largest && wave < 0.4) || (in_south && wave < -0.2)) segmentation.signs[i] = -1;
+  }
+  ASSERT_GT(segmentation.segments[2].size, segmentation.segments[1].size);
+  const std::vector<float> above(n, std::numeric_limits<float>::max());
+  const std::vector<float> below(n, -std::numeric_limits<float>::max());
+  const std::vector<std::uint8_t> reliable(n, 1);
+  const SheetField field{ball.normals.data(), ball.spacing.data(), below.data(), above.data(),
+                         reliable.data()};
+  const Neighborhoods table = neighborsOf(ball.xyz);
+  for (const bool by_winding : {false, true}) {
+    AutoOrientationOptions options;
+    options.turn_loose_parts = by_winding;
+    const AutoOrientation out = orientSheets(viewOf(ball.xyz), table, field, segmentation, options);
+    for (std::size_t s = 0; s < 4; ++s) {
+      EXPECT_EQ(out.result.segments[s].sign, s == 2 && !by_winding ? -1 : 1) << s << by_winding;
+    }
+  }
+}
+
 // Segments whose points all have the sign of their normal, without walls.
 struct Scene {
   std::vector<float> xyz;

@@ -69,12 +69,6 @@ LooseParts findLooseParts(const Segmentation& segmentation, const std::vector<Bo
   const std::size_t n = part_of.size();
   std::vector<std::uint32_t> size(n, 0);
   for (std::size_t s = 0; s < n; ++s) size[at(part_of[s])] += segmentation.segments[s].size;
-  // The largest part of a component is what the others are turned against.
-  std::vector<std::int32_t> largest(looked_at.size(), -1);
-  for (std::size_t s = 0; s < n; ++s) {
-    std::int32_t& l = largest[at(component[s])];
-    if (l < 0 || size[at(part_of[s])] > size[at(l)]) l = part_of[s];
-  }
   const std::vector<float> agreement = agreementOf(part_of, votes, signs, 1.F);
   LooseParts out;
   out.components = out.count = looked_at.size();
@@ -82,8 +76,9 @@ LooseParts findLooseParts(const Segmentation& segmentation, const std::vector<Bo
   for (std::size_t s = 0; s < n; ++s) {
     const std::int32_t part = part_of[s];
     if (number[at(part)] < 0) {
-      const bool loose = looked_at[at(component[s])] && part != largest[at(component[s])] &&
-                         size[at(part)] >= kLeastPoints && agreement[at(part)] < kLoose;
+      // The largest, too: it may be the only one that is turned wrongly.
+      const bool loose = looked_at[at(component[s])] && size[at(part)] >= kLeastPoints &&
+                         agreement[at(part)] < kLoose;
       number[at(part)] = loose ? static_cast<std::int32_t>(out.count++) : component[s];
     }
     out.of.push_back(number[at(part)]);
