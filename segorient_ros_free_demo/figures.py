@@ -6,9 +6,10 @@
 usage: figures.py [BUILD_DIRECTORY [CLOUDS]]
 
 The shipped Fandisk is enough for most of them. With CLOUDS, a directory of clouds with true normals
-and their manifest.tsv, those of the paper's other objects are drawn, and the table of the methods of
-orientation is printed (target orientation_benchmark). Where the target search_benchmark was built,
-the plot of the search is drawn as well, which takes minutes.
+and their manifest.tsv, those of the paper's other objects and the worst places are drawn (which
+needs matplotlib), and the table of the methods of orientation is printed (target
+orientation_benchmark). Where the target search_benchmark was built, the plot of the search is drawn
+as well, which takes minutes.
 """
 
 import subprocess
@@ -95,10 +96,61 @@ def figures(build):
     colored(program, points, truth, (distance - low) / (high - low), PICTURES / "knn.png", np)
 
 
+def read_ply(path, np):
+    """Points and normals of a binary PLY whose vertices are numbers only."""
+    types = {"float": "<f4", "double": "<f8", "int": "<i4", "uint": "<u4", "short": "<i2",
+             "ushort": "<u2", "char": "i1", "uchar": "u1"}
+    head, body = path.read_bytes().split(b"end_header\n", 1)
+    lines = [line.split() for line in head.decode().splitlines()]
+    count = next(int(line[2]) for line in lines if line[:2] == ["element", "vertex"])
+    fields = [(line[2], types[line[1]]) for line in lines if line[0] == "property" and len(line) == 3]
+    rows = np.frombuffer(body, np.dtype(fields), count)
+    columns = [np.stack([rows[name] for name in names], axis=1).astype(np.float32)
+               for names in (("x", "y", "z"), ("nx", "ny", "nz"))]
+    return columns[0], columns[1]
+
+
+def worst(build, clouds):
+    """Close-ups of the places where most points of a clean cloud get the wrong side."""
+    sys.path.insert(0, str(build / "python"))
+    import matplotlib
+
+    matplotlib.use("Agg")
+    import matplotlib.pyplot as plt
+    import numpy as np
+    import segorient
+
+    names = ("thorlike_71292", "demosthenes_20k", "wingnut_20k")
+    figure, axes = plt.subplots(1, len(names), figsize=(13, 4.6))
+    for axis, name in zip(axes, names):
+        points, truth = read_ply(clouds / f"{name}.ply", np)
+        normals = segorient.orient(points).normals
+        right = (normals * truth).sum(axis=1) > 0.0
+        right = right if right.mean() > 0.5 else ~right
+        spacing = np.median(segorient.knn(points, 7).distances[:, 1:])
+        wrong = points[~right]
+        crowd = [(np.linalg.norm(wrong - p, axis=1) < 6 * spacing).sum() for p in wrong]
+        center = wrong[int(np.argmax(crowd))]
+        near = np.abs(points - center).max(axis=1) < 6 * spacing
+        # Along all surfaces as far as can be, so that they are seen edge-on.
+        frame = np.linalg.svd(truth[near], full_matrices=False)[2]
+        flat = (points[near] - center) @ frame[:2].T / spacing
+        arrow = truth[near] @ frame[:2].T
+        for chosen, color in ((right[near], "0.6"), (~right[near], "red")):
+            axis.quiver(*flat[chosen].T, *arrow[chosen].T, color=color, width=0.003, scale=14)
+            axis.plot(*flat[chosen].T, ".", color=color, markersize=4)
+        axis.set_title(f"{name}: {(~right).sum()} of {len(points)}", fontsize=10)
+        axis.set(xlim=(-6.5, 6.5), ylim=(-6.5, 6.5), aspect="equal")
+        axis.set_xlabel("spacings")
+    figure.tight_layout()
+    figure.savefig(PICTURES / "worst.png", dpi=75)
+
+
 def main():
     build = Path(sys.argv[1] if len(sys.argv) > 1 else ROOT / "build").resolve()
     figures(build)
     if len(sys.argv) > 2:
+        worst(build, Path(sys.argv[2]))
         run(ROOT / "segorient_ros_free_demo/paper_figures.sh", sys.argv[2], build)
         run(build / "bin/orientation_benchmark", sys.argv[2])
     if (build / "bin/search_benchmark").exists():
