@@ -5,8 +5,10 @@
 #include <segorient/common/cloud_access.h>
 #include <segorient/segmentation/cloud_segmentation.h>
 
+#include <algorithm>
 #include <limits>
 #include <numeric>
+#include <type_traits>
 
 #include "segmentation_support.h"
 
@@ -15,8 +17,7 @@ namespace {
 
 constexpr int kNeighbors = 12;
 
-/// Normals in rows of seven floats with the curvature sixth; the others are numbers that no stage
-/// may read.
+/// Normals in rows of seven floats with the curvature sixth; the others are NaN.
 class Apart {
  public:
   explicit Apart(const std::vector<float>& rows)
@@ -119,6 +120,10 @@ struct DoubleNormal {
 struct BackwardNormal {
   float normal_z = 0, normal_y = 0, normal_x = 0, curvature = 0;
 };
+struct DoubleCurvature {
+  float normal_x = 0, normal_y = 0, normal_z = 0;
+  double curvature = 0;
+};
 struct CurvatureFirst {
   float curvature = 0, normal_x = 0, normal_y = 0, normal_z = 0;
 };
@@ -133,6 +138,13 @@ TEST(CloudNormals, ReadsWhateverLayoutTheTypeHas) {
   expectRead<DoubleNormal>(false);
   expectRead<BackwardNormal>(false);
   expectRead<CurvatureFirst>(false);
+  expectRead<DoubleCurvature>(false);
+  pcl::PointCloud<pcl::Axis> axes;
+  axes.resize(2);
+  axes[1].normal_y = 3.F;
+  const CloudNormals<pcl::Axis> without(axes);
+  EXPECT_EQ(without.view()[1][1], 3.F);
+  EXPECT_EQ(without.view()[1][without.view().curvature], 0.F);
   EXPECT_EQ(CloudNormals<pcl::Normal>(pcl::PointCloud<pcl::Normal>()).view().size, 0U);
 }
 

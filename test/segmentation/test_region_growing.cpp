@@ -133,7 +133,7 @@ TEST(RegionGrowing, EqualsPlainGrowing) {
   }
 }
 
-// A tenth to all of the points are seeds here, and come in one order only.
+// A twentieth to most of the points are seeds here, and come in one order only.
 TEST(RegionGrowing, ManySeedsComeFlattestFirst) {
   Prepared in(sample("bracket", bracket(), 6000, 5, 0.3));
   for (std::size_t i = 0; i < 500; ++i) in.normals[4 * i + 3] = 0.01F;  // then the index decides
@@ -373,8 +373,8 @@ TEST(RegionGrowing, NormalsAndCurvaturesMayLieApart) {
   EXPECT_EQ(s.signs, t.signs);
 }
 
-// Where neighbours are far from each other in memory, growing asks for it ahead in another way.
-// Exact equality is not to be had: the order of points with one curvature decides, too.
+// Where neighbours are far from each other in memory, growing asks for it ahead in another way. Not
+// exactly equal: sums that are made in another order round in another way.
 TEST(RegionGrowing, OrderInMemoryDoesNotMatter) {
   const LabelledCloud cloud = sample("bracket", bracket(), 30000, 9, 0.1);
   const auto segmentIn = [&](const std::vector<std::size_t>& order) {

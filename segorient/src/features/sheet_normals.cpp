@@ -21,23 +21,28 @@ using detail::Offsets;
 using detail::Plane;
 using detail::WallSplit;
 
-// Distance from the plane over the k nearest, in spacings; a plane takes three degrees of freedom.
+// Distance from the plane through some offsets, in spacings; it takes three degrees of freedom.
+float residualOf(const Moments& m) {
+  const Plane p = fitPlane(m);
+  if (!p.valid || m.n <= 3.F) return std::numeric_limits<float>::quiet_NaN();
+  return std::sqrt(p.lambda[0] * m.n / (m.n - 3.F));
+}
+
+// The same over the k nearest.
 float residualOver(const Offsets& o, int k) {
   Moments m;
   m.addOrigin();
   for (std::size_t j = 0; j < static_cast<std::size_t>(std::min(k, o.n)); ++j) {
     m.add(o.x[j], o.y[j], o.z[j]);
   }
-  const Plane p = fitPlane(m);
-  if (!p.valid || m.n <= 3.F) return std::numeric_limits<float>::quiet_NaN();
-  return std::sqrt(p.lambda[0] * m.n / (m.n - 3.F));
+  return residualOf(m);
 }
 
 /// Walls farther apart than that are told apart by their offset alone, and what else looks like two
 /// classes at such a distance (clutter, a narrow bore) need not be walls.
 constexpr float kWallsApart = 1.25F;
-/// In noisy thin clouds, where a point strays from its wall by as much as that: of walls farther
-/// apart, 32 neighbours hardly reach the other one.
+/// In thin clouds, where noise takes a point as far from its own wall: of walls farther apart, 32
+/// neighbours hardly reach the other one.
 constexpr float kThinWallsApart = 2.F;
 
 struct OwnWall {
@@ -51,14 +56,17 @@ OwnWall fitOwnWall(const Offsets& o, const Plane& start, float most_apart) {
   for (int round = 0; round < 2; ++round) {
     own.split = detail::splitWalls(o, own.plane.normal, most_apart);
     if (!own.split.found) break;
-    const Plane refined = detail::fitWithin(o, own.plane.normal, own.split);
+    Plane refined = detail::fitWithin(o, own.plane.normal, own.split);
     if (!refined.valid) break;
+    // What is above stays above.
+    if (refined.normal.dot(own.plane.normal) < 0.F) refined.normal = -refined.normal;
     own.plane = refined;
   }
   return own;
 }
 
-// Distance from the plane over the k nearest of the point's own wall; NaN where there is one only.
+// Distance from the plane over the k nearest of the point's own wall; NaN where two cannot be told
+// apart.
 float wallResidual(const Offsets& o, int k) {
   Moments all;
   all.addOrigin();
@@ -67,17 +75,14 @@ float wallResidual(const Offsets& o, int k) {
   if (!start.valid) return std::numeric_limits<float>::quiet_NaN();
   const auto [plane, split] = fitOwnWall(o, start, kThinWallsApart);
   if (!split.found) return std::numeric_limits<float>::quiet_NaN();
-  Offsets own = o;
-  own.n = 0;
-  for (std::size_t j = 0; j < static_cast<std::size_t>(o.n); ++j) {
+  Moments own;
+  own.addOrigin();
+  for (std::size_t j = 0; j < static_cast<std::size_t>(o.n) && own.n <= static_cast<float>(k);
+       ++j) {
     const float t = o.along(j, plane.normal);
-    if (!(t > split.below && t < split.above)) continue;
-    const auto to = static_cast<std::size_t>(own.n++);
-    own.x[to] = o.x[j];
-    own.y[to] = o.y[j];
-    own.z[to] = o.z[j];
+    if (t > split.below && t < split.above) own.add(o.x[j], o.y[j], o.z[j]);
   }
-  return residualOver(own, k);
+  return residualOf(own);
 }
 
 // From here on, noise hides what the smallest neighbourhoods could tell.
@@ -164,34 +169,35 @@ void judgeReliability(const std::vector<float>& lopsided, SheetNormals& out) {
 NoiseLevel measureNoise(const PointView& points, const Neighborhoods& nb, int threads) {
   constexpr std::size_t kSamples = 4096;
   constexpr int kFine = 8;
-  // Of noise alone, one point in 200 looks like two walls; of two walls with noise between a
-  // quarter and a third of their distance, one in ten to two. Without noise, walls do no harm to
-  // planes.
+  // Of noise alone, one sample in 200 looks like two walls; of plates of two spacings with noise of
+  // a quarter to .4 of one, a tenth to a half of the samples.
   constexpr float kThinShare = 0.1F;
   const std::size_t step = std::max<std::size_t>(1, points.size / kSamples);
   const std::size_t n = (points.size + step - 1) / step;
-  std::vector<float> fine(n);
-  std::vector<float> coarse(n);
-  std::vector<float> walls(n);
   const int t = resolveThreads(threads);
+  // The median of what can be told of the samples.
+  const auto medianOver = [&](const auto& residual, std::size_t& told) {
+    std::vector<float> found(n);
 #pragma omp parallel for num_threads(t) schedule(dynamic, 64)
-  for (std::size_t s = 0; s < n; ++s) {
-    const std::size_t i = s * step;
-    const Offsets o = gatherOffsets(points, nb, i, detail::meanDistance(points, nb, i, 6));
-    fine[s] = residualOver(o, kFine);
-    coarse[s] = residualOver(o, kSheetNeighbors);
-    walls[s] = wallResidual(o, kFine);
-  }
-  for (std::vector<float>* v : {&fine, &coarse, &walls}) {
-    v->erase(std::remove_if(v->begin(), v->end(), [](float r) { return !std::isfinite(r); }),
-             v->end());
-  }
+    for (std::size_t s = 0; s < n; ++s) {
+      const std::size_t i = s * step;
+      found[s] = residual(gatherOffsets(points, nb, i, detail::meanDistance(points, nb, i, 6)));
+    }
+    found.erase(
+        std::remove_if(found.begin(), found.end(), [](float r) { return !std::isfinite(r); }),
+        found.end());
+    told = found.size();
+    return median(std::move(found));
+  };
   NoiseLevel noise;
-  noise.fine = median(std::move(fine));
-  noise.coarse = median(std::move(coarse));
-  noise.thin = noise.fine >= kNoisy &&
-               static_cast<float>(walls.size()) >= kThinShare * static_cast<float>(n);
-  if (noise.thin) noise.fine = median(std::move(walls));
+  std::size_t told = 0;
+  noise.fine = medianOver([](const Offsets& o) { return residualOver(o, kFine); }, told);
+  noise.coarse =
+      medianOver([](const Offsets& o) { return residualOver(o, kSheetNeighbors); }, told);
+  if (noise.fine < kNoisy) return noise;
+  const float walls = medianOver([](const Offsets& o) { return wallResidual(o, kFine); }, told);
+  noise.thin = static_cast<float>(told) >= kThinShare * static_cast<float>(n);
+  if (noise.thin) noise.fine = walls;
   return noise;
 }
 

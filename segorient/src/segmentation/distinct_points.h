@@ -12,16 +12,15 @@
 namespace segorient::segmentation {
 
 /// The points of some rows of neighbours, in the order in which they were added. Rows next to each
-/// other share most of their points, and these are dropped; of points that share a slot some may
-/// stay, more the more points there are for the slots. Which of them are new nobody can guess: no
-/// branches.
+/// other share most of their points, which come once; points that share a slot may come more often,
+/// the more so the more points there are. Which of them are new nobody can guess: no branches.
 class DistinctPoints {
  public:
   void restart() {
     ++turn_;
     size_ = 0;
   }
-  /// Room for as many more points; before add().
+  /// Room for as many more calls of add().
   void reserve(std::size_t more) {
     if (points_.size() < size_ + more) points_.resize(2 * (size_ + more));
   }

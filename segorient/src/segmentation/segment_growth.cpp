@@ -11,7 +11,6 @@ namespace segorient::segmentation {
 namespace {
 
 std::uint32_t orderedBits(float curvature) {
-  if (std::isnan(curvature)) return 0xffffffffU;
   std::uint32_t bits = 0;
   std::memcpy(&bits, &curvature, sizeof bits);
   // Ascending also for the negative values that some estimators write.

@@ -130,7 +130,8 @@ void packNodes(const PointView& points, const NormalView& normals, const Scaling
       node.ny = unit[1];
       node.nz = unit[2];
     }
-    node.curvature = m[normals.curvature];
+    const float curvature = m[normals.curvature];
+    node.curvature = std::isnan(curvature) ? std::numeric_limits<float>::max() : curvature;
     if (!use_table) continue;
     const float mean = sqrSpacing(hood.sqrDistances(row), hood.count(row)) * square;
     node.spacing = std::sqrt(mean * kSqrSpacingPerMean);

@@ -3,6 +3,7 @@
 #include <segorient/common/threads.h>
 
 #include <array>
+#include <iterator>
 
 #include "distinct_points.h"
 #include "growth_state.h"
@@ -283,15 +284,16 @@ std::size_t settleOnce(const SegmentationOptions& options, const std::vector<pcl
 
 std::size_t settleEdges(const SegmentationOptions& options, GrowthState& state) {
   std::size_t moved = settleOnce(options, state.border, state);
+  if (moved == 0) return 0;
   // At a corner the points around it may have been in no face, either.
+  const auto settled = [&](pcl::index_t p) {
+    return state.isFace(state.labels[static_cast<std::size_t>(p)], options.small_size);
+  };
   std::vector<pcl::index_t> loose;
-  for (std::size_t last = moved; last > 0; moved += last) {
-    loose.clear();
-    std::copy_if(
-        state.border.begin(), state.border.end(), std::back_inserter(loose), [&](pcl::index_t p) {
-          return !state.isFace(state.labels[static_cast<std::size_t>(p)], options.small_size);
-        });
-    last = settleOnce(options, loose, state);
+  std::remove_copy_if(state.border.begin(), state.border.end(), std::back_inserter(loose), settled);
+  while (const std::size_t last = settleOnce(options, loose, state)) {
+    moved += last;
+    loose.erase(std::remove_if(loose.begin(), loose.end(), settled), loose.end());
   }
   return moved;
 }

@@ -171,7 +171,7 @@ class BorderTest {
       next_.assign(found_.begin() + first, found_.end());
       std::sort(next_.begin(), next_.end());
       next_.erase(std::unique(next_.begin(), next_.end()), next_.end());
-      // What is there twice must not have all of its neighbours twice in the next ring.
+      // Only what is new has the next ring around it.
       ring_.clear();
       std::set_difference(next_.begin(), next_.end(), patch_.begin(), patch_.end(),
                           std::back_inserter(ring_));

@@ -19,6 +19,10 @@ class CloudPoints {
   CloudPoints() = default;
   /// \param cloud must outlive this object
   explicit CloudPoints(const pcl::PointCloud<PointT>& cloud) { assign(cloud); }
+  CloudPoints(const CloudPoints&) = delete;  // the view may be of our own copy
+  CloudPoints(CloudPoints&&) = default;
+  CloudPoints& operator=(const CloudPoints&) = delete;
+  CloudPoints& operator=(CloudPoints&&) = default;
 
   void assign(const pcl::PointCloud<PointT>& cloud) {
     view_ = PointView{};
@@ -60,35 +64,52 @@ class CloudPoints {
   PointView view_;
 };
 
+/// Whether a point type has a curvature beside its normal.
+template <typename PointNT, typename = void>
+struct HasCurvature : std::false_type {};
+template <typename PointNT>
+struct HasCurvature<PointNT, std::void_t<decltype(PointNT::curvature)>> : std::true_type {};
+
 /// Normals and curvatures of a PCL cloud as a NormalView: in place where normal_x, normal_y,
 /// normal_z are consecutive floats in the point type and the curvature is a float behind them, as
-/// in all types of PCL; otherwise as a copy that this object owns.
+/// in pcl::Normal and its like; otherwise as a copy that this object owns, with curvature 0 where
+/// the type has none (pcl::Axis). Values are passed on as they are, NaN included; an empty cloud is
+/// a view of no rows.
 template <typename PointNT>
 class CloudNormals {
  public:
   CloudNormals() = default;
   /// \param cloud must outlive this object
   explicit CloudNormals(const pcl::PointCloud<PointNT>& cloud) { assign(cloud); }
+  CloudNormals(const CloudNormals&) = delete;  // the view may be of our own copy
+  CloudNormals(CloudNormals&&) = default;
+  CloudNormals& operator=(const CloudNormals&) = delete;
+  CloudNormals& operator=(CloudNormals&&) = default;
 
   void assign(const pcl::PointCloud<PointNT>& cloud) {
     view_ = NormalView{};
     view_.size = cloud.size();
     if (cloud.empty()) return;
-    const PointNT& first = cloud.points.front();
-    if (inPlace(first)) {
-      view_.data = reinterpret_cast<const float*>(&first.normal_x);
-      view_.stride = sizeof(PointNT) / sizeof(float);
-      view_.curvature =
-          static_cast<std::size_t>(address(first.curvature) - address(first.normal_x)) /
-          sizeof(float);
-      return;
+    if constexpr (HasCurvature<PointNT>::value) {
+      const PointNT& first = cloud.points.front();
+      if (inPlace(first)) {
+        view_.data = reinterpret_cast<const float*>(&first.normal_x);
+        view_.stride = sizeof(PointNT) / sizeof(float);
+        view_.curvature =
+            static_cast<std::size_t>(address(first.curvature) - address(first.normal_x)) /
+            sizeof(float);
+        return;
+      }
     }
     copy_.resize(4 * cloud.size());
     for (std::size_t i = 0; i < cloud.size(); ++i) {
       copy_[4 * i] = static_cast<float>(cloud[i].normal_x);
       copy_[4 * i + 1] = static_cast<float>(cloud[i].normal_y);
       copy_[4 * i + 2] = static_cast<float>(cloud[i].normal_z);
-      copy_[4 * i + 3] = static_cast<float>(cloud[i].curvature);
+      copy_[4 * i + 3] = 0.F;
+      if constexpr (HasCurvature<PointNT>::value) {
+        copy_[4 * i + 3] = static_cast<float>(cloud[i].curvature);
+      }
     }
     view_ = NormalView{copy_.data(), 4, cloud.size()};
   }

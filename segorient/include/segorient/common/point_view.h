@@ -27,9 +27,11 @@ struct NormalView : PointView {
 
   NormalView() = default;
   /// Rows that start with normal and curvature.
+  /// \param floats from one row to the next, at least 4
   NormalView(const float* first, std::size_t floats, std::size_t rows)
       : PointView{first, floats, rows} {}
-  /// \param curvature_offset in PCL's types 4 or more, see CloudNormals in common/cloud_access.h
+  /// \param curvature_offset floats from normal_x to the curvature: in PCL's types 4 or more, see
+  ///        CloudNormals in common/cloud_access.h
   NormalView(const PointView& normals, std::size_t curvature_offset)
       : PointView(normals), curvature(curvature_offset) {}
 };

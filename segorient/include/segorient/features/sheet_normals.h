@@ -30,8 +30,9 @@ struct SheetNormals {
                                ///< where the neighbourhood has no plane
   std::vector<float> curvature;  ///< smallest variance in the sum of all three, as in PCL; NaN
   std::vector<float> spacing;    ///< h: mean distance to the 6 nearest
-  std::vector<float> below;      ///< lower end of the offsets of p's own sheet
-  std::vector<float> above;      ///< upper end
+  std::vector<float> below;  ///< lower end of the offsets of p's own sheet, in the cloud's unit;
+                             ///< -infinity where there is no wall below
+  std::vector<float> above;  ///< upper end; infinity where there is none above
   std::vector<std::uint8_t> reliable;  ///< 1 where the fit is central and as good as most
   float noise = 0.F;                   ///< see NoiseLevel::fine
   float residual = 0.F;                ///< median residual of the final fits, in spacings
@@ -43,7 +44,8 @@ struct SheetNormals {
 /// For each point: planes over 8, 12, 18 and 32 neighbours, from the largest down a smaller one
 /// where it is clearly flatter; at edges the plane through the point that most of its neighbours
 /// lie on; then twice: Otsu's threshold on the offsets along the normal tells two walls apart, and
-/// the plane is fitted again to the point's own.
+/// the plane is fitted again to the point's own. Walls more than 1.25 spacings apart (2 in thin
+/// clouds, see NoiseLevel) are no walls to it.
 ///
 /// \param points distinct finite points
 /// \param neighborhoods their neighbours: kSheetNeighbors beside the point itself, or as many as
@@ -52,16 +54,22 @@ struct SheetNormals {
 SheetNormals estimateSheetNormals(const PointView& points, const Neighborhoods& neighborhoods,
                                   const SheetNormalOptions& options = {});
 
-/// How noisy a cloud is, from some thousand of its points.
+/// How noisy a cloud is; 0 where no neighbourhood has a plane.
 struct NoiseLevel {
-  /// Median rms distance from a plane over 8 neighbours, in spacings; in clouds of thin walls from
-  /// a plane over 8 of the point's own wall.
+  /// Median rms distance from a plane over 8 neighbours, in spacings. In a thin cloud over 8 of the
+  /// point's own wall, and of points whose walls can be told apart: somewhat low, as noise that is
+  /// large hides walls.
   float fine = 0.F;
   float coarse = 0.F;  ///< the same over 32, whatever walls they are of
-  /// Noisy, and many points see two walls less than two spacings apart: what 8 neighbours tell is
-  /// the walls' distance as much as noise.
+  /// Few neighbours make no plane (`fine` would be .13 or more), and a tenth of the points or more
+  /// see two walls up to two spacings apart: it is the other wall as much as noise.
   bool thin = false;
 };
+
+/// Measures the noise at some thousand of a cloud's points.
+/// \param points distinct finite points
+/// \param neighborhoods their neighbours, as for estimateSheetNormals()
+/// \param threads see resolveThreads(); the result does not depend on it
 NoiseLevel measureNoise(const PointView& points, const Neighborhoods& neighborhoods,
                         int threads = 0);
 

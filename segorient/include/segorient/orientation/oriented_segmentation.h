@@ -20,8 +20,8 @@ struct OrientedSegmentation {
 
 /// Orients a cloud that has normals: the stage after segmentation, on any rows (NaN and repeated
 /// points included). A row that repeats a point follows that point.
-/// \param normals one a row, signs arbitrary; NaN = the point has none. Curvatures tell where
-///        segments start, so constant ones will do
+/// \param normals one a row, signs arbitrary; NaN = the point has none. Curvatures are looked at
+///        where segments are made, see segmentByNormals(); constant ones will do
 /// \param segmentation of these rows, or null to make one by `segmentation_options`
 /// \param k neighbours of a point, itself not counted; <= 0 = 32 for AUTO and 12 for the others
 /// \param search finds neighbours among the rows; empty = a search of our own

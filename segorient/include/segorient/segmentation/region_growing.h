@@ -66,7 +66,8 @@ struct SegmentationReport {
 /// nearest neighbours.
 ///
 /// \param points all rows finite where the normal is finite
-/// \param normals unit normals and curvatures; points with a NaN normal get label -1
+/// \param normals unit normals and curvatures; points with a NaN normal get label -1, a NaN
+///        curvature counts as the highest
 /// \param neighborhoods of every point; rows without distances are measured anew
 /// \param faces where not null: the segments once more, those united whose common border is smooth.
 ///        Beta keeps segments so flat that each can be seen through a plane, as triangulation and

@@ -13,6 +13,8 @@ namespace segorient {
 ///        segmented then
 /// \param segmentation of the whole cloud, or empty
 /// \param indices points to use, null = all; bad ones are left out
+/// \param all see triangulateSegments()
+/// \param meshes output, one a segment; empty where false is returned
 /// \return false if the segmentation, or the normals that one is to be made from, are not of this
 ///         cloud
 bool triangulateCloud(const PointView& points, const NormalView& normals,

@@ -44,7 +44,8 @@ template <typename PointNT>
 void SegmentTriangulation<PointNT>::performReconstruction(std::vector<pcl::Vertices>& polygons) {
   polygons.clear();
   const CloudPoints<PointNT> points(*input_);
-  const CloudNormals<PointNT> normals(*input_);
+  CloudNormals<PointNT> normals;
+  if (segmentation_.labels.empty()) normals.assign(*input_);
   const pcl::Indices* indices = fake_indices_ ? nullptr : indices_.get();
   if (!triangulateCloud(points.view(), normals.view(), segmentation_, indices, options_, all_,
                         meshes_)) {
