@@ -51,7 +51,7 @@ TEST(SheetNormals, TellNeighboursOnTheOtherWall) {
 // Normals have no sign, and which one a fit returns depends on their direction. Around a point it
 // must stay the same from fit to fit, or its own wall would be the other one.
 TEST(SheetNormals, TellWallsInAnyDirection) {
-  const LabelledCloud cloud = sample("plate", plate(1, 8000), 8000, 4);
+  const LabelledCloud cloud = sample("plate", plate(1, 8000), 8000, 4, 0.15);
   const Neighborhoods table = neighborsOf(cloud.xyz);
   const auto onOwnWall = [&](const std::vector<float>& xyz) {
     const SheetNormals sheets = estimateSheetNormals(viewOf(xyz), table);
