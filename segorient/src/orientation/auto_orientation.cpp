@@ -71,7 +71,10 @@ class Orienter {
   void turnComponentsOut();
   std::vector<std::int8_t> conventionalSigns() const;
   bool isClosed(std::size_t component, float residual) const;
-  void turnClusters(const std::vector<Ballot>& ballots, float sure_borders);
+  std::vector<bool> outvoted(const std::vector<Ballot>& ballots, float sure_borders) const;
+  void turnClusters(const std::vector<bool>& chosen);
+  void keepWhatWindsRight(const std::vector<std::int32_t>& part_of,
+                          std::vector<bool>& chosen) const;
   void followHints();
   void followViewpoint();
   std::vector<Ballot> facingOf(const Viewpoint& from) const;
@@ -133,10 +136,14 @@ void Orienter::numberComponents() {
 
 std::vector<float> Orienter::orientedNormals(bool dipoles) const {
   std::vector<float> out(4 * points_.size, 0.F);
+  // The mean distance to the 6 nearest of points of density 1/a is 0.977 sqrt(a). Noise of r
+  // spacings takes two points sqrt(2) r apart across the surface, which adds about 2 r^2 to the
+  // square.
+  const float r = field_.residual;
+  const float per_square = 1.047F / (1.F + 2.F * r * r);
   for (std::size_t i = 0; i < points_.size; ++i) {
     const float h = field_.spacing[i];
-    // The mean distance to the 6 nearest of points of density 1/a is 0.977 sqrt(a).
-    const float area = dipoles ? 1.047F * h * h : 1.F;
+    const float area = dipoles ? per_square * h * h : 1.F;
     const float sign = pointSign(i);
     if (sign == 0.F) continue;
     for (std::size_t a = 0; a < 3; ++a) out[4 * i + a] = sign * area * field_.normals[4 * i + a];
@@ -274,13 +281,43 @@ bool Orienter::isClosed(std::size_t component, float residual) const {
   return winding_[component].residual <= residual;
 }
 
-// Turns over clusters that nearly all of the ballot is against, unless their borders know better.
-void Orienter::turnClusters(const std::vector<Ballot>& ballots, float sure_borders) {
+// Clusters that nearly all of the ballot is against, unless their borders know better.
+std::vector<bool> Orienter::outvoted(const std::vector<Ballot>& ballots, float sure_borders) const {
   const std::vector<float> agreement = detail::agreementOf(clusterOf(), votes_, signs_, 0.F);
+  std::vector<bool> out(clusters_.size());
+  for (std::size_t c = 0; c < out.size(); ++c) {
+    out[c] = agreement[c] <= sure_borders && ballots[c].share() < -kClearly;
+  }
+  return out;
+}
+
+void Orienter::turnClusters(const std::vector<bool>& chosen) {
   for (std::size_t s = 0; s < signs_.size(); ++s) {
-    const std::size_t c = at(clusters_.of(s));
-    if (agreement[c] > sure_borders || ballots[c].share() >= -kClearly) continue;
-    signs_[s] = static_cast<std::int8_t>(-signs_[s]);
+    if (chosen[at(clusters_.of(s))]) signs_[s] = static_cast<std::int8_t>(-signs_[s]);
+  }
+}
+
+// Takes out what the winding number vouches for: the walls of a cavity turn their backs to all that
+// could have seen the body from within. Parts are named by a segment's number.
+void Orienter::keepWhatWindsRight(const std::vector<std::int32_t>& part_of,
+                                  std::vector<bool>& chosen) const {
+  constexpr float kRises = 0.5F;  // half of the way from right to wrong
+  const std::size_t fixed = winding_.size();
+  std::vector<std::int32_t> number(chosen.size(), -1);
+  std::vector<std::int32_t> numbered = component_;
+  std::size_t count = fixed;
+  for (std::size_t s = 0; s < signs_.size(); ++s) {
+    const std::size_t part = at(part_of[s]);
+    if (!chosen[part]) continue;
+    if (number[part] < 0) number[part] = static_cast<std::int32_t>(count++);
+    numbered[s] = number[part];
+  }
+  if (count == fixed) return;
+  const std::vector<float> spacing(field_.spacing, field_.spacing + points_.size);
+  const std::vector<float> rise = riseIfTurned(points_, orientedNormals(true), spacing,
+                                               ofPoints(numbered), count, fixed, options_.threads);
+  for (std::size_t part = 0; part < chosen.size(); ++part) {
+    if (number[part] >= 0 && rise[at(number[part])] > kRises) chosen[part] = false;
   }
 }
 
@@ -307,8 +344,8 @@ void Orienter::followHints() {
       seen[c] = v.view;
     }
   }
-  turnClusters(known, kFirmBorders);
-  turnClusters(seen, kSureBorders);
+  turnClusters(outvoted(known, kFirmBorders));
+  turnClusters(outvoted(seen, kSureBorders));
 }
 
 // If all that the largest cluster knows was seen from one place, so was the rest: other clusters
@@ -344,7 +381,9 @@ void Orienter::followViewpoint() {
     const std::size_t c = at(clusters_.of(s));
     if (!hinted_[c]) facing[c].add(seen[s], 1);
   }
-  turnClusters(facing, kSureBorders);
+  std::vector<bool> turned_away = outvoted(facing, kSureBorders);
+  keepWhatWindsRight(clusterOf(), turned_away);
+  turnClusters(turned_away);
   if (fit.agreement >= kNearlySure) turnSegmentsTo(fit);
 }
 
@@ -383,7 +422,8 @@ void Orienter::turnSegmentsTo(const ViewpointFit& fit) {
     if (turned_away[s] && agreement[at(group[s])] <= kFirmBorders) against.push_back(s);
   }
   if (against.empty() || points > kMostAgainst * static_cast<float>(points_.size)) return;
-  std::vector<bool> sure(signs_.size(), true);  // by group
+  std::vector<bool> sure(signs_.size());  // by group
+  for (const std::size_t s : against) sure[at(group[s])] = true;
   for (const Viewpoint& other : fit.others) {
     const std::vector<Ballot> seen = facingOf(other);
     std::vector<Ballot> of_group(signs_.size());
@@ -392,6 +432,7 @@ void Orienter::turnSegmentsTo(const ViewpointFit& fit) {
       if (of_group[at(group[s])].share() >= -kClearly) sure[at(group[s])] = false;
     }
   }
+  keepWhatWindsRight(group, sure);
   for (const std::size_t s : against) {
     if (sure[at(group[s])]) signs_[s] = static_cast<std::int8_t>(-signs_[s]);
   }

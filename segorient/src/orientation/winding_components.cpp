@@ -139,12 +139,7 @@ class Solver {
   }
 
   std::vector<std::int8_t> turnParts(std::size_t fixed, const TurnRule& rule) {
-    takeSamples();
-    signs_.assign(rows_.size(), 1);
-    for (std::size_t c = 0; c < rows_.size(); ++c) {
-      evaluate(c);
-      for (const Reach& r : reach_[c]) field_[r.sample] += static_cast<double>(r.w);
-    }
+    windAsTurned();
     std::vector<std::pair<double, std::size_t>> order;
     for (std::size_t c = fixed; c < rows_.size(); ++c) order.emplace_back(-gain(c), c);
     std::sort(order.begin(), order.end());
@@ -152,7 +147,7 @@ class Solver {
     for (int round = 0; round < kRounds && moved; ++round) {
       moved = false;
       for (const auto& [first_gain, c] : order) {
-        if (!(gain(c) > rule.gain && turnedResidual(c) <= rule.residual)) continue;
+        if (!(gain(c) > rule.gain && ownResidual(c, true) <= rule.residual)) continue;
         flip(c);
         moved = true;
       }
@@ -160,7 +155,27 @@ class Solver {
     return {signs_.begin(), signs_.end()};
   }
 
+  std::vector<float> riseIfTurned(std::size_t fixed) {
+    windAsTurned();
+    std::vector<float> rise(rows_.size(), 0.F);
+    for (std::size_t c = fixed; c < rows_.size(); ++c) {
+      const double change = ownResidual(c, true) - ownResidual(c, false);
+      if (std::isfinite(change)) rise[c] = static_cast<float>(change);
+    }
+    return rise;
+  }
+
  private:
+  // The field of all parts as they are turned now.
+  void windAsTurned() {
+    takeSamples();
+    signs_.assign(rows_.size(), 1);
+    for (std::size_t c = 0; c < rows_.size(); ++c) {
+      evaluate(c);
+      for (const Reach& r : reach_[c]) field_[r.sample] += static_cast<double>(r.w);
+    }
+  }
+
   // Enough of each component to see it, and of the large ones in proportion: some thousand in all.
   void takeSamples() {
     constexpr double kAll = 2000.0;
@@ -242,13 +257,14 @@ class Solver {
     return sum;
   }
 
-  // Mean square at the points of c itself, if it were turned over.
-  double turnedResidual(std::size_t c) const {
+  // Mean square at the points of c itself, as it is or if it were turned over.
+  double ownResidual(std::size_t c, bool turned) const {
+    const double share = turned ? 2.0 * signs_[c] : 0.0;
     double squares = 0.0;
     double weights = 0.0;
     for (const Reach& r : reach_[c]) {
       if (owner_[r.sample] != c) continue;
-      const double f = field_[r.sample] - 2.0 * signs_[c] * static_cast<double>(r.w);
+      const double f = field_[r.sample] - share * static_cast<double>(r.w);
       squares += weight_[r.sample] * f * f;
       weights += weight_[r.sample];
     }
@@ -315,6 +331,14 @@ std::vector<std::int8_t> turnParts(const PointView& points, const std::vector<fl
                                    std::size_t fixed, const TurnRule& rule, int threads) {
   if (count == 0) return {};
   return Solver(points, dipoles, spacing, parts, count, threads).turnParts(fixed, rule);
+}
+
+std::vector<float> riseIfTurned(const PointView& points, const std::vector<float>& dipoles,
+                                const std::vector<float>& spacing,
+                                const std::vector<std::int32_t>& parts, std::size_t count,
+                                std::size_t fixed, int threads) {
+  if (count == 0) return {};
+  return Solver(points, dipoles, spacing, parts, count, threads).riseIfTurned(fixed);
 }
 
 std::vector<ComponentWinding> solveComponents(const PointView& points,

@@ -53,4 +53,14 @@ std::vector<std::int8_t> turnParts(const PointView& points, const std::vector<fl
                                    const std::vector<std::int32_t>& parts, std::size_t count,
                                    std::size_t fixed, const TurnRule& rule = {}, int threads = 0);
 
+/// By how much the mean of (w - 1/2)^2 at a part's own points would rise if that part alone were
+/// turned over. On a closed surface it is about 1 for what is turned as it should be, and -1 for
+/// what is not; of a sheet that is all alone it is 0. Parameters as above.
+///
+/// \return one a part, 0 for the first `fixed`
+std::vector<float> riseIfTurned(const PointView& points, const std::vector<float>& dipoles,
+                                const std::vector<float>& spacing,
+                                const std::vector<std::int32_t>& parts, std::size_t count,
+                                std::size_t fixed, int threads = 0);
+
 }  // namespace segorient
