@@ -80,6 +80,7 @@ inline std::vector<Column> withoutSteps() {
       without("loose parts", [](PipelineOptions& o) { o.automatic.turn_loose_parts = false; }),
       without("winding number", [](PipelineOptions& o) { o.automatic.wind_components = false; }),
       without("viewpoint", [](PipelineOptions& o) { o.automatic.infer_viewpoint = false; }),
+      without("winding normals", [](PipelineOptions& o) { o.winding_normals = false; }),
       without("wedges", [](PipelineOptions& o) { o.filter_wedges = false; }),
       without("filter", [](PipelineOptions& o) { o.filter_rounds = 0; })};
 }

@@ -6,6 +6,7 @@
 #include <segorient/features/sheet_denoise.h>
 #include <segorient/features/sheet_normals.h>
 #include <segorient/orientation/sheet_filter.h>
+#include <segorient/orientation/winding_normals.h>
 #include <segorient/search/median_hash_index.h>
 
 #include <algorithm>
@@ -115,6 +116,9 @@ AutoNormals orientPoints(const PointView& points, const Neighborhoods& neighborh
   FilteredNormals filtered =
       filterOrientedNormals(points, neighborhoods, sheets.normals, sheets.spacing, sheets.residual,
                             options.filter_rounds, options.filter_wedges, options.threads);
+  if (options.winding_normals && options.filter_rounds > 0) {
+    refineByWinding(points, sheets.spacing, sheets.residual, options.threads, filtered);
+  }
   out.normals = std::move(filtered.normals);
   for (std::size_t i = 0; i < points.size; ++i) {
     const bool has_normal = std::isfinite(out.normals[4 * i]);

@@ -45,6 +45,8 @@ struct PipelineOptions {
   bool denoise = true;        ///< smooth positions first where the noise is above about a spacing
   int filter_rounds = 2;      ///< of filterOrientedNormals(); 0 = off
   bool filter_wedges = true;  ///< its special care for narrow wedges
+  /// refineByWinding() after the filter
+  bool winding_normals = true;
 };
 
 /// Called when a stage begins and as it goes on, from the calling thread.

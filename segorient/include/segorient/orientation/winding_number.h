@@ -27,6 +27,12 @@ class WindingNumber {
   /// \param x where \param radius below which points are smoothed, usually the spacing
   float evaluate(const float* x, float radius) const;
 
+  /// Where w falls fastest, which is outward on a surface: minus the gradient of the field of
+  /// dipoles that are smeared over a radius, sum a (n - 3 (n.d) d / s) / (4 pi s^(3/2)) with
+  /// d = p - x and s = d^2 + r^2.
+  /// \param x where \param radius at least about a spacing \param descent 3 floats, any length
+  void steepestDescent(const float* x, float radius, float* descent) const;
+
   bool empty() const { return nodes_.empty(); }
 
  private:

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the segorient authors
+#pragma once
+
+#include <segorient/common/point_view.h>
+#include <segorient/orientation/sheet_filter.h>
+
+#include <cstddef>
+#include <vector>
+
+namespace segorient {
+
+/// Normals from the winding-number field, where noise leaves several possible.
+///
+/// Planes that were fitted to noisy points near an edge mix its two faces, and whichever of their
+/// normals a point there takes, it may be that of the other face, which is a wrong one if the edge
+/// is acute. The field of all oriented points changes from one face to the other without a jump:
+/// where it falls fastest is never far from either. Normals are tilted, never turned over.
+///
+/// This is the step of WNNC (Lin, Shi and Liu 2024, "Fast and globally consistent normal
+/// orientation based on the winding number normal consistency"), taken once, from normals that are
+/// oriented already, and only for points whose surroundings do not agree. Without noise of about a
+/// tenth of a spacing nothing is changed: edges are known better then. O(log n) for each of those
+/// points; 16 bytes a point and a small tree while it runs.
+///
+/// \param points near ones side by side (CompactCloud's order)
+/// \param spacing one a point
+/// \param residual median residual of the cloud, in spacings
+/// \param threads 0 = all cores
+/// \param filtered as filterOrientedNormals() returns it; confidences stay as they are
+/// \return how many points have a new normal
+std::size_t refineByWinding(const PointView& points, const std::vector<float>& spacing,
+                            float residual, int threads, FilteredNormals& filtered);
+
+}  // namespace segorient
