@@ -4,13 +4,16 @@
 #include <segorient/orientation/winding_normals.h>
 #include <segorient/orientation/winding_number.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 
 namespace segorient {
 namespace {
 
+constexpr float kHuge = std::numeric_limits<float>::max();
 constexpr float kNoisy = 0.1F;  // in spacings; below, the planes near an edge are of one face each
 constexpr float kAgreed = 0.97F;  // confidence from which on there is nothing to mend
 
@@ -36,6 +39,54 @@ std::vector<float> dipolesOf(const std::vector<float>& spacing, const FilteredNo
   return dipoles;
 }
 
+// Doubtful points that are near each other share the dipoles that they see.
+struct Run {
+  std::size_t first;
+  std::size_t last;
+};
+
+std::vector<Run> cutRuns(const std::vector<std::uint32_t>& rows) {
+  constexpr std::uint32_t kRows = 16;  // of the cloud's order
+  std::vector<Run> runs;
+  for (std::size_t k = 0; k < rows.size(); ++k) {
+    if (runs.empty() || rows[k] - rows[runs.back().first] >= kRows) runs.push_back({k, k});
+    runs.back().last = k + 1;
+  }
+  return runs;
+}
+
+void listDipolesOf(const WindingNumber& field, const PointView& points,
+                   const std::vector<std::uint32_t>& rows, const Run& run, DipoleList& out) {
+  std::array<float, 3> low{kHuge, kHuge, kHuge};
+  std::array<float, 3> high{-kHuge, -kHuge, -kHuge};
+  for (std::size_t k = run.first; k < run.last; ++k) {
+    for (std::size_t a = 0; a < 3; ++a) {
+      low[a] = std::min(low[a], points[rows[k]][a]);
+      high[a] = std::max(high[a], points[rows[k]][a]);
+    }
+  }
+  std::array<float, 3> center{};
+  float squares = 0.F;
+  for (std::size_t a = 0; a < 3; ++a) {
+    center[a] = 0.5F * (low[a] + high[a]);
+    squares += (high[a] - center[a]) * (high[a] - center[a]);
+  }
+  out.clear();
+  field.listDipoles(center.data(), std::sqrt(squares), out);
+}
+
+// \return whether the normal of p is another one now
+bool tilt(const DipoleList& dipoles, const float* x, float radius, float* normal) {
+  std::array<float, 3> n{};
+  steepestDescent(dipoles, x, radius, n.data());
+  const float length = std::sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
+  if (!std::isfinite(length) || length < 1e-30F) return false;
+  // Which of two near sheets a point is on is the segments' to say.
+  if (!(n[0] * normal[0] + n[1] * normal[1] + n[2] * normal[2] > 0.F)) return false;
+  for (std::size_t a = 0; a < 3; ++a) normal[a] = n[a] / length;
+  return true;
+}
+
 }  // namespace
 
 std::size_t refineByWinding(const PointView& points, const std::vector<float>& spacing,
@@ -43,23 +94,23 @@ std::size_t refineByWinding(const PointView& points, const std::vector<float>& s
   if (residual < kNoisy) return 0;
   const std::vector<std::uint32_t> rows = listDoubtful(spacing, filtered);
   if (rows.empty()) return 0;
+  const std::vector<Run> runs = cutRuns(rows);
   const std::vector<float> dipoles = dipolesOf(spacing, filtered);
   WindingNumber field;
   field.build(points, dipoles, {});
   std::size_t changed = 0;
-#pragma omp parallel for num_threads(resolveThreads(threads)) schedule(dynamic, 256) \
-    reduction(+ : changed)
-  for (std::size_t k = 0; k < rows.size(); ++k) {
-    const std::size_t p = rows[k];
-    std::array<float, 3> n{};
-    field.steepestDescent(points[p], (1.F + residual) * spacing[p], n.data());
-    const float length = std::sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
-    if (!std::isfinite(length) || length < 1e-30F) continue;
-    float* normal = filtered.normals.data() + 4 * p;
-    // Which of two near sheets a point is on is the segments' to say.
-    if (!(n[0] * normal[0] + n[1] * normal[1] + n[2] * normal[2] > 0.F)) continue;
-    for (std::size_t a = 0; a < 3; ++a) normal[a] = n[a] / length;
-    ++changed;
+#pragma omp parallel num_threads(resolveThreads(threads)) reduction(+ : changed)
+  {
+    DipoleList seen;
+#pragma omp for schedule(dynamic, 16)
+    for (std::size_t r = 0; r < runs.size(); ++r) {
+      listDipolesOf(field, points, rows, runs[r], seen);
+      for (std::size_t k = runs[r].first; k < runs[r].last; ++k) {
+        const std::size_t p = rows[k];
+        const float radius = (1.F + residual) * spacing[p];
+        if (tilt(seen, points[p], radius, filtered.normals.data() + 4 * p)) ++changed;
+      }
+    }
   }
   return changed;
 }

@@ -3,7 +3,6 @@
 #include <segorient/orientation/winding_number.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 namespace segorient {
@@ -121,34 +120,23 @@ float WindingNumber::evaluate(const float* x, float radius) const {
   return static_cast<float>(sum) * kOneOver4Pi;
 }
 
-void WindingNumber::steepestDescent(const float* x, float radius, float* descent) const {
-  const float r2 = radius * radius;
-  std::array<double, 3> sum{0.0, 0.0, 0.0};
-  const auto add = [&](const float* dipole, const float* d, float s) {
-    const float along = 3.F * (dipole[0] * d[0] + dipole[1] * d[1] + dipole[2] * d[2]) / s;
-    const float weight = 1.F / (s * std::sqrt(s));
-    for (std::size_t a = 0; a < 3; ++a) {
-      sum[a] += static_cast<double>(weight * (dipole[a] - along * d[a]));
-    }
-  };
+void WindingNumber::listDipoles(const float* center, float reach, DipoleList& out) const {
+  // Of dipoles this far away the field changes little, and its gradient less.
+  constexpr float kFarFromBall = 2.F;
   for (std::uint32_t i = 0; i < nodes_.size();) {
     const Node& node = nodes_[i];
-    const float d[3] = {node.center[0] - x[0], node.center[1] - x[1], node.center[2] - x[2]};
-    const float s = d[0] * d[0] + d[1] * d[1] + d[2] * d[2];
-    if (s > kFar * kFar * node.radius * node.radius) {
-      add(node.dipole, d, s + r2);
+    const float d[3] = {node.center[0] - center[0], node.center[1] - center[1],
+                        node.center[2] - center[2]};
+    const float far = kFarFromBall * node.radius + reach;
+    if (d[0] * d[0] + d[1] * d[1] + d[2] * d[2] > far * far) {
+      out.add(node.center, node.dipole);
       i = node.skip;
       continue;
     }
     for (std::uint32_t j = node.first; j < node.first + node.size; ++j) {
-      const float* q = points_[row(j)];
-      const float e[3] = {q[0] - x[0], q[1] - x[1], q[2] - x[2]};
-      add(dipoles_ + 4 * row(j), e, e[0] * e[0] + e[1] * e[1] + e[2] * e[2] + r2);
+      out.add(points_[row(j)], dipoles_ + 4 * row(j));
     }
     ++i;
-  }
-  for (std::size_t a = 0; a < 3; ++a) {
-    descent[a] = static_cast<float>(sum[a]) * kOneOver4Pi;
   }
 }
 

@@ -4,11 +4,28 @@
 
 #include <segorient/common/point_view.h>
 
+#include <cstddef>
 #include <cstdint>
 #include <limits>
 #include <vector>
 
 namespace segorient {
+
+/// Dipoles as separate arrays: places, and area-weighted normals.
+struct DipoleList {
+  std::vector<float> x, y, z;
+  std::vector<float> mx, my, mz;
+
+  std::size_t size() const { return x.size(); }
+  void clear();
+  void add(const float* place, const float* moment);
+};
+
+/// Where the winding number of dipoles that are smeared over a radius falls fastest, which is
+/// outward on a surface: minus its gradient, sum (m - 3 (m.d) d / s) / (4 pi s^(3/2)) with
+/// d = p - x and s = d^2 + r^2.
+/// \param x where \param radius at least about a spacing \param descent 3 floats
+void steepestDescent(const DipoleList& dipoles, const float* x, float radius, float* descent);
 
 /// Winding number of oriented points (Barill et al. 2018, "Fast winding numbers for soups and
 /// clouds"): w(x) = sum a n.(p - x) / (4 pi max(|p - x|, r)^3): 1 inside a closed outward cloud, 0
@@ -27,11 +44,10 @@ class WindingNumber {
   /// \param x where \param radius below which points are smoothed, usually the spacing
   float evaluate(const float* x, float radius) const;
 
-  /// Where w falls fastest, which is outward on a surface: minus the gradient of the field of
-  /// dipoles that are smeared over a radius, sum a (n - 3 (n.d) d / s) / (4 pi s^(3/2)) with
-  /// d = p - x and s = d^2 + r^2.
-  /// \param x where \param radius at least about a spacing \param descent 3 floats, any length
-  void steepestDescent(const float* x, float radius, float* descent) const;
+  /// Appends dipoles that stand for all points when seen from a ball: points near it themselves,
+  /// others together.
+  /// \param center of the ball \param reach its radius
+  void listDipoles(const float* center, float reach, DipoleList& out) const;
 
   bool empty() const { return nodes_.empty(); }
 
