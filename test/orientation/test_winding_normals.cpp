@@ -8,8 +8,10 @@
 #include <segorient/orientation/winding_number.h>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <random>
+#include <vector>
 
 #include "sheet_fixture.h"
 
@@ -53,7 +55,11 @@ TEST(WindingNumber, FallsAsItsDefinitionDoes) {
     }
     Eigen::Vector3f got;
     DipoleList seen;
-    winding.listDipoles(p, k % 2 == 0 ? 0.F : 3 * radius, seen);
+    // At the ball's center, and at its rim.
+    const float reach = k % 2 == 0 ? 0.F : 4 * radius;
+    const float center[3] = {p[0] + reach, p[1], p[2]};
+    winding.listDipoles(center, 1.01F * reach, seen);
+    EXPECT_LT(seen.size(), compact.size());
     steepestDescent(seen, p, radius, got.data());
     EXPECT_LT((got.cast<double>() - falls).norm(), 0.05 * falls.norm()) << k;
   }
@@ -95,14 +101,24 @@ TEST(WindingNormals, AreWorthTheirTimeAtAcuteEdges) {
   }
 }
 
-// A sphere with one normal turned over, one missing, and doubts about every second point.
+// A sphere with one normal turned over, one missing, and doubts about every second point, whose
+// normals are 27 degrees off.
 struct Doubts {
   LabelledCloud cloud;
   FilteredNormals normals;
   std::vector<float> spacing;
 };
 
+void tiltAtRandom(std::mt19937& rng, float* n) {
+  std::normal_distribution<float> gauss(0.F, 1.F);
+  Eigen::Map<Eigen::Vector3f> normal(n);
+  const Eigen::Vector3f side =
+      normal.cross(Eigen::Vector3f(gauss(rng), gauss(rng), gauss(rng))).normalized();
+  normal = (normal + 0.5F * side).normalized();
+}
+
 Doubts doubts() {
+  std::mt19937 rng(5);
   Doubts d;
   for (int i = 0; i < 2000; ++i) {
     const double z = 1 - (2 * i + 1) / 2000.0;
@@ -116,6 +132,7 @@ Doubts doubts() {
   for (std::size_t i = 0; i < 2000; ++i) {
     d.normals.normals[4 * i + 3] = 0.25F;
     d.normals.confidences.push_back(i % 2 == 0 ? 0.5F : 0.99F);
+    if (i % 2 == 0) tiltAtRandom(rng, &d.normals.normals[4 * i]);
     d.spacing.push_back(0.08F);
   }
   for (std::size_t a = 0; a < 3; ++a) {
@@ -139,7 +156,7 @@ TEST(WindingNormals, ChangeOnlyWhatIsInDoubt) {
       EXPECT_TRUE(std::equal(n, n + 4, &before.normals[4 * i]));
     } else {
       EXPECT_NEAR(dot3(n, n), 1.F, 1e-5F);
-      EXPECT_GT(dot3(n, &d.cloud.xyz[4 * i]), 0.9F) << i;
+      EXPECT_GT(dot3(n, &d.cloud.xyz[4 * i]), 0.97F) << i;  // 0.89 before
     }
   }
 }
@@ -166,6 +183,12 @@ TEST(WindingNormals, AreTheSameForAnyNumberOfThreads) {
 TEST(WindingNormals, OfNothingAreNothing) {
   FilteredNormals none;
   EXPECT_EQ(refineByWinding({}, {}, 0.2F, 0, none), 0U);
+  Doubts d = doubts();
+  EXPECT_EQ(refineByWinding(viewOf(d.cloud.xyz), {0.1F}, 0.2F, 0, d.normals), 0U);
+  const float unknown = std::numeric_limits<float>::quiet_NaN();
+  EXPECT_EQ(refineByWinding(viewOf(d.cloud.xyz), d.spacing, unknown, 0, d.normals), 0U);
+  d.normals.confidences.pop_back();
+  EXPECT_EQ(refineByWinding(viewOf(d.cloud.xyz), d.spacing, 0.2F, 0, d.normals), 0U);
   // All in one place, or so near that squares vanish.
   FilteredNormals near;
   near.normals = {0.F, 0.F, 1.F, 0.F, 0.F, 0.F, 1.F, 0.F};

@@ -301,7 +301,9 @@ void Orienter::turnClusters(const std::vector<bool>& chosen) {
 // could have seen the body from within. Parts are named by a segment's number.
 void Orienter::keepWhatWindsRight(const std::vector<std::int32_t>& part_of,
                                   std::vector<bool>& chosen) const {
-  constexpr float kRises = 0.5F;  // half of the way from right to wrong
+  if (!options_.wind_components || hints_.surface == SurfaceKind::OPEN) return;
+  // About 1 for a cavity; .6 for a hemisphere and .8 for a box without a lid, which are open.
+  constexpr float kRises = 0.8F;
   const std::size_t fixed = winding_.size();
   std::vector<std::int32_t> number(chosen.size(), -1);
   std::vector<std::int32_t> numbered = component_;

@@ -89,8 +89,9 @@ void steepestDescent(const DipoleList& dipoles, const float* x, float radius, fl
   constexpr float kOneOver4Pi = 0.07957747F;
   const Dipoles from{dipoles.x.data(),  dipoles.y.data(),  dipoles.z.data(), dipoles.mx.data(),
                      dipoles.my.data(), dipoles.mz.data(), dipoles.size()};
+  static const AddDipoles addDipoles = chooseAddDipoles();
   Sums sums{};
-  chooseAddDipoles()(from, x, radius * radius, sums);
+  addDipoles(from, x, radius * radius, sums);
   for (std::size_t a = 0; a < 3; ++a) {
     float total = 0.F;
     for (const float v : a == 0 ? sums.x : (a == 1 ? sums.y : sums.z)) total += v;

@@ -32,7 +32,7 @@ std::vector<float> dipolesOf(const std::vector<float>& spacing, const FilteredNo
   std::vector<float> dipoles(4 * spacing.size(), 0.F);
   for (std::size_t p = 0; p < spacing.size(); ++p) {
     if (!std::isfinite(filtered.normals[4 * p])) continue;
-    const float area = spacing[p] * spacing[p];
+    const float area = std::isfinite(spacing[p]) ? spacing[p] * spacing[p] : 0.F;
     for (std::size_t a = 0; a < 3; ++a) dipoles[4 * p + a] = area * filtered.normals[4 * p + a];
     dipoles[4 * p + 3] = area;
   }
@@ -45,11 +45,24 @@ struct Run {
   std::size_t last;
 };
 
-std::vector<Run> cutRuns(const std::vector<std::uint32_t>& rows) {
-  constexpr std::uint32_t kRows = 16;  // of the cloud's order
+bool areNear(const float* a, const float* b, float reach) {
+  float squares = 0.F;
+  for (std::size_t i = 0; i < 3; ++i) squares += (a[i] - b[i]) * (a[i] - b[i]);
+  return squares <= reach * reach;
+}
+
+std::vector<Run> cutRuns(const PointView& points, const std::vector<float>& spacing,
+                         const std::vector<std::uint32_t>& rows) {
+  constexpr std::uint32_t kRows = 16;  // of the cloud's order, which jumps here and there
+  constexpr float kReach = 8.F;        // in spacings
   std::vector<Run> runs;
   for (std::size_t k = 0; k < rows.size(); ++k) {
-    if (runs.empty() || rows[k] - rows[runs.back().first] >= kRows) runs.push_back({k, k});
+    const std::size_t first = runs.empty() ? k : runs.back().first;
+    const float* start = points[rows[first]];
+    if (runs.empty() || rows[k] - rows[first] >= kRows ||
+        !areNear(start, points[rows[k]], kReach * spacing[rows[first]])) {
+      runs.push_back({k, k});
+    }
     runs.back().last = k + 1;
   }
   return runs;
@@ -79,11 +92,14 @@ void listDipolesOf(const WindingNumber& field, const PointView& points,
 bool tilt(const DipoleList& dipoles, const float* x, float radius, float* normal) {
   std::array<float, 3> n{};
   steepestDescent(dipoles, x, radius, n.data());
-  const float length = std::sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
-  if (!std::isfinite(length) || length < 1e-30F) return false;
+  // In double: far from all others the field is so weak that squares leave float's range.
+  const auto square = [](float v) { return static_cast<double>(v) * static_cast<double>(v); };
+  const double length = std::sqrt(square(n[0]) + square(n[1]) + square(n[2]));
+  if (!std::isfinite(length) || !(length > 0.0)) return false;
   // Which of two near sheets a point is on is the segments' to say.
   if (!(n[0] * normal[0] + n[1] * normal[1] + n[2] * normal[2] > 0.F)) return false;
-  for (std::size_t a = 0; a < 3; ++a) normal[a] = n[a] / length;
+  for (std::size_t a = 0; a < 3; ++a)
+    normal[a] = static_cast<float>(static_cast<double>(n[a]) / length);
   return true;
 }
 
@@ -91,10 +107,14 @@ bool tilt(const DipoleList& dipoles, const float* x, float radius, float* normal
 
 std::size_t refineByWinding(const PointView& points, const std::vector<float>& spacing,
                             float residual, int threads, FilteredNormals& filtered) {
-  if (residual < kNoisy) return 0;
+  const std::size_t n = points.size;
+  if (spacing.size() != n || filtered.confidences.size() != n || filtered.normals.size() != 4 * n) {
+    return 0;
+  }
+  if (!(residual >= kNoisy)) return 0;
   const std::vector<std::uint32_t> rows = listDoubtful(spacing, filtered);
   if (rows.empty()) return 0;
-  const std::vector<Run> runs = cutRuns(rows);
+  const std::vector<Run> runs = cutRuns(points, spacing, rows);
   const std::vector<float> dipoles = dipolesOf(spacing, filtered);
   WindingNumber field;
   field.build(points, dipoles, {});

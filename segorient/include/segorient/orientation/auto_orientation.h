@@ -23,7 +23,8 @@ struct AutoOrientationOptions {
   bool wind_components = true;   ///< in and out by the winding number; otherwise by convention
   bool turn_loose_parts = true;  ///< what borders hardly tell, the winding number does; needs
                                  ///< wind_components
-  bool infer_viewpoint = true;   ///< a scan from one place: what disagrees with it is turned over
+  bool infer_viewpoint = true;   ///< a scan from one place: what disagrees with it is turned over,
+                                 ///< but for cavities that the winding number vouches for
   int threads = 0;               ///< see resolveThreads()
 };
 

@@ -45,7 +45,7 @@ struct PipelineOptions {
   bool denoise = true;        ///< smooth positions first where the noise is above about a spacing
   int filter_rounds = 2;      ///< of filterOrientedNormals(); 0 = off
   bool filter_wedges = true;  ///< its special care for narrow wedges
-  /// refineByWinding() after the filter
+  /// refineByWinding() after the filter; does nothing without it, nor without noise
   bool winding_normals = true;
 };
 

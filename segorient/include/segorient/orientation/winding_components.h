@@ -54,8 +54,9 @@ std::vector<std::int8_t> turnParts(const PointView& points, const std::vector<fl
                                    std::size_t fixed, const TurnRule& rule = {}, int threads = 0);
 
 /// By how much the mean of (w - 1/2)^2 at a part's own points would rise if that part alone were
-/// turned over. On a closed surface it is about 1 for what is turned as it should be, and -1 for
-/// what is not; of a sheet that is all alone it is 0. Parameters as above.
+/// turned over. Of a part that is closed in itself it is about 1 if it is turned as it should be,
+/// and -1 if it is not; of a flat sheet about 0, of a bowl or an open box up to .8. Parameters as
+/// above; dipoles as they are turned now.
 ///
 /// \return one a part, 0 for the first `fixed`
 std::vector<float> riseIfTurned(const PointView& points, const std::vector<float>& dipoles,

@@ -24,7 +24,9 @@ struct DipoleList {
 /// Where the winding number of dipoles that are smeared over a radius falls fastest, which is
 /// outward on a surface: minus its gradient, sum (m - 3 (m.d) d / s) / (4 pi s^(3/2)) with
 /// d = p - x and s = d^2 + r^2.
-/// \param x where \param radius at least about a spacing \param descent 3 floats
+/// (evaluate() smears otherwise: max(d, r) for the root of s.)
+/// \param x where \param radius at least about a spacing, above 0
+/// \param descent 3 floats, 1 / length; 0 without dipoles
 void steepestDescent(const DipoleList& dipoles, const float* x, float radius, float* descent);
 
 /// Winding number of oriented points (Barill et al. 2018, "Fast winding numbers for soups and
