@@ -19,6 +19,11 @@ using detail::Vec3;
 // Borders of so many votes, of which fewer than nine of ten agree, are voted on again.
 constexpr std::uint32_t kLong = 16;
 constexpr float kAgreed = 0.8F;
+// Where normals leave more of their neighbours unexplained than this there is noise. It makes the
+// planes in the tip of a wedge lie between its faces, where they agree with each other, wrongly.
+constexpr float kNoisy = 0.1F;
+// Points on a disc of the radius that wide votes reach (8 spacings): fewer are no face.
+constexpr std::int32_t kFace = 200;
 
 struct RawVote {
   std::int32_t a, b;
@@ -121,6 +126,13 @@ struct Tally {
   }
 };
 
+bool areFaces(const Segmentation& segmentation, const BorderVote& v) {
+  const auto size = [&](std::int32_t s) {
+    return segmentation.segments[static_cast<std::size_t>(s)].size;
+  };
+  return std::min(size(v.a), size(v.b)) >= kFace;
+}
+
 std::vector<RawVote> castVotes(const Voter& voter, std::size_t n, int threads) {
   // Chunks of a fixed size, joined in order, so that sums do not depend on the number of threads.
   constexpr std::size_t kChunk = 8192;
@@ -178,14 +190,15 @@ std::vector<BorderVote> borderVotes(const PointView& points, const Neighborhoods
       v.wall_counts = walls_count;
       v.count = sheet.count;
       v.where = votes[i + (j - i) / 2].point;
-      if (v.count >= kLong && v.unanimity() < kAgreed) {
+      const bool agreed = v.unanimity() >= kAgreed;
+      if (v.count >= kLong && (!agreed || (field.residual > kNoisy && areFaces(segmentation, v)))) {
         border.clear();
         for (std::size_t k = i; k < j; ++k) {
           const bool counted = walls_count || !votes[k].wall;
           const bool known = !border.empty() && border.back() == votes[k].point;
           if (counted && !known) border.push_back(votes[k].point);
         }
-        const float again = wide.vote(border, v.a, v.b);
+        const float again = wide.vote(border, v.a, v.b, agreed);
         v.by_planes = std::fabs(again) > kAgreed;
         if (v.by_planes) {
           v.weight = again * v.absolute;
