@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <limits>
+#include <random>
 #include <thread>
 
 #include "brute_force.h"
@@ -221,6 +222,42 @@ TEST(Index, FirstQueryOfAThread) {
     std::thread([&] { found = nearestK(index, query.data(), static_cast<int>(k)); }).join();
     EXPECT_EQ(found, prefix(bruteForce(view, query.data()), k)) << size;
   }
+}
+
+// Two places with many points each between others. Whatever was asked before, in which of two
+// structures and for how many, must not answer for another one.
+TEST(Index, QueriesWherePointsCrowd) {
+  const std::array<std::array<float, 3>, 2> places{{{0.5F, 0.5F, 0.5F}, {0.75F, 0.5F, 0.25F}}};
+  std::mt19937 rng(31);
+  std::uniform_real_distribution<float> unit(0.F, 1.F);
+  std::vector<float> rows;
+  for (int i = 0; i < 12000; ++i) {
+    if (i % 3 == 0) {
+      rows.insert(rows.end(), {unit(rng), unit(rng), unit(rng)});
+    } else {
+      const auto& p = places[static_cast<std::size_t>(i) / 5 % 2];
+      rows.insert(rows.end(), p.begin(), p.end());
+    }
+  }
+  const PointView view{rows.data(), 3, 12000};
+  std::vector<pcl::index_t> others;
+  for (pcl::index_t i = 11999; i > 0; i -= 2) others.push_back(i);
+  std::array<MedianHashIndex, 2> built;
+  built[0].build(view, nullptr, {});
+  built[1].build(view, &others, {});
+  for (std::size_t i = 0; i < 64; ++i) {
+    const std::array<float, 3>& q = places[rng() % 2];
+    const std::size_t k = rng() % 2 == 0 ? 7 : 20;
+    const std::size_t which = rng() % 2;
+    EXPECT_EQ(nearestK(built[which], q.data(), static_cast<int>(k)),
+              prefix(bruteForce(view, q.data(), which == 1 ? &others : nullptr), k))
+        << i;
+  }
+  const std::vector<float> moved(rows.rbegin(), rows.rend());  // the same places, other indices
+  const PointView other{moved.data(), 3, 12000};
+  built[0].build(other, nullptr, {});
+  EXPECT_EQ(nearestK(built[0], places[0].data(), 7),
+            prefix(bruteForce(other, places[0].data()), 7));
 }
 
 TEST(Index, EverySmallSize) {

@@ -174,7 +174,7 @@ TEST(MedianHash, AllPointsEqualsQueryByQuery) {
 TEST(MedianHash, SettersAndGetters) {
   OurTree tree;
   EXPECT_EQ(tree.getName(), "MedianHash");
-  EXPECT_EQ(tree.getRegionSize(), 2048U);
+  EXPECT_EQ(tree.getRegionSize(), 4096U);
   EXPECT_EQ(tree.getNumberOfThreads(), 0U);
   tree.setRegionSize(500);
   tree.setNumberOfThreads(3);

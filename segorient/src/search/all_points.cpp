@@ -136,7 +136,7 @@ void MedianHashIndex::nearestKAll(int k, Neighborhoods& out, bool with_distances
     task.indices = out.mutableIndices(0);
     task.distances = out.mutableSqrDistances(0);
     task.row_length = static_cast<std::size_t>(k);
-#pragma omp for schedule(dynamic, 4)
+#pragma omp for schedule(dynamic, 1)
     for (std::int64_t r = 0; r < regions; ++r) {
       self.nearestOfRegion(static_cast<std::size_t>(r), task, out);
     }
@@ -185,7 +185,7 @@ void MedianHashIndex::radiusAll(double radius, RadiusNeighborhoods& out, unsigne
     task.k = max_nn > 0 ? max_nn : std::numeric_limits<std::uint32_t>::max();
     task.limit = limit;
     std::size_t expected = 1024;
-#pragma omp for schedule(dynamic, 4)
+#pragma omp for schedule(dynamic, 1)
     for (std::int64_t i = 0; i < regions; ++i) {
       const auto r = static_cast<std::size_t>(i);
       const Region& region = layout.regions[r];
@@ -198,7 +198,7 @@ void MedianHashIndex::radiusAll(double radius, RadiusNeighborhoods& out, unsigne
     }
   }
   out.finishCounts();
-#pragma omp parallel for num_threads(threads) schedule(dynamic, 4) if (threads > 1)
+#pragma omp parallel for num_threads(threads) schedule(dynamic, 1) if (threads > 1)
   for (std::int64_t i = 0; i < regions; ++i) {
     const auto r = static_cast<std::size_t>(i);
     const Region& region = layout.regions[r];

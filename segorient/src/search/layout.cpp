@@ -44,14 +44,21 @@ float squaredSpacing(const BuildPoint* points, std::size_t count, std::size_t ow
   return nearest[found - 1];
 }
 
-// The median over three points.
-float typicalSpacing(const BuildPoint* points, std::size_t count) {
+// The median over three points. Where that is 0, since many points are in one place, the others
+// count: the largest of the three, else as if the points were spread over a surface across the box.
+float typicalSpacing(const BuildPoint* points, std::size_t count, const Box& box) {
   std::array<float, 3> found{};
   for (std::size_t s = 0; s < 3; ++s) {
     found[s] = squaredSpacing(points, count, (2 * s + 1) * count / 6 / 2 * 2);
   }
   std::sort(found.begin(), found.end());
-  return found[1];
+  if (found[1] > 0.0F) return found[1];
+  if (found[2] > 0.0F) return found[2];
+  float squared_diagonal = 0.0F;
+  for (int a = 0; a < 3; ++a) {
+    squared_diagonal += (box.hi[a] - box.lo[a]) * (box.hi[a] - box.lo[a]);
+  }
+  return squared_diagonal * 16.0F / static_cast<float>(count);
 }
 
 // Chooses the grid of a region; the cells are wide enough that k nearest neighbours lie in few of
@@ -127,14 +134,14 @@ void sortIntoCells(BuildPoint* points, const Box& box, const Region& region, Lay
 
 void hashRegions(BuildPoint* points, Layout& layout, int threads) {
   const auto regions = static_cast<std::ptrdiff_t>(layout.regions.size());
-#pragma omp parallel for num_threads(threads) schedule(dynamic, 8) if (threads > 1)
+#pragma omp parallel for num_threads(threads) schedule(dynamic, 1) if (threads > 1)
   for (std::ptrdiff_t i = 0; i < regions; ++i) {
     const auto r = static_cast<std::size_t>(i);
     Region& region = layout.regions[r];
     const Box& box = layout.boxes[layout.regions.size() + r];
     const std::size_t count = region.end - region.begin;
     region.flat = 0;
-    chooseGrid(box, count, typicalSpacing(points + region.begin, count), region);
+    chooseGrid(box, count, typicalSpacing(points + region.begin, count, box), region);
   }
   std::size_t starts = 0;
   for (Region& region : layout.regions) {
@@ -145,7 +152,7 @@ void hashRegions(BuildPoint* points, Layout& layout, int threads) {
 #pragma omp parallel num_threads(threads) if (threads > 1)
   {
     std::vector<std::uint32_t> cell;
-#pragma omp for schedule(dynamic, 8)
+#pragma omp for schedule(dynamic, 1)
     for (std::ptrdiff_t i = 0; i < regions; ++i) {
       const auto r = static_cast<std::size_t>(i);
       const Region& region = layout.regions[r];

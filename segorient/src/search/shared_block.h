@@ -29,6 +29,35 @@ struct LastQuery {
   }
 };
 
+/// The last query from a place where more points are than were sought: all that are there have the
+/// same answer, and each would have to look at all of them.
+class CrowdedPlace {
+ public:
+  /// \return false if that was another place
+  bool answer(std::uint64_t index, const float* q, std::size_t k, pcl::index_t* indices,
+              float* distances) const {
+    if (index != index_ || k != indices_.size() || !std::equal(q, q + 3, point_)) return false;
+    std::copy(indices_.begin(), indices_.end(), indices);
+    std::fill_n(distances, k, distance_);
+    return true;
+  }
+
+  /// \param distance that of all k
+  void remember(std::uint64_t index, const float* q, std::size_t k, const pcl::index_t* indices,
+                float distance) {
+    index_ = index;
+    std::copy_n(q, 3, point_);
+    indices_.assign(indices, indices + k);
+    distance_ = distance;
+  }
+
+ private:
+  std::uint64_t index_ = 0;  // none has this number
+  float point_[3] = {0.0F, 0.0F, 0.0F};
+  float distance_ = 0.0F;
+  std::vector<pcl::index_t> indices_;
+};
+
 /// All points in and around a cube, where queries next to each other find theirs.
 class SharedBlock {
  public:

@@ -32,6 +32,7 @@ class Workspace {
   SortScratch sort() { return sort_.scratch(); }
   std::vector<std::pair<float, std::uint32_t>> pairs;
   LastQuery last;
+  CrowdedPlace crowded;
   SharedBlock shared;
 
  private:
@@ -216,9 +217,13 @@ void MedianHashIndex::Impl::addUnreachable(std::size_t k, Workspace& work) const
 void MedianHashIndex::Impl::search(const float* q, std::size_t k, float epsilon,
                                    pcl::index_t* indices, float* distances) const {
   Workspace& work = workspace();
-  const bool exact = pruneFactor(epsilon) == 1.0F;
-  if (!exact || !searchShared(q, k, work, indices, distances)) {
+  // What is approximate must not depend on what was asked before.
+  if (pruneFactor(epsilon) != 1.0F) {
     searchAlone(q, k, epsilon, work, indices, distances);
+  } else if (!searchShared(q, k, work, indices, distances) &&
+             !work.crowded.answer(number, q, k, indices, distances)) {
+    searchAlone(q, k, epsilon, work, indices, distances);
+    if (distances[0] == distances[k - 1]) work.crowded.remember(number, q, k, indices, *distances);
   }
   work.last = {number, k, {q[0], q[1], q[2]}, distances[k - 1]};
 }

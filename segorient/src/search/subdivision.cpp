@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026, the segorient authors
+#include <omp.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -84,9 +86,12 @@ int longestAxisOfSample(const BuildPoint* points, std::size_t count) {
   return longestAxis(boxOf(sample.data(), size));
 }
 
+// What stays between two estimates is less than half each time, and has one place more.
+constexpr std::size_t kMoreScratch = 64;
+
 // Copies to `to`, the `half` points of the least coordinates in front. What is below or above an
 // estimated interval is in place after one pass without a branch; the rest is divided likewise.
-// \param scratch room for twice as many points
+// \param scratch room for kMoreScratch more points
 // \return the least coordinate behind
 float divideInTwo(const BuildPoint* from, std::size_t count, BuildPoint* to, std::size_t half,
                   int axis, BuildPoint* scratch) {
@@ -123,15 +128,17 @@ float divideInTwo(const BuildPoint* from, std::size_t count, BuildPoint* to, std
 
 class Subdivision {
  public:
-  Subdivision(BuildPoint* points, BuildPoint* other, std::size_t levels, Layout& layout)
-      : points_(points), other_(other), levels_(levels), layout_(layout) {
+  Subdivision(BuildPoint* points, BuildPoint* other, std::size_t levels, std::size_t threads,
+              Layout& layout)
+      : points_(points), other_(other), levels_(levels), layout_(layout), scratch_(threads) {
     layout.boxes.resize(std::size_t{2} << levels);
     layout.splits.resize(std::size_t{1} << levels);
     layout.regions.resize(std::size_t{1} << levels);
   }
 
   // \return the points region by region, in one of the two arrays
-  BuildPoint* run(std::size_t count, int threads) {
+  BuildPoint* run(std::size_t count) {
+    const auto threads = static_cast<int>(scratch_.size());
 #pragma omp parallel num_threads(threads) if (threads > 1)
 #pragma omp single
     divide(1, 0, 0, count);
@@ -154,8 +161,9 @@ class Subdivision {
     }
     const std::size_t half = count / 2;
     {
-      thread_local FastVector<BuildPoint> scratch;
-      scratch.resize(2 * count + 2);
+      FastVector<BuildPoint>& scratch = scratch_[static_cast<std::size_t>(omp_get_thread_num())];
+      scratch.clear();
+      scratch.resize(count + kMoreScratch);
       const int axis = longestAxisOfSample(from, count);
       BuildPoint* to = (level % 2 == 0 ? other_ : points_) + begin;
       const float value = divideInTwo(from, count, to, half, axis, scratch.data());
@@ -173,13 +181,15 @@ class Subdivision {
   BuildPoint* other_;
   std::size_t levels_;
   Layout& layout_;
+  std::vector<FastVector<BuildPoint>> scratch_;  // by thread
 };
 
 }  // namespace
 
 BuildPoint* subdivide(BuildPoint* points, BuildPoint* other, std::size_t count, std::size_t levels,
                       int threads, Layout& layout) {
-  return Subdivision(points, other, levels, layout).run(count, threads);
+  const auto team = static_cast<std::size_t>(std::max(threads, 1));
+  return Subdivision(points, other, levels, team, layout).run(count);
 }
 
 }  // namespace segorient::search

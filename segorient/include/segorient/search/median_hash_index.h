@@ -20,7 +20,7 @@ namespace segorient::search {
 class MedianHashIndex {
  public:
   struct Options {
-    std::size_t region_size = 2048;  ///< most points in a region
+    std::size_t region_size = 4096;  ///< most points in a region
     int threads = 0;                 ///< 0 = all cores
     float epsilon = 0.0F;  ///< distances at most (1 + epsilon) times the true ones; 0 = exact
   };
