@@ -96,7 +96,7 @@ AutoNormals orientPoints(const PointView& points, const Neighborhoods& neighborh
   normal_options.threads = options.threads;
   SheetNormals sheets = estimateSheetNormals(points, neighborhoods, normal_options);
   out.spacing = median(sheets.spacing);
-  if (begin) begin("orientation", 0.48);
+  if (begin) begin("segmentation", 0.48);
   {
     const SheetField field = fieldOf(sheets);
     AutoOrientationOptions settings = options.automatic;
@@ -107,7 +107,7 @@ AutoNormals orientPoints(const PointView& points, const Neighborhoods& neighborh
     if (begin) begin("orientation", 0.62);
     out.orientation = orientSheets(points, neighborhoods, field, segments, settings, hints);
   }
-  if (begin) begin("orientation", 0.7);
+  if (begin) begin("recomputation", 0.7);
   const OrientationResult& result = out.orientation.result;
   for (std::size_t i = 0; i < points.size; ++i) {
     const auto sign = static_cast<float>(result.point_signs[i]);

@@ -24,7 +24,7 @@ namespace {
 
 constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
 
-// Says which stage is running, and keeps the time of each.
+// Says which stage is running, and keeps the time of each. A stage may be taken up again.
 class Stages {
  public:
   Stages(const PipelineProgress& progress, PipelineReport& report)
@@ -45,7 +45,13 @@ class Stages {
   void end() {
     if (stage_ == nullptr) return;
     const double seconds = std::chrono::duration<double>(Clock::now() - start_).count();
-    report_.stages.push_back({stage_, seconds});
+    const auto same = std::find_if(report_.stages.begin(), report_.stages.end(),
+                                   [this](const StageTime& s) { return s.stage == stage_; });
+    if (same == report_.stages.end()) {
+      report_.stages.push_back({stage_, seconds});
+    } else {
+      same->seconds += seconds;
+    }
     report_.seconds += seconds;
     stage_ = nullptr;
   }

@@ -50,12 +50,13 @@ struct PipelineOptions {
 };
 
 /// Called when a stage begins and as it goes on, from the calling thread.
-/// \param stage search, normals, segmentation, recomputation, orientation or output
+/// \param stage search, normals, segmentation, recomputation, orientation or output; one that ended
+///        may be taken up again
 /// \param fraction of the whole work that is done, 0 to 1
 using PipelineProgress = std::function<void(const char* stage, double fraction)>;
 
 struct StageTime {
-  std::string stage;
+  std::string stage;  ///< each once, in the order in which they began
   double seconds = 0.0;
 };
 
