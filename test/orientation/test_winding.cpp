@@ -168,6 +168,17 @@ TEST(LooseParts, AreTurnedWhereTheWindingNumberWantsThem) {
   }
 }
 
+// A ball in a hollow ball; its points are most, and as wrong as before when the wall alone is
+// turned.
+TEST(LooseParts, OneAfterTheOtherWhereTwoAreWrong) {
+  Balls balls;
+  addBall(balls, {0, 0, 0}, 1, 800, 1.F);
+  addBall(balls, {0, 0, 0}, 0.85F, 600, 1.F);
+  addBall(balls, {0.1F, 0, 0}, 0.55F, 2000, -1.F);
+  EXPECT_EQ(turnParts(viewOf(balls.xyz), balls.dipoles, balls.spacing, balls.components, 3, 1),
+            (std::vector<std::int8_t>{1, -1, -1}));
+}
+
 TEST(LooseParts, FixedOnesStay) {
   const Bands bands({1.F, 1.F, -1.F});
   const auto turn =
