@@ -4,12 +4,14 @@
 """Makes the figures of the README and of the documentation anew.
 
 usage: figures.py [BUILD_DIRECTORY [CLOUDS]]
+       figures.py BUILD_DIRECTORY --worst PICTURE CLOUD.ply ...
 
 The shipped Fandisk is enough for most of them. With CLOUDS, a directory of clouds with true normals
 and their manifest.tsv, those of the paper's other objects and the worst places are drawn (which
 needs matplotlib), and the table of the methods of orientation is printed (target
 orientation_benchmark). Where the target search_benchmark was built, the plot of the search is drawn
-as well, which takes minutes.
+as well, which takes minutes. The second form draws only the worst place of each CLOUD, whose
+normals are the true ones.
 """
 
 import subprocess
@@ -110,8 +112,8 @@ def read_ply(path, np):
     return columns[0], columns[1]
 
 
-def worst(build, clouds):
-    """Close-ups of the places where most points of a clean cloud get the wrong side."""
+def worst(build, clouds, picture):
+    """Close-ups of the places where most points of each cloud get the wrong side."""
     sys.path.insert(0, str(build / "python"))
     import matplotlib
 
@@ -120,10 +122,9 @@ def worst(build, clouds):
     import numpy as np
     import segorient
 
-    names = ("thorlike_71292", "demosthenes_20k", "wingnut_20k")
-    figure, axes = plt.subplots(1, len(names), figsize=(13, 4.6))
-    for axis, name in zip(axes, names):
-        points, truth = read_ply(clouds / f"{name}.ply", np)
+    figure, axes = plt.subplots(1, len(clouds), figsize=(13, 4.6), squeeze=False)
+    for axis, cloud in zip(axes[0], clouds):
+        points, truth = read_ply(cloud, np)
         normals = segorient.orient(points).normals
         right = (normals * truth).sum(axis=1) > 0.0
         right = right if right.mean() > 0.5 else ~right
@@ -139,18 +140,23 @@ def worst(build, clouds):
         for chosen, color in ((right[near], "0.6"), (~right[near], "red")):
             axis.quiver(*flat[chosen].T, *arrow[chosen].T, color=color, width=0.003, scale=14)
             axis.plot(*flat[chosen].T, ".", color=color, markersize=4)
-        axis.set_title(f"{name}: {(~right).sum()} of {len(points)}", fontsize=10)
+        axis.set_title(f"{cloud.stem}: {(~right).sum()} of {len(points)}", fontsize=10)
         axis.set(xlim=(-6.5, 6.5), ylim=(-6.5, 6.5), aspect="equal")
         axis.set_xlabel("spacings")
     figure.tight_layout()
-    figure.savefig(PICTURES / "worst.png", dpi=75)
+    figure.savefig(picture, dpi=75)
 
 
 def main():
     build = Path(sys.argv[1] if len(sys.argv) > 1 else ROOT / "build").resolve()
+    if sys.argv[2:3] == ["--worst"]:
+        if len(sys.argv) < 5:
+            sys.exit(__doc__)
+        return worst(build, [Path(cloud) for cloud in sys.argv[4:]], sys.argv[3])
     figures(build)
     if len(sys.argv) > 2:
-        worst(build, Path(sys.argv[2]))
+        names = ("thorlike_71292", "demosthenes_20k", "wingnut_20k")
+        worst(build, [Path(sys.argv[2]) / f"{name}.ply" for name in names], PICTURES / "worst.png")
         run(ROOT / "segorient_ros_free_demo/paper_figures.sh", sys.argv[2], build)
         run(build / "bin/orientation_benchmark", sys.argv[2])
     if (build / "bin/search_benchmark").exists():

@@ -58,7 +58,8 @@ float typicalSpacing(const BuildPoint* points, std::size_t count, const Box& box
   for (int a = 0; a < 3; ++a) {
     squared_diagonal += (box.hi[a] - box.lo[a]) * (box.hi[a] - box.lo[a]);
   }
-  return squared_diagonal * 16.0F / static_cast<float>(count);
+  const float spread = squared_diagonal * 16.0F / static_cast<float>(count);
+  return std::isfinite(spread) ? spread : 0.0F;
 }
 
 // Chooses the grid of a region; the cells are wide enough that k nearest neighbours lie in few of
