@@ -179,7 +179,15 @@ TEST(Pipeline, ReportsStagesInOrder) {
   EXPECT_EQ(calls.front().first, "search");
   EXPECT_EQ(calls.back().second, 1.0);
   for (std::size_t i = 1; i < calls.size(); ++i) EXPECT_LE(calls[i - 1].second, calls[i].second);
-  EXPECT_GE(result.report.stages.size(), 3U);
+  std::vector<std::string> stages;
+  double seconds = 0.0;
+  for (const StageTime& s : result.report.stages) {
+    stages.push_back(s.stage);
+    seconds += s.seconds;
+  }
+  EXPECT_EQ(stages, (std::vector<std::string>{"search", "normals", "segmentation", "orientation",
+                                              "recomputation", "output"}));
+  EXPECT_NEAR(seconds, result.report.seconds, 1e-6);
   EXPECT_GT(result.report.peak_memory, 0U);
   // h of a random sampling: the mean distance to the 6 nearest is 0.5 to 1.5 of the square's side.
   EXPECT_GT(result.report.spacing, 0.5 * cloud.spacing);

@@ -168,8 +168,8 @@ TEST(LooseParts, AreTurnedWhereTheWindingNumberWantsThem) {
   }
 }
 
-// A ball in a hollow ball; its points are most, and as wrong as before when the wall alone is
-// turned.
+// A ball in a hollow ball. The inner ball has most of the points, and they are as wrong as before
+// when the wall alone is turned.
 TEST(LooseParts, OneAfterTheOtherWhereTwoAreWrong) {
   Balls balls;
   addBall(balls, {0, 0, 0}, 1, 800, 1.F);

@@ -253,11 +253,40 @@ TEST(Index, QueriesWherePointsCrowd) {
               prefix(bruteForce(view, q.data(), which == 1 ? &others : nullptr), k))
         << i;
   }
-  const std::vector<float> moved(rows.rbegin(), rows.rend());  // the same places, other indices
-  const PointView other{moved.data(), 3, 12000};
+  std::vector<float> turned;  // the same points, other indices
+  for (std::size_t i = 12000; i-- > 0;) turned.insert(turned.end(), &rows[3 * i], &rows[3 * i] + 3);
+  const PointView other{turned.data(), 3, 12000};
+  nearestK(built[0], places[0].data(), 7);
   built[0].build(other, nullptr, {});
   EXPECT_EQ(nearestK(built[0], places[0].data(), 7),
             prefix(bruteForce(other, places[0].data()), 7));
+}
+
+// A query for many neighbours leaves more room to the thread; what is approximate must not change.
+TEST(Index, ApproximateAnswersDoNotDependOnEarlierQueries) {
+  std::mt19937 rng(32);
+  std::uniform_real_distribution<float> unit(0.F, 1.F);
+  std::vector<float> rows;
+  for (int i = 0; i < 34000; ++i) {
+    const float scale = i % 17 < 15 ? 0.01F : 1.F;
+    for (int a = 0; a < 3; ++a) rows.push_back(scale * unit(rng));
+  }
+  const PointView view{rows.data(), 3, 34000};
+  MedianHashIndex index;
+  index.build(view, nullptr, {});
+  const auto ask = [&] {
+    std::vector<std::vector<Neighbor>> found;
+    for (std::size_t i = 0; i < 34000; i += 40) found.push_back(nearestK(index, view[i], 5, 1.F));
+    return found;
+  };
+  std::vector<std::vector<Neighbor>> fresh;
+  std::vector<std::vector<Neighbor>> later;
+  std::thread([&] { fresh = ask(); }).join();
+  std::thread([&] {
+    nearestK(index, view[0], 9000);
+    later = ask();
+  }).join();
+  EXPECT_EQ(fresh, later);
 }
 
 TEST(Index, EverySmallSize) {

@@ -16,14 +16,16 @@ namespace {
 using detail::SheetGroup;
 using detail::Vec3;
 
-// Borders of so many votes, of which fewer than nine of ten agree, are voted on again.
+// Borders of so many votes, of which fewer than nine of ten agree, are voted on again; in
+// noise others, too.
 constexpr std::uint32_t kLong = 16;
 constexpr float kAgreed = 0.8F;
-// Where normals leave more of their neighbours unexplained than this there is noise. It makes the
-// planes in the tip of a wedge lie between its faces, where they agree with each other, wrongly.
+// Median residual, in spacings, above which it is noise: curvature alone leaves some hundredths.
+// Noise makes the planes in the tip of a wedge lie between its faces, where they agree with each
+// other, wrongly.
 constexpr float kNoisy = 0.1F;
 // Points on a disc of the radius that wide votes reach (8 spacings): fewer are no face.
-constexpr std::int32_t kFace = 200;
+constexpr std::uint32_t kFace = 200;
 
 struct RawVote {
   std::int32_t a, b;
@@ -199,7 +201,8 @@ std::vector<BorderVote> borderVotes(const PointView& points, const Neighborhoods
           if (counted && !known) border.push_back(votes[k].point);
         }
         const float again = wide.vote(border, v.a, v.b, agreed);
-        v.by_planes = std::fabs(again) > kAgreed;
+        // Votes that were right stay as they are, walls and all.
+        v.by_planes = std::fabs(again) > kAgreed && !(agreed && again * v.weight > 0.F);
         if (v.by_planes) {
           v.weight = again * v.absolute;
           v.wall = Evidence{};

@@ -286,7 +286,8 @@ class Solver {
     constexpr double kSome = 0.1;
     constexpr double kFits = 0.08;    // as a closed surface does with noise of half a spacing
     constexpr double kMisfits = 0.3;  // w is more than 1/2 off
-    return share > kSome && turned <= kFits && ownResidual(c, false) > kMisfits;
+    return share > kSome && turned <= std::min(kFits, rule.residual) &&
+           ownResidual(c, false) > kMisfits;
   }
 
   void flipWhileBetter() {

@@ -45,7 +45,8 @@ float squaredSpacing(const BuildPoint* points, std::size_t count, std::size_t ow
 }
 
 // The median over three points. Where that is 0, since many points are in one place, the others
-// count: the largest of the three, else as if the points were spread over a surface across the box.
+// count: the largest of the three, else roughly as if the points were spread over a surface across
+// the box.
 float typicalSpacing(const BuildPoint* points, std::size_t count, const Box& box) {
   std::array<float, 3> found{};
   for (std::size_t s = 0; s < 3; ++s) {
@@ -53,7 +54,7 @@ float typicalSpacing(const BuildPoint* points, std::size_t count, const Box& box
   }
   std::sort(found.begin(), found.end());
   if (found[1] > 0.0F) return found[1];
-  if (found[2] > 0.0F) return found[2];
+  if (found[2] > 0.0F && std::isfinite(found[2])) return found[2];
   float squared_diagonal = 0.0F;
   for (int a = 0; a < 3; ++a) {
     squared_diagonal += (box.hi[a] - box.lo[a]) * (box.hi[a] - box.lo[a]);

@@ -29,8 +29,9 @@ struct LastQuery {
   }
 };
 
-/// The last query from a place where more points are than were sought: all that are there have the
-/// same answer, and each would have to look at all of them.
+/// The last query whose neighbours are all equally far, as where more points are in one place than
+/// were sought: all that are there have the same answer, and each would have to look at all of
+/// them.
 class CrowdedPlace {
  public:
   /// \return false if that was another place

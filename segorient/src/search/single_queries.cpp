@@ -12,19 +12,19 @@ namespace segorient::search {
 // What one thread needs for its queries; kept from query to query.
 class Workspace {
  public:
-  // Empty candidates with room for `capacity`.
+  // Empty candidates with room for `capacity`, and no more, though there may be some from earlier:
+  // whether a guess does may decide what an approximate search finds.
   Candidates& candidates(std::size_t capacity) {
-    if (capacity > candidates_.capacity) {
+    if (capacity + Layout::kPadding > distance_.size()) {
       distance_.resize(capacity + Layout::kPadding);
       id_.resize(capacity + Layout::kPadding);
-      candidates_ = {distance_.data(), id_.data(), 0, capacity};
     }
-    candidates_.count = 0;
+    candidates_ = {distance_.data(), id_.data(), 0, capacity};
     return candidates_;
   }
   // Gives back what an unusually large result took.
   void shrink() {
-    if (candidates_.capacity <= kMostKept) return;
+    if (distance_.size() <= kMostKept) return;
     distance_ = {};
     id_ = {};
     candidates_ = {nullptr, nullptr, 0, 0};
@@ -223,7 +223,8 @@ void MedianHashIndex::Impl::search(const float* q, std::size_t k, float epsilon,
   } else if (!searchShared(q, k, work, indices, distances) &&
              !work.crowded.answer(number, q, k, indices, distances)) {
     searchAlone(q, k, epsilon, work, indices, distances);
-    if (distances[0] == distances[k - 1]) work.crowded.remember(number, q, k, indices, *distances);
+    const bool crowded = k <= kMostNeighborsShared && distances[0] == distances[k - 1];
+    if (crowded) work.crowded.remember(number, q, k, indices, *distances);
   }
   work.last = {number, k, {q[0], q[1], q[2]}, distances[k - 1]};
 }

@@ -86,12 +86,13 @@ int longestAxisOfSample(const BuildPoint* points, std::size_t count) {
   return longestAxis(boxOf(sample.data(), size));
 }
 
-// What stays between two estimates is less than half each time, and has one place more.
+// Each step but the last keeps less than half of its points for the next one; what they take is
+// less than there are points, and one place more for each of at most 32 steps.
 constexpr std::size_t kMoreScratch = 64;
 
 // Copies to `to`, the `half` points of the least coordinates in front. What is below or above an
 // estimated interval is in place after one pass without a branch; the rest is divided likewise.
-// \param scratch room for kMoreScratch more points
+// \param scratch room for `count` points and kMoreScratch more
 // \return the least coordinate behind
 float divideInTwo(const BuildPoint* from, std::size_t count, BuildPoint* to, std::size_t half,
                   int axis, BuildPoint* scratch) {
@@ -188,7 +189,7 @@ class Subdivision {
 
 BuildPoint* subdivide(BuildPoint* points, BuildPoint* other, std::size_t count, std::size_t levels,
                       int threads, Layout& layout) {
-  const auto team = static_cast<std::size_t>(std::max(threads, 1));
+  const auto team = static_cast<std::size_t>(std::clamp(threads, 1, omp_get_thread_limit()));
   return Subdivision(points, other, levels, team, layout).run(count);
 }
 

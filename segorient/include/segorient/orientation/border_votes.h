@@ -61,7 +61,8 @@ struct BorderVote : Evidence {
 /// other are walls, too; see Evidence::letsCount().
 ///
 /// Where the points of a longer border contradict each other, as noise across a sharp crease makes
-/// them, planes of more points on either side of it decide, if these agree.
+/// them, planes of more points on either side of it decide, if these agree. In noise they also
+/// overrule points that agree, where large segments meet at 60 degrees or less.
 ///
 /// \param segmentation with a segment for each label
 /// \return the same for any number of threads

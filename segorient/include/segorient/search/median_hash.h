@@ -100,7 +100,7 @@ class MedianHash : public pcl::search::KdTree<PointT> {
                        bool with_distances = true) const;
 
   /// Most points in a region of the median subdivision; takes effect at the next setInputCloud().
-  /// Results do not depend on it. Default 4096; below 8 means 8, above 32768 means 32768.
+  /// Exact results do not depend on it. Default 4096; below 8 means 8, above 32768 means 32768.
   void setRegionSize(std::size_t points) {
     options_.region_size = points;
   }
