@@ -15,15 +15,7 @@
 #include <vector>
 
 #include "run_program.h"
-
-#if defined(__has_feature)
-#if __has_feature(address_sanitizer)
-#define SEGORIENT_ADDRESS_SANITIZER
-#endif
-#endif
-#ifdef __SANITIZE_ADDRESS__
-#define SEGORIENT_ADDRESS_SANITIZER
-#endif
+#include "sanitized.h"
 
 namespace segorient::test {
 namespace {

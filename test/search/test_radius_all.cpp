@@ -2,12 +2,15 @@
 // Copyright (c) 2026, the segorient authors
 #include <gtest/gtest.h>
 #include <segorient/search/median_hash.h>
+#include <sys/resource.h>
 
 #include <cmath>
 #include <cstdlib>
 #include <limits>
+#include <new>
 
 #include "brute_force.h"
+#include "sanitized.h"
 #include "search_clouds.h"
 
 namespace segorient::test {
@@ -105,13 +108,45 @@ TEST_P(RadiusAll, SameForAnyNumberOfThreadsAndInstructionSet) {
     RadiusNeighborhoods one;
     index.radiusAll(radius, one);
     if (first.size() == 0) first = one;
-    ASSERT_EQ(table.offsets(), first.offsets());
-    ASSERT_EQ(one.offsets(), first.offsets());
     ASSERT_GT(first.entries(), 0U);
-    ASSERT_TRUE(std::equal(table.indices(0), table.indices(0) + first.entries(), first.indices(0)));
-    ASSERT_TRUE(std::equal(one.indices(0), one.indices(0) + first.entries(), first.indices(0)));
-    ASSERT_TRUE(std::equal(one.sqrDistances(0), one.sqrDistances(0) + first.entries(),
-                           first.sqrDistances(0)));
+    ASSERT_EQ(table.entries(), first.entries());
+    for (std::size_t i = 0; i < cloud.size(); ++i) {
+      ASSERT_EQ(row(one, i), row(first, i)) << "row " << i;
+      ASSERT_EQ(table.count(i), first.count(i));
+      ASSERT_TRUE(
+          std::equal(table.indices(i), table.indices(i) + table.count(i), first.indices(i)));
+    }
+  }
+}
+
+// Rows are written over those of the search before.
+TEST_P(RadiusAll, TablesMayBeFilledAgain) {
+  const SearchCloud& cloud = GetParam();
+  MedianHashIndex::Options options;
+  options.region_size = 100;
+  MedianHashIndex index;
+  index.build(cloud.view(), nullptr, options);
+  RadiusNeighborhoods table;
+  for (const double radius : radii(cloud)) {
+    for (const bool with_distances : {true, false, true}) {
+      RadiusNeighborhoods fresh;
+      index.radiusAll(radius, fresh, 0);
+      index.radiusAll(radius, table, 0, with_distances);
+      ASSERT_EQ(table.hasDistances(), with_distances);
+      ASSERT_EQ(table.entries(), fresh.entries());
+      std::size_t entries = 0;
+      for (std::size_t i = 0; i < cloud.size(); ++i) {
+        ASSERT_EQ(table.count(i), fresh.count(i));
+        entries += table.count(i);
+        ASSERT_TRUE(
+            std::equal(table.indices(i), table.indices(i) + table.count(i), fresh.indices(i)));
+        if (with_distances) {
+          ASSERT_EQ(row(table, i), row(fresh, i));
+        }
+      }
+      ASSERT_EQ(entries, table.entries());
+      EXPECT_GE(table.memory(), entries * (with_distances ? 8 : 4));
+    }
   }
 }
 
@@ -165,6 +200,35 @@ TEST(RadiusAllOfMedianHash, NothingToFind) {
   tree.radiusSearchAll(std::numeric_limits<double>::infinity(), table);
   EXPECT_EQ(table.entries(), cloud->size() * cloud->size());
 }
+
+#ifndef SEGORIENT_ADDRESS_SANITIZER
+// Everything is near everything, which is more than there is memory for: an error that the caller
+// can catch, from any thread, not an end of the program.
+TEST(RadiusAllOfMedianHash, MoreThanMemoryHolds) {
+  const auto lacks_memory = [] {
+    rlimit limit{};
+    getrlimit(RLIMIT_AS, &limit);
+    limit.rlim_cur = rlim_t{1} << 30U;
+    setrlimit(RLIMIT_AS, &limit);
+    const SearchCloud cloud = searchClouds(20000).front();
+    MedianHashIndex::Options options;
+    options.threads = 2;
+    MedianHashIndex index;
+    index.build(cloud.view(), nullptr, options);
+    RadiusNeighborhoods table;
+    index.radiusAll(0.05, table);
+    const bool filled = table.size() == cloud.size();
+    try {
+      index.radiusAll(1e6, table);
+    } catch (const std::bad_alloc&) {
+      std::exit(filled && table.size() == 0 ? 0 : 2);
+    }
+    std::exit(1);
+  };
+  GTEST_FLAG_SET(death_test_style, "threadsafe");
+  EXPECT_EXIT(lacks_memory(), testing::ExitedWithCode(0), "");
+}
+#endif
 
 }  // namespace
 }  // namespace segorient::test

@@ -38,7 +38,8 @@ struct MedianHashIndex::Impl {
   int searchRadius(const float* q, double radius, std::vector<pcl::index_t>& indices,
                    std::vector<float>& sqr_distances, unsigned int max_nn, bool sorted) const;
   void nearestOfRegion(std::size_t region, GroupTask& task, Neighborhoods& out) const;
-  void withinOfRegion(std::size_t region, double radius, GroupTask& task) const;
+  void withinOfRegion(std::size_t region, double radius, GroupTask& task,
+                      RadiusNeighborhoods& out) const;
 
   bool searchShared(const float* q, std::size_t k, Workspace& work, pcl::index_t* indices,
                     float* distances) const;

@@ -111,9 +111,10 @@ constexpr std::size_t kMostToSort = 1024;
 /// Rows of a region's radius search, one after another as they are found.
 struct RowBuffer {
   pcl::index_t* indices;
-  float* distances;  ///< or null
+  float* distances;  ///< null if they are not wanted
+  bool with_distances;
   std::size_t used;
-  std::size_t capacity;
+  std::size_t capacity;  ///< of both arrays
   std::size_t* begin;    ///< of each point of the region, where its row is
   std::uint32_t* count;  ///< of each point of the region, how long its row is
   void (*grow)(RowBuffer&, std::size_t capacity);  ///< makes room for at least as many
@@ -170,7 +171,7 @@ struct GroupTask {
   std::size_t row_length;  ///< entries from one row of the output to the next
   // radius
   float limit;  ///< squared radius
-  RowBuffer* rows;
+  RowBuffer rows;
   // work space of one thread; each array with Layout::kPadding entries more
   Block block;                ///< points that a group may have as neighbours
   float* candidate_distance;  ///< of all points of a group; of the k nearest, in two halves

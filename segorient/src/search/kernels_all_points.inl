@@ -3,6 +3,17 @@
 //
 // The all-points searches of a region, group by group.
 
+// Asks for the memory of a row of the output.
+inline void prefetchRow(const GroupTask& task, std::size_t at, std::size_t count) {
+  for (std::size_t j = 0; j < count; j += 64 / sizeof(float)) {
+    __builtin_prefetch(task.indices + at + j, 1);
+    if (task.distances != nullptr) __builtin_prefetch(task.distances + at + j, 1);
+  }
+  // A row does not begin where a line does.
+  __builtin_prefetch(task.indices + at + count - 1, 1);
+  if (task.distances != nullptr) __builtin_prefetch(task.distances + at + count - 1, 1);
+}
+
 // ---------------------------------------------------------------------------------------------------
 // The k nearest
 
@@ -56,14 +67,7 @@ inline bool nearestWithin(const LayoutView& view, float reach, Group& group, Reg
 SEGORIENT_APART void nearestOfGroup(const LayoutView& view, std::uint32_t begin, std::uint32_t end,
                                     RegionState& state, GroupTask& task) {
   for (std::uint32_t i = begin; i < end; ++i) {
-    const std::size_t row = view.row[i] * task.row_length;
-    for (std::size_t j = 0; j < task.k; j += 64 / sizeof(float)) {
-      __builtin_prefetch(task.indices + row + j, 1);
-      if (task.distances != nullptr) __builtin_prefetch(task.distances + row + j, 1);
-    }
-    // A row does not begin where a line does.
-    __builtin_prefetch(task.indices + row + task.k - 1, 1);
-    if (task.distances != nullptr) __builtin_prefetch(task.distances + row + task.k - 1, 1);
+    prefetchRow(task, view.row[i] * task.row_length, task.k);
   }
   Group group;
   startGroup(view, begin, end, group);
@@ -82,45 +86,87 @@ SEGORIENT_APART void nearestOfGroup(const LayoutView& view, std::uint32_t begin,
 // ---------------------------------------------------------------------------------------------------
 // All within a radius
 
-inline void writeWithin(const LayoutView& view, Group& group, RegionState& state, GroupTask& task) {
-  sortMembers(group, task.k, task);
-  const std::uint32_t region_begin = view.regions[state.region].begin;
+// Moves a point to the front of its row, as copyRow() does.
+inline void putSelfFirst(std::uint32_t* id, std::uint32_t self, std::size_t count) {
+  if (id[0] == self) return;
+  std::size_t at = 1;
+  while (at < count && id[at] != self) ++at;
+  for (std::size_t i = at < count ? at : count - 1; i > 0; --i) id[i] = id[i - 1];
+  id[0] = self;
+}
+
+// Sorts a point's candidates to where its row begins; what is written beyond the row belongs to the
+// next one.
+inline void writeRow(const LayoutView& view, const Group::Member& member, std::size_t count,
+                     GroupTask& task) {
+  const RowBuffer& rows = task.rows;
+  const std::uint32_t self = view.id[member.point];
+  pcl::index_t* const indices = rows.indices + rows.used;
+  float* const distances = rows.distances == nullptr ? nullptr : rows.distances + rows.used;
+  if (member.count > kMostAtOnce) {
+    sortNearest(member.distance, member.id, member.count, count, member.limit, task.sort);
+    copyRow(task.sort.id, task.sort.distance, self, count, indices, distances);
+    return;
+  }
+  float* const sorted = distances == nullptr ? member.distance : distances;
+  if constexpr (sizeof(pcl::index_t) == sizeof(std::uint32_t)) {
+    auto* const id = reinterpret_cast<std::uint32_t*>(indices);
+    sortAtOnce(member.distance, member.id, member.count, sorted, id);
+    putSelfFirst(id, self, count);
+  } else {
+    sortAtOnce(member.distance, member.id, member.count, sorted, member.id);
+    copyRow(member.id, sorted, self, count, indices, nullptr);
+  }
+}
+
+inline void writeWithin(const LayoutView& view, const Group& group, std::uint32_t region_begin,
+                        GroupTask& task) {
+  RowBuffer& rows = task.rows;
   for (std::size_t m = 0; m < group.found_count; ++m) {
     const Group::Member& member = group.found[m];
-    const std::size_t count = member.count < task.k ? member.count : task.k;
-    RowBuffer& rows = *task.rows;
-    if (rows.used + count > rows.capacity) rows.grow(rows, rows.used + count);
-    copyRow(member.id, member.distance, view.id[member.point], count, rows.indices + rows.used,
-            rows.distances == nullptr ? nullptr : rows.distances + rows.used);
+    const std::size_t needed = rows.used + member.count + kSortRoom;
+    if (needed > rows.capacity) rows.grow(rows, needed);
+    const std::uint32_t count = member.count < task.k ? member.count : task.k;
+    writeRow(view, member, count, task);
     rows.begin[member.point - region_begin] = rows.used;
-    rows.count[member.point - region_begin] = static_cast<std::uint32_t>(count);
+    rows.count[member.point - region_begin] = count;
     rows.used += count;
   }
 }
 
-void withinOfGroup(const LayoutView& view, std::uint32_t begin, std::uint32_t end,
-                   RegionState& state, GroupTask& task) {
+SEGORIENT_APART void withinOfGroup(const LayoutView& view, std::uint32_t begin, std::uint32_t end,
+                                   RegionState& state, GroupTask& task) {
   Group group;
   startGroup(view, begin, end, group);
   const bool gathered = gather(view, group.box, task.limit, state, task);
   group.found_count = 0;
-  Candidates room{task.candidate_distance, task.candidate_id, 0, 0};
-  for (std::uint32_t i = begin; i < end; ++i) {
-    const auto used = static_cast<std::size_t>(room.distance - task.candidate_distance);
-    if (!gathered || used + task.block.count + kWidth > task.candidate_capacity) {
-      task.failed[task.failed_count++] = i;
-      continue;
+  const std::size_t half = task.candidate_capacity / 2;
+  Candidates room[2] = {{task.candidate_distance, task.candidate_id, 0, half},
+                        {task.candidate_distance + half, task.candidate_id + half, 0, half}};
+  for (std::uint32_t i = begin; i < end; i += 2) {
+    const std::uint32_t points = i + 1 < end ? 2 : 1;
+    const std::uint32_t point[2] = {i, i + points - 1};
+    bool enough = gathered;
+    for (std::size_t j = 0; j < 2; ++j) {
+      const float* const start = task.candidate_distance + j * half;
+      const auto used = static_cast<std::size_t>(room[j].distance - start);
+      enough = enough && used + task.block.count + kWidth <= half;
     }
-    const float q[3] = {view.x[i], view.y[i], view.z[i]};
-    room.count = takeNear(task.block, q, task.limit, room.distance, room.id);
-    if (room.count > kMostToSort) {
-      task.failed[task.failed_count++] = i;
-      continue;
+    if (enough) {
+      const float q[2][3] = {{view.x[point[0]], view.y[point[0]], view.z[point[0]]},
+                             {view.x[point[1]], view.y[point[1]], view.z[point[1]]}};
+      takeNearTwo(task.block, q[0], q[1], task.limit, room[0], room[1]);
     }
-    padCandidates(room.distance, room.id, room.count);
-    addMember(i, task.limit, room, group);
+    for (std::size_t j = 0; j < points; ++j) {
+      if (!enough || room[j].count > kMostToSort) {
+        task.failed[task.failed_count++] = point[j];
+        continue;
+      }
+      padCandidates(room[j].distance, room[j].id, room[j].count);
+      addMember(point[j], task.limit, room[j], group);
+    }
   }
-  writeWithin(view, group, state, task);
+  writeWithin(view, group, view.regions[state.region].begin, task);
 }
 
 // ---------------------------------------------------------------------------------------------------

@@ -74,59 +74,77 @@ class Neighborhoods {
   std::vector<std::uint32_t> counts_;
 };
 
-/// The neighbours within a radius of every point: rows of different lengths, one after another in
-/// flat arrays.
+/// The neighbours within a radius of every point: rows of different lengths.
 ///
-/// Rows belong to points and are ordered as in Neighborhoods. Memory: sizeof(pcl::index_t) + 4
-/// bytes a neighbour, or sizeof(pcl::index_t) without distances, and 8 bytes a row.
+/// Rows belong to points and are ordered as in Neighborhoods. They lie in parts, one for each
+/// region of the search, one after another as they were found: where rows of other regions will
+/// begin is not known before those are found.
+///
+/// Memory: sizeof(pcl::index_t) + 4 bytes a neighbour, or sizeof(pcl::index_t) without distances;
+/// room for as many again at most, typically a quarter of them, that nothing is written to; 16
+/// bytes a row. A table that is filled again uses the memory it has.
 class RadiusNeighborhoods {
  public:
-  std::size_t size() const { return offsets_.size() - 1; }  ///< number of rows
-  bool hasDistances() const { return with_distances_; }     ///< see sqrDistances()
-  std::size_t entries() const { return offsets_.back(); }   ///< of all rows together
-  std::size_t count(std::size_t row) const {                ///< entries in a row
-    return offsets_[row + 1] - offsets_[row];
+  /// Rows one after another. Whoever fills it may make the arrays longer than `used`.
+  struct Part {
+    FastVector<pcl::index_t> indices;
+    FastVector<float> distances;  ///< empty in a table without distances
+    std::size_t used = 0;         ///< entries
+  };
+
+  std::size_t size() const { return rows_.size(); }                      ///< number of rows
+  bool hasDistances() const { return with_distances_; }                  ///< see sqrDistances()
+  std::size_t count(std::size_t row) const { return rows_[row].count; }  ///< entries in a row
+
+  /// Entries of all rows together.
+  std::size_t entries() const {
+    std::size_t sum = 0;
+    for (const Part& part : parts_) sum += part.used;
+    return sum;
   }
 
   /// The row's neighbours, indices into the cloud.
-  const pcl::index_t* indices(std::size_t row) const { return indices_.data() + offsets_[row]; }
+  const pcl::index_t* indices(std::size_t row) const {
+    return parts_[rows_[row].part].indices.data() + rows_[row].begin;
+  }
 
   /// The row's squared distances, or null in a table without distances.
   const float* sqrDistances(std::size_t row) const {
-    return with_distances_ ? distances_.data() + offsets_[row] : nullptr;
+    return with_distances_ ? parts_[rows_[row].part].distances.data() + rows_[row].begin : nullptr;
   }
 
-  /// size() + 1 entries: where each row begins, and the end.
-  const std::vector<std::size_t>& offsets() const { return offsets_; }
-
-  /// For the search that fills the table: first reset(), then setCount() for rows that are not
-  /// empty, then finishCounts(), then the entries.
-  void reset(std::size_t rows, bool with_distances = true) {
+  /// For the search that fills the table: every row is empty afterwards. Different threads may fill
+  /// different parts, and set the rows in them, at a time.
+  void reset(std::size_t rows, std::size_t parts, bool with_distances = true) {
     with_distances_ = with_distances;
-    offsets_.assign(rows + 1, 0);
+    rows_.assign(rows, Row{});
+    parts_.resize(parts > 0 ? parts : 1);
+    for (Part& part : parts_) part.used = 0;
   }
-  void setCount(std::size_t row, std::size_t count) { offsets_[row + 1] = count; }
-  void finishCounts() {
-    for (std::size_t i = 1; i < offsets_.size(); ++i) offsets_[i] += offsets_[i - 1];
-    indices_.resize(entries());
-    distances_.resize(with_distances_ ? entries() : 0);
-  }
-  pcl::index_t* mutableIndices(std::size_t row) { return indices_.data() + offsets_[row]; }
-  float* mutableSqrDistances(std::size_t row) {
-    return with_distances_ ? distances_.data() + offsets_[row] : nullptr;
+  Part& part(std::size_t i) { return parts_[i]; }
+  void setRow(std::size_t row, std::size_t part, std::size_t begin, std::size_t count) {
+    rows_[row] = {begin, static_cast<std::uint32_t>(part), static_cast<std::uint32_t>(count)};
   }
 
   /// Bytes in use.
   std::size_t memory() const {
-    return indices_.capacity() * sizeof(pcl::index_t) + distances_.capacity() * sizeof(float) +
-           offsets_.capacity() * sizeof(std::size_t);
+    std::size_t sum = rows_.capacity() * sizeof(Row) + parts_.capacity() * sizeof(Part);
+    for (const Part& part : parts_) {
+      sum += part.indices.capacity() * sizeof(pcl::index_t);
+      sum += part.distances.capacity() * sizeof(float);
+    }
+    return sum;
   }
 
  private:
+  struct Row {
+    std::size_t begin = 0;
+    std::uint32_t part = 0;
+    std::uint32_t count = 0;
+  };
   bool with_distances_ = true;
-  std::vector<std::size_t> offsets_ = {0};
-  FastVector<pcl::index_t> indices_;
-  FastVector<float> distances_;
+  std::vector<Row> rows_;
+  std::vector<Part> parts_;
 };
 
 }  // namespace segorient

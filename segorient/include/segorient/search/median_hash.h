@@ -96,6 +96,7 @@ class MedianHash : public pcl::search::KdTree<PointT> {
   /// All points within `radius` of every point of the input cloud (or of its indices), in rows as
   /// those of nearestKSearchAll().
   /// \param max_nn keeps the closest max_nn of each row only; 0 = all
+  /// \throws std::bad_alloc if there is no memory for all that is found; `out` is empty then
   void radiusSearchAll(double radius, RadiusNeighborhoods& out, unsigned int max_nn = 0,
                        bool with_distances = true) const;
 

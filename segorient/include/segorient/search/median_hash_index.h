@@ -86,8 +86,9 @@ class MedianHashIndex {
   void nearestKAll(int k, Neighborhoods& out, bool with_distances, float epsilon) const;
 
   /// All points nearer than `radius` to every row that build() was given, as nearestKAll(): each
-  /// row ascending, the point itself first. \param max_nn keeps the closest max_nn of a row only; 0
-  /// = all
+  /// row ascending, the point itself first.
+  /// \param max_nn keeps the closest max_nn of a row only; 0 = all
+  /// \throws std::bad_alloc if there is no memory for all that is found; `out` is empty then
   void radiusAll(double radius, RadiusNeighborhoods& out, unsigned int max_nn = 0,
                  bool with_distances = true) const;
 
