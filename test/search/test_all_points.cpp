@@ -99,6 +99,27 @@ TEST(AllPoints, ManyRegionsAgreeWithSingleQueries) {
   }
 }
 
+// With regions as large as they usually are, and one for all points.
+TEST(AllPoints, LargeRegionsEqualBruteForce) {
+  for (const SearchCloud& cloud : searchClouds(9000)) {
+    for (const std::size_t region_size : {std::size_t{4096}, std::size_t{32768}}) {
+      MedianHashIndex::Options options;
+      options.region_size = region_size;
+      MedianHashIndex index;
+      index.build(cloud.view(), nullptr, options);
+      Neighborhoods table;
+      index.nearestKAll(15, table);
+      for (std::size_t i = 0; i < cloud.size(); i += 307) {
+        std::vector<Neighbor> expected;
+        if (isFinite(cloud.view()[i])) {
+          expected = bruteForceRow(cloud.view(), static_cast<pcl::index_t>(i), 15);
+        }
+        ASSERT_EQ(row(table, i), expected) << cloud.name << ", row " << i;
+      }
+    }
+  }
+}
+
 TEST(AllPoints, KLargerThanTheCloud) {
   const SearchCloud cloud = searchClouds(7).front();
   MedianHashIndex index;

@@ -289,6 +289,31 @@ TEST(Index, ApproximateAnswersDoNotDependOnEarlierQueries) {
   EXPECT_EQ(fresh, later);
 }
 
+// Points row by row on a grid, and the same ones shuffled.
+TEST(Index, ApproximateQueriesAreExactWherePointsAreInOrder) {
+  constexpr int kEdge = 150;
+  std::vector<std::array<float, 3>> points;
+  std::mt19937 rng(33);
+  std::uniform_real_distribution<float> unit(0.F, 1.F);
+  for (int i = 0; i < kEdge * kEdge; ++i) {
+    points.push_back({static_cast<float>(i % kEdge) + unit(rng),
+                      static_cast<float>(i / kEdge) + unit(rng), unit(rng)});
+  }
+  const auto wrong = [&] {
+    const PointView view{points.front().data(), 3, points.size()};
+    MedianHashIndex index;
+    index.build(view, nullptr, {});
+    int count = 0;
+    for (std::size_t i = 0; i < points.size(); i += 40) {
+      count += nearestK(index, view[i], 15, 3.F) == nearestK(index, view[i], 15) ? 0 : 1;
+    }
+    return count;
+  };
+  EXPECT_EQ(wrong(), 0);
+  std::shuffle(points.begin(), points.end(), rng);
+  EXPECT_GT(wrong(), 0);
+}
+
 TEST(Index, EverySmallSize) {
   for (std::size_t n = 0; n < 40; ++n) {
     SearchCloud cloud = searchClouds(std::max<std::size_t>(n, 1)).front();
@@ -307,8 +332,10 @@ TEST(Index, EverySmallSize) {
 
 TEST(Index, ConcurrentQueriesOnOneObject) {
   const SearchCloud cloud = searchClouds(4000).at(1);
+  MedianHashIndex::Options options;
+  options.region_size = 500;
   MedianHashIndex index;
-  index.build(cloud.view(), nullptr, {});
+  index.build(cloud.view(), nullptr, options);
   std::vector<std::vector<Neighbor>> expected;
   for (std::size_t i = 0; i < cloud.size(); i += 4) {
     expected.push_back(nearestK(index, cloud.view()[i], 10));

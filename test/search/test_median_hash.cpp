@@ -330,6 +330,7 @@ TEST(MedianHash, OtherPointTypes) {
 TEST(MedianHash, ConcurrentQueriesOnOneObject) {
   const auto cloud = toPcl(searchClouds(4000).at(1));
   OurTree tree;
+  tree.setRegionSize(500);
   tree.setInputCloud(cloud);
   std::vector<Found> expected(cloud->size());
   for (std::size_t i = 0; i < cloud->size(); ++i) {
@@ -356,6 +357,7 @@ TEST(MedianHash, ConcurrentQueriesOnOneObject) {
 TEST(MedianHash, ConcurrentBatchesOnOneObject) {
   const auto cloud = toPcl(searchClouds(4000).at(1));
   OurTree tree;
+  tree.setRegionSize(500);
   tree.setNumberOfThreads(2);
   tree.setInputCloud(cloud);
   constexpr double kRadius = 0.05;

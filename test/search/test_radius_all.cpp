@@ -119,6 +119,28 @@ TEST_P(RadiusAll, SameForAnyNumberOfThreadsAndInstructionSet) {
   }
 }
 
+// With regions as large as they usually are, and one for all points.
+TEST(RadiusAllLargeRegions, EqualBruteForce) {
+  for (const SearchCloud& cloud : searchClouds(9000)) {
+    const double radius = radii(cloud)[2];
+    for (const std::size_t region_size : {std::size_t{4096}, std::size_t{32768}}) {
+      MedianHashIndex::Options options;
+      options.region_size = region_size;
+      MedianHashIndex index;
+      index.build(cloud.view(), nullptr, options);
+      RadiusNeighborhoods table;
+      index.radiusAll(radius, table, 200);  // there are clouds with all points in one place
+      for (std::size_t i = 0; i < cloud.size(); i += 307) {
+        std::vector<Neighbor> expected;
+        if (isFinite(cloud.view()[i])) {
+          expected = expectedRow(cloud.view(), static_cast<pcl::index_t>(i), radius, 200);
+        }
+        ASSERT_EQ(row(table, i), expected) << cloud.name << ", row " << i;
+      }
+    }
+  }
+}
+
 // Rows are written over those of the search before.
 TEST_P(RadiusAll, TablesMayBeFilledAgain) {
   const SearchCloud& cloud = GetParam();

@@ -4,10 +4,45 @@
 
 #include <algorithm>
 #include <memory>
+#include <utility>
 
 #include "index_impl.h"
 
 namespace segorient::search {
+
+namespace {
+
+// Squared distances from some points of the input to the next ones, unordered.
+std::vector<float> stepsOf(const BuildPoint* points, std::size_t count) {
+  constexpr std::size_t kSteps = 255;
+  std::vector<float> steps;
+  for (std::size_t i = 0; count > 1 && i < kSteps; ++i) {
+    const std::size_t at = i * (count - 1) / kSteps;
+    float sum = 0.0F;
+    for (int a = 0; a < 3; ++a) {
+      const float d = points[at + 1].xyz[a] - points[at].xyz[a];
+      sum += d * d;
+    }
+    steps.push_back(sum);
+  }
+  return steps;
+}
+
+float median(std::vector<float> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+// Most points are hardly farther from the one before than from their 16th neighbour.
+bool areInOrder(const std::vector<float>& steps, const Layout& layout) {
+  if (steps.empty() || layout.regions.empty()) return false;
+  std::vector<float> spacing;
+  for (const Region& region : layout.regions) spacing.push_back(region.spacing16);
+  return median(steps) < 4.0F * median(std::move(spacing));
+}
+
+}  // namespace
 
 MedianHashIndex::MedianHashIndex() : impl_(std::make_unique<Impl>()) {}
 MedianHashIndex::~MedianHashIndex() = default;
@@ -36,8 +71,10 @@ void MedianHashIndex::build(const PointView& points, const std::vector<pcl::inde
   }
   const std::size_t region_size =
       std::min(std::max<std::size_t>(options.region_size, 8), kMostRegionSize);
+  const std::vector<float> steps = stepsOf(finite.get(), count);
   self.layout =
       buildLayout(finite.get(), count, region_size, indices, resolveThreads(options.threads));
+  self.in_order = areInOrder(steps, self.layout);
 }
 
 std::size_t MedianHashIndex::size() const {

@@ -218,11 +218,11 @@ void MedianHashIndex::Impl::search(const float* q, std::size_t k, float epsilon,
                                    pcl::index_t* indices, float* distances) const {
   Workspace& work = workspace();
   // What is approximate must not depend on what was asked before.
-  if (pruneFactor(epsilon) != 1.0F) {
+  if (pruneFactor(epsilon) != 1.0F && !in_order) {
     searchAlone(q, k, epsilon, work, indices, distances);
   } else if (!searchShared(q, k, work, indices, distances) &&
              !work.crowded.answer(number, q, k, indices, distances)) {
-    searchAlone(q, k, epsilon, work, indices, distances);
+    searchAlone(q, k, 0.0F, work, indices, distances);
     const bool crowded = k <= kMostNeighborsShared && distances[0] == distances[k - 1];
     if (crowded) work.crowded.remember(number, q, k, indices, *distances);
   }

@@ -31,6 +31,10 @@ namespace segorient::search {
 /// larger than the cloud is cut to it. With indices, results are indices into the cloud, a query by
 /// index is a position in the indices, and an index that is given twice is found twice.
 ///
+/// After setEpsilon(e), distances are at most 1 + e times the true ones of the same rank, and the
+/// same for the same cloud and query. Single queries make use of that only where the cloud's points
+/// are not in order: where they are, as in a scan, exact queries are the faster ones.
+///
 /// Queries are const and may run concurrently on one object. A point representation (see
 /// KdTree::setPointRepresentation) of up to three dimensions is honoured; one of more dimensions is
 /// handed to PCL's kd-tree.

@@ -22,7 +22,9 @@ class MedianHashIndex {
   struct Options {
     std::size_t region_size = 4096;  ///< most points in a region
     int threads = 0;                 ///< 0 = all cores
-    float epsilon = 0.0F;  ///< distances at most (1 + epsilon) times the true ones; 0 = exact
+    /// Distances are at most (1 + epsilon) times the true ones; 0 = exact. Single queries make no
+    /// use of it where the points are in order, as in a scan: they are faster exactly, there.
+    float epsilon = 0.0F;
   };
 
   MedianHashIndex();
