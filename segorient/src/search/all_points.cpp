@@ -193,7 +193,7 @@ void MedianHashIndex::radiusAll(double radius, RadiusNeighborhoods& out, unsigne
     buffer.owner = &part;
     buffer.used = 0;
     buffer.capacity = 0;
-    growPart(buffer, std::max(expected.load(), part.indices.size()));
+    growPart(buffer, part.indices.empty() ? expected.load() : part.indices.size());
     self.withinOfRegion(region, radius, of_thread, out);
     part.used = buffer.used;
     expected = buffer.used + buffer.used / 4;
