@@ -6,11 +6,13 @@
 // pcl::search::KdTree with a loop of queries.
 //
 //   search_benchmark [--points N,...] [--k K,...] [--cloud NAME,...] [--order NAME,...] [--runs R]
-//                    [--threads T,...] [--csv FILE] [--whole]
+//                    [--threads T,...] [--csv FILE] [--whole] [--growth]
 //
 // NAME of a cloud: uniform, surface, lidar; of an order: coherent (along a curve or as scanned),
 // random. --threads 0 means all cores. --whole measures all of them with 20k to 5M points; without
-// it, 200k points on one thread. SEGORIENT_SIMD=scalar|sse2|avx2|avx512 forces an instruction set.
+// it, 200k points on one thread. --growth measures MedianHash alone, in random order: time a point
+// of 5M against 200k, and two threads against one. SEGORIENT_SIMD=scalar|sse2|avx2|avx512 forces an
+// instruction set.
 #include <pcl/search/kdtree.h>
 #include <pcl/search/octree.h>
 #include <segorient/search/median_hash.h>
@@ -20,6 +22,7 @@
 #include <map>
 #include <sstream>
 
+#include "search_growth.h"
 #include "search_peers.h"
 
 namespace segorient::benchmark {
@@ -36,6 +39,7 @@ struct Options {
   std::vector<std::string> orders{"coherent", "random"};
   std::size_t runs = 3;
   std::string csv;
+  bool growth = false;
 };
 
 std::vector<std::string> words(const std::string& list) {
@@ -59,6 +63,10 @@ Options parse(int argc, char** argv) {
       options.points = {20000, 200000, 1000000, 5000000};
       options.k = {5, 10, 15, 25, 50};
       options.threads = {1, 0};
+      continue;
+    }
+    if (name == "--growth") {
+      options.growth = true;
       continue;
     }
     if (i + 1 == argc) break;
@@ -235,8 +243,26 @@ void writeCsv(const std::string& file, const std::vector<Measurement>& results) 
   }
 }
 
+void growth(const Options& options) {
+  for (const std::string& name : options.clouds) {
+    const Cloud::Ptr clouds[2] = {makeCloud(name, "random", 200000),
+                                  makeCloud(name, "random", 5000000)};
+    double radius[2];
+    for (int i = 0; i < 2; ++i) {
+      OurTree tree;
+      tree.setInputCloud(clouds[i]);
+      radius[i] = radiusOf20(tree, *clouds[i]);
+    }
+    Growth(name, clouds[0], clouds[1], options.runs).run(options.k, radius);
+  }
+}
+
 int run(int argc, char** argv) {
   const Options options = parse(argc, argv);
+  if (options.growth) {
+    growth(options);
+    return 0;
+  }
   std::vector<Measurement> results;
   for (const std::size_t points : options.points) {
     for (const std::string& cloud : options.clouds) {
