@@ -53,7 +53,7 @@ using Estimations = testing::Types<PlaneNormalEstimation<pcl::PointXYZ, pcl::Nor
                                    LCTNormalEstimation<pcl::PointXYZ, pcl::Normal>,
                                    LDTNormalEstimation<pcl::PointXYZ, pcl::Normal>,
                                    AwASNormalEstimation<pcl::PointXYZ, pcl::Normal>>;
-TYPED_TEST_SUITE(BadInput, Estimations);
+TYPED_TEST_SUITE(BadInput, Estimations, );
 
 // One object for all of them: what it was used for before must not matter.
 TYPED_TEST(BadInput, CloudsIndicesAndSettings) {

@@ -36,7 +36,7 @@ struct Found {
 
 class SearchFuzzer {
  public:
-  explicit SearchFuzzer(ByteReader& reader) : reader_(reader) {
+  explicit SearchFuzzer(ByteReader& reader) {
     constexpr std::array<std::size_t, 8> kRegionSizes{0, 1, 2, 3, 7, 16, 64, 2048};
     options_.region_size = kRegionSizes[reader.below(kRegionSizes.size())];
     options_.threads = reader.byte() == 0 ? 2 : 1;
@@ -144,7 +144,6 @@ class SearchFuzzer {
     }
   }
 
-  ByteReader& reader_;
   MedianHashIndex::Options options_;
   bool with_indices_ = false;
   unsigned int max_nn_ = 0;

@@ -107,8 +107,8 @@ TEST_F(OrientedNormalEstimationTest, OrientsPointsOnASearchSurface) {
 
 TEST_F(OrientedNormalEstimationTest, KeepsTheShapeOfAnOrganizedCloudWithHoles) {
   auto cloud = pcl::make_shared<pcl::PointCloud<pcl::PointXYZ>>(40, 30);
-  for (std::uint32_t v = 0; v < 30; ++v) {
-    for (std::uint32_t u = 0; u < 40; ++u) {
+  for (int v = 0; v < 30; ++v) {
+    for (int u = 0; u < 40; ++u) {
       const auto x = static_cast<float>(u);
       const auto y = static_cast<float>(v);
       cloud->at(u, v) = pcl::PointXYZ(x, y, 0.01F * x * x);

@@ -72,7 +72,7 @@ class PointTypes : public testing::Test {
 };
 
 using Types = testing::Types<pcl::PointXYZ, pcl::PointXYZI, pcl::PointXYZRGB, pcl::PointNormal>;
-TYPED_TEST_SUITE(PointTypes, Types);
+TYPED_TEST_SUITE(PointTypes, Types, );
 
 TYPED_TEST(PointTypes, GoThroughAllClasses) {
   const auto cloud = this->sheet();

@@ -79,7 +79,8 @@ inline FanOrder fanKeys(const Batch& batch, std::size_t half, int count, const P
 
   // As many bits as each point's own number of neighbours takes: what the others have is no matter.
   if (batch.even) {
-    order.number_masks = Mask{} + ((1 << numberBits(count)) - 1);
+    const std::int32_t bits = (1 << numberBits(count)) - 1;
+    for (std::size_t l = 0; l < kWidth; ++l) order.number_masks[l] = bits;
   } else {
     for (std::size_t l = 0; l < kWidth; ++l) {
       const int listed = batch.counts[half * kWidth + l];
