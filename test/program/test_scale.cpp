@@ -100,7 +100,7 @@ Outcome orientWithin(std::size_t limit, const std::string& in, const ScratchDire
 // it must never be ended by a signal, and once it can read the file it says what it lacks before it
 // starts.
 TEST(ShortOfMemory, SaysSoBeforeItStarts) {
-#ifdef SEGORIENT_ADDRESS_SANITIZER
+#ifdef SEGORIENT_MEMORY_SANITIZED
   GTEST_SKIP() << "AddressSanitizer itself takes all addresses";
 #endif
   const ScratchDirectory directory;

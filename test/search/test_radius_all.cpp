@@ -174,7 +174,7 @@ TEST_P(RadiusAll, TablesMayBeFilledAgain) {
 
 INSTANTIATE_TEST_SUITE_P(Clouds, RadiusAll, testing::ValuesIn(searchClouds(1000)));
 
-#ifndef SEGORIENT_ADDRESS_SANITIZER
+#ifndef SEGORIENT_MEMORY_SANITIZED
 // Everything is near everything, which is more than there is memory for: an error that the caller
 // can catch, from any thread, not an end of the program.
 TEST(RadiusAllLargeRegions, MoreThanMemoryHolds) {
