@@ -101,7 +101,7 @@ Outcome orientWithin(std::size_t limit, const std::string& in, const ScratchDire
 // starts.
 TEST(ShortOfMemory, SaysSoBeforeItStarts) {
 #ifdef SEGORIENT_MEMORY_SANITIZED
-  GTEST_SKIP() << "AddressSanitizer itself takes all addresses";
+  GTEST_SKIP() << "the sanitizer itself takes all addresses";
 #endif
   const ScratchDirectory directory;
   const std::string in = ballFile(directory, 400'000);
