@@ -4,10 +4,12 @@
 #include <segorient/search/median_hash_index.h>
 #include <sys/resource.h>
 
+#include <array>
 #include <cmath>
 #include <cstdlib>
 #include <limits>
 #include <new>
+#include <random>
 
 #include "brute_force.h"
 #include "sanitized.h"
@@ -129,13 +131,80 @@ TEST(RadiusAllLargeRegions, EqualBruteForce) {
       MedianHashIndex index;
       index.build(cloud.view(), nullptr, options);
       RadiusNeighborhoods table;
-      index.radiusAll(radius, table, 200);  // there are clouds with all points in one place
+      index.radiusAll(radius, table, 200);
       for (std::size_t i = 0; i < cloud.size(); i += 307) {
         std::vector<Neighbor> expected;
         if (isFinite(cloud.view()[i])) {
           expected = expectedRow(cloud.view(), static_cast<pcl::index_t>(i), radius, 200);
         }
         ASSERT_EQ(row(table, i), expected) << cloud.name << ", row " << i;
+      }
+    }
+  }
+}
+
+// Checks some rows of the table, and single queries, against brute force.
+void expectBruteForce(const std::vector<std::array<float, 3>>& points, double radius,
+                      unsigned int max_nn, std::size_t step) {
+  const PointView view{points.front().data(), 3, points.size()};
+  for (const char* instruction_set : {"scalar", "sse2", "avx2", "avx512"}) {
+    setenv("SEGORIENT_SIMD", instruction_set, 1);
+    MedianHashIndex index;
+    index.build(view, nullptr, {});
+    unsetenv("SEGORIENT_SIMD");
+    RadiusNeighborhoods table;
+    index.radiusAll(radius, table, max_nn);
+    std::vector<pcl::index_t> indices;
+    std::vector<float> distances;
+    for (std::size_t i = 0; i < points.size(); i += step) {
+      const auto expected = expectedRow(view, static_cast<pcl::index_t>(i), radius, max_nn);
+      ASSERT_EQ(row(table, i), expected) << instruction_set << ", row " << i;
+      index.radius(view[i], radius, indices, distances, max_nn, true);
+      ASSERT_EQ(indices.size(), expected.size());
+      for (std::size_t j = 0; j < expected.size(); ++j) {
+        ASSERT_EQ(distances[j], expected[j].distance) << instruction_set << ", row " << i;
+      }
+    }
+  }
+}
+
+// A group of 31 points, of which the last but one fills its half of the room for candidates to the
+// last entry that may be taken.
+TEST(RadiusAllRoom, FullToTheLastEntry) {
+  std::mt19937 rng(41);
+  std::uniform_real_distribution<float> unit(0.F, 1.F);
+  for (const int behind : {11, 12, 13, 14, 18, 22}) {
+    std::vector<std::array<float, 3>> points;
+    for (int i = 0; i < 31; ++i) points.push_back({1e-4F * static_cast<float>(i), 0.F, 0.F});
+    for (int i = 0; i < 974; ++i) {
+      points.push_back({1e-3F * unit(rng), -0.501F + 2e-3F * unit(rng), 1e-3F * unit(rng)});
+    }
+    // Near enough for the last ones of the group only.
+    for (int i = 0; i < behind; ++i) {
+      points.push_back({1.00295F, 1e-6F * static_cast<float>(i), 0.F});
+    }
+    expectBruteForce(points, 1.0, 0, 1);
+  }
+}
+
+// As many candidates as are sorted in one go, more, and more than a group shares; all in one place
+// or around it.
+TEST(RadiusAllRoom, CrowdedPlaces) {
+  std::mt19937 rng(42);
+  std::uniform_real_distribution<float> unit(-0.1F, 0.1F);
+  for (const std::size_t size : {40U, 64U, 65U, 1000U, 1024U, 1025U, 9000U}) {
+    for (const bool in_one_place : {true, false}) {
+      std::vector<std::array<float, 3>> points;
+      for (std::size_t i = 0; i < size; ++i) {
+        points.push_back({3.F, 3.F, 3.F});
+        if (!in_one_place) {
+          for (float& x : points.back()) x += unit(rng);
+        }
+      }
+      for (int i = 0; i < 50; ++i) points.push_back({static_cast<float>(i), 0.F, 0.F});
+      for (const unsigned int max_nn : {0U, 3U, 70U}) {
+        if (size > 2000 && max_nn == 0) continue;  // a row of all for each: gigabytes
+        expectBruteForce(points, 1.0, max_nn, size < 1000 ? 1 : size / 10);
       }
     }
   }

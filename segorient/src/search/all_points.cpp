@@ -5,11 +5,11 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
-#include <exception>
 #include <limits>
 #include <memory>
 
 #include "index_impl.h"
+#include "parallel_error.h"
 
 namespace segorient::search {
 namespace {
@@ -76,28 +76,19 @@ template <typename Search>
 void forAllRegions(const Layout& layout, int threads, const GroupTask& wanted, std::size_t block,
                    std::size_t candidates, Search&& search) {
   const auto regions = static_cast<std::int64_t>(layout.regions.size());
-  // None may leave the parallel region; what is left is not searched then.
-  std::exception_ptr error;
-  std::atomic<bool> failed{false};
+  ParallelError error;
 #pragma omp parallel num_threads(threads) if (threads > 1)
   {
     std::unique_ptr<GroupWork> work;
 #pragma omp for schedule(dynamic, 1)
     for (std::int64_t r = 0; r < regions; ++r) {
-      if (failed) continue;
-      try {
+      error.guard([&] {
         if (!work) work = std::make_unique<GroupWork>(layout, wanted, block, candidates);
         search(static_cast<std::size_t>(r), work->task);
-      } catch (...) {
-#pragma omp critical(segorient_search_error)
-        {
-          error = std::current_exception();
-          failed = true;
-        }
-      }
+      });
     }
   }
-  if (error) std::rethrow_exception(error);
+  error.rethrow();
 }
 
 }  // namespace
@@ -129,8 +120,17 @@ void MedianHashIndex::nearestKAll(int k, Neighborhoods& out, bool with_distances
                                   float epsilon) const {
   const Impl& self = *impl_;
   const std::size_t wanted = std::min(static_cast<std::size_t>(std::max(k, 0)), size());
-  out.reset(self.rows, k, with_distances);
-  if (wanted == 0) return;
+  try {
+    out.reset(self.rows, k, with_distances);
+    if (wanted > 0) self.nearestOfAll(wanted, epsilon, out);
+  } catch (...) {
+    out = Neighborhoods();
+    throw;
+  }
+}
+
+void MedianHashIndex::Impl::nearestOfAll(std::size_t wanted, float epsilon,
+                                         Neighborhoods& out) const {
   const std::size_t shared = std::min(wanted, kMostNeighborsShared);
   GroupTask task{};
   task.k = static_cast<std::uint32_t>(wanted);
@@ -139,14 +139,13 @@ void MedianHashIndex::nearestKAll(int k, Neighborhoods& out, bool with_distances
   task.margin = 1.0F + kMargin / std::sqrt(static_cast<float>(wanted));
   task.indices = out.mutableIndices(0);
   task.distances = out.mutableSqrDistances(0);
-  task.row_length = static_cast<std::size_t>(k);
+  task.row_length = static_cast<std::size_t>(out.k());
   // A group has up to 31 points with up to some 3 k + 104 candidates each, in two halves.
   const std::size_t block = 2048 + 16 * shared;
   const std::size_t half = block + Layout::kPadding + 16 * (3 * shared + 112);
-  forAllRegions(self.layout, resolveThreads(self.options.threads), task, block,
-                2 * wholeLines(half), [&](std::size_t region, GroupTask& of_thread) {
-                  self.nearestOfRegion(region, of_thread, out);
-                });
+  forAllRegions(
+      layout, resolveThreads(options.threads), task, block, 2 * wholeLines(half),
+      [&](std::size_t region, GroupTask& of_thread) { nearestOfRegion(region, of_thread, out); });
 }
 
 // Points that no group could search for are searched for one by one.
@@ -161,8 +160,8 @@ void MedianHashIndex::Impl::withinOfRegion(std::size_t region, double radius, Gr
   for (std::size_t i = 0; i < task.failed_count; ++i) {
     const std::size_t point = task.failed[i];
     const float q[3] = {view.x[point], view.y[point], view.z[point]};
-    searchRadius(q, radius, indices, distances, 0, true);
-    const std::size_t count = std::min<std::size_t>(indices.size(), task.k);
+    searchRadius(q, radius, indices, distances, task.max_nn, true);
+    const std::size_t count = indices.size();
     putFirst(static_cast<pcl::index_t>(view.id[point]), indices.data(), count);
     if (buffer.used + count > buffer.capacity) buffer.grow(buffer, buffer.used + count);
     std::copy_n(indices.begin(), count, buffer.indices + buffer.used);
@@ -183,6 +182,7 @@ void MedianHashIndex::radiusAll(double radius, RadiusNeighborhoods& out, unsigne
   const float limit = squaredLimit(radius);
   GroupTask task{};
   task.k = max_nn > 0 ? max_nn : std::numeric_limits<std::uint32_t>::max();
+  task.max_nn = max_nn;
   task.limit = limit;
   task.rows.grow = growPart;
   task.rows.with_distances = with_distances;

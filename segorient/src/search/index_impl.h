@@ -41,6 +41,8 @@ struct MedianHashIndex::Impl {
   /// All points nearer than the radius, see MedianHashIndex::radius().
   int searchRadius(const float* q, double radius, std::vector<pcl::index_t>& indices,
                    std::vector<float>& sqr_distances, unsigned int max_nn, bool sorted) const;
+  /// \param wanted neighbours, above 0 and no more than there are points
+  void nearestOfAll(std::size_t wanted, float epsilon, Neighborhoods& out) const;
   void nearestOfRegion(std::size_t region, GroupTask& task, Neighborhoods& out) const;
   void withinOfRegion(std::size_t region, double radius, GroupTask& task,
                       RadiusNeighborhoods& out) const;
@@ -53,6 +55,8 @@ struct MedianHashIndex::Impl {
                     Workspace& work, float& limit) const;
   void nearestFirst(const LayoutView& view, const float* q, std::size_t k, float epsilon,
                     Workspace& work) const;
+  int nearestWithin(const float* q, float limit, std::size_t most,
+                    std::vector<pcl::index_t>& indices, std::vector<float>& distances) const;
   void addUnreachable(std::size_t k, Workspace& work) const;
 
   /// All ids in ascending order, made when first needed.

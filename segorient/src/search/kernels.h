@@ -170,11 +170,12 @@ struct GroupTask {
   float* distances;        ///< output, or null
   std::size_t row_length;  ///< entries from one row of the output to the next
   // radius
-  float limit;  ///< squared radius
+  float limit;          ///< squared radius
+  unsigned int max_nn;  ///< as k, but 0 = all
   RowBuffer rows;
   // work space of one thread; each array with Layout::kPadding entries more
   Block block;                ///< points that a group may have as neighbours
-  float* candidate_distance;  ///< of all points of a group; of the k nearest, in two halves
+  float* candidate_distance;  ///< of all points of a group, in two halves
   std::uint32_t* candidate_id;
   std::size_t candidate_capacity;
   SortScratch sort;
@@ -212,6 +213,11 @@ struct Kernels {
 
 /// The kernels for instructionSet().
 const Kernels& chooseKernels();
+
+/// Candidates of a radius search that are looked at where only max_nn results are wanted, 0 = all.
+inline std::size_t mostCollected(std::size_t max_nn) {
+  return max_nn > 0 ? 4 * max_nn + 1024 : std::numeric_limits<std::size_t>::max();
+}
 
 /// Makes what lies beyond the last candidate come last in any order.
 inline void padCandidates(float* distance, std::uint32_t* id, std::size_t count) {

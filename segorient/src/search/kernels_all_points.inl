@@ -138,9 +138,13 @@ SEGORIENT_APART void withinOfGroup(const LayoutView& view, std::uint32_t begin, 
                                    RegionState& state, GroupTask& task) {
   Group group;
   startGroup(view, begin, end, group);
-  const bool gathered = gather(view, group.box, task.limit, state, task);
+  // Where there are many more than are wanted, the nearest are found without looking at all.
+  const bool gathered = gather(view, group.box, task.limit, state, task) &&
+                        task.block.count <= mostCollected(task.max_nn);
   group.found_count = 0;
   const std::size_t half = task.candidate_capacity / 2;
+  // Whole vectors are taken, and what sorting needs behind them is filled.
+  const std::size_t most = task.block.count + (kWidth > kSortRoom ? kWidth : kSortRoom);
   Candidates room[2] = {{task.candidate_distance, task.candidate_id, 0, half},
                         {task.candidate_distance + half, task.candidate_id + half, 0, half}};
   for (std::uint32_t i = begin; i < end; i += 2) {
@@ -150,7 +154,7 @@ SEGORIENT_APART void withinOfGroup(const LayoutView& view, std::uint32_t begin, 
     for (std::size_t j = 0; j < 2; ++j) {
       const float* const start = task.candidate_distance + j * half;
       const auto used = static_cast<std::size_t>(room[j].distance - start);
-      enough = enough && used + task.block.count + kWidth <= half;
+      enough = enough && used + most <= half;
     }
     if (enough) {
       const float q[2][3] = {{view.x[point[0]], view.y[point[0]], view.z[point[0]]},

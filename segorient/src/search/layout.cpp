@@ -7,6 +7,8 @@
 #include <cmath>
 #include <memory>
 
+#include "parallel_error.h"
+
 namespace segorient::search {
 namespace {
 
@@ -151,6 +153,7 @@ void hashRegions(BuildPoint* points, Layout& layout, int threads) {
     starts += cellCount(region) + 1;
   }
   layout.starts.assign(starts, 0);
+  ParallelError error;
 #pragma omp parallel num_threads(threads) if (threads > 1)
   {
     std::vector<std::uint32_t> cell;
@@ -158,10 +161,13 @@ void hashRegions(BuildPoint* points, Layout& layout, int threads) {
     for (std::ptrdiff_t i = 0; i < regions; ++i) {
       const auto r = static_cast<std::size_t>(i);
       const Region& region = layout.regions[r];
-      sortIntoCells(points + region.begin, layout.boxes[layout.regions.size() + r], region, layout,
-                    cell);
+      error.guard([&] {
+        sortIntoCells(points + region.begin, layout.boxes[layout.regions.size() + r], region,
+                      layout, cell);
+      });
     }
   }
+  error.rethrow();
 }
 
 bool isFlat(const Box& box) {

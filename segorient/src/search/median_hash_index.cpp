@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "index_impl.h"
+#include "parallel_error.h"
 
 namespace segorient::search {
 
@@ -123,15 +124,19 @@ void MedianHashIndex::nearestKBatch(const PointView& queries, int k,
   const std::size_t wanted = std::min(static_cast<std::size_t>(std::max(k, 0)), size());
   indices.resize(queries.size);
   sqr_distances.resize(queries.size);
+  ParallelError error;
 #pragma omp parallel for num_threads(threads) schedule(dynamic, 512) if (threads > 1)
   for (std::int64_t i = 0; i < count; ++i) {
-    const auto at = static_cast<std::size_t>(i);
-    const float* query = queries[at];
-    const std::size_t found = isFinite(query) ? wanted : 0;
-    indices[at].resize(found);
-    sqr_distances[at].resize(found);
-    nearestK(query, static_cast<int>(found), indices[at].data(), sqr_distances[at].data(), epsilon);
+    error.guard([&, at = static_cast<std::size_t>(i)] {
+      const float* query = queries[at];
+      const std::size_t found = isFinite(query) ? wanted : 0;
+      indices[at].resize(found);
+      sqr_distances[at].resize(found);
+      nearestK(query, static_cast<int>(found), indices[at].data(), sqr_distances[at].data(),
+               epsilon);
+    });
   }
+  error.rethrow();
 }
 
 void MedianHashIndex::radiusBatch(const PointView& queries, double radius,
@@ -142,11 +147,14 @@ void MedianHashIndex::radiusBatch(const PointView& queries, double radius,
   const int threads = resolveThreads(impl_->options.threads);
   indices.resize(queries.size);
   sqr_distances.resize(queries.size);
+  ParallelError error;
 #pragma omp parallel for num_threads(threads) schedule(dynamic, 512) if (threads > 1)
   for (std::int64_t i = 0; i < count; ++i) {
-    const auto at = static_cast<std::size_t>(i);
-    this->radius(queries[at], radius, indices[at], sqr_distances[at], max_nn, sorted);
+    error.guard([&, at = static_cast<std::size_t>(i)] {
+      this->radius(queries[at], radius, indices[at], sqr_distances[at], max_nn, sorted);
+    });
   }
+  error.rethrow();
 }
 
 }  // namespace segorient::search

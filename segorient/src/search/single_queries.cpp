@@ -262,6 +262,20 @@ void MedianHashIndex::Impl::searchSelf(std::size_t point, std::size_t k, float e
   putFirst(static_cast<pcl::index_t>(layout.id[point]), indices, k);
 }
 
+// The nearest `most` points, as far as they are nearer than a squared limit.
+int MedianHashIndex::Impl::nearestWithin(const float* q, float limit, std::size_t most,
+                                         std::vector<pcl::index_t>& indices,
+                                         std::vector<float>& distances) const {
+  const std::size_t k = std::min(most, layout.size());
+  indices.resize(k);
+  distances.resize(k);
+  search(q, k, 0.0F, indices.data(), distances.data());
+  const auto end = std::lower_bound(distances.begin(), distances.end(), limit);
+  indices.resize(static_cast<std::size_t>(end - distances.begin()));
+  distances.erase(end, distances.end());
+  return static_cast<int>(indices.size());
+}
+
 int MedianHashIndex::Impl::searchRadius(const float* query, double radius,
                                         std::vector<pcl::index_t>& indices,
                                         std::vector<float>& sqr_distances, unsigned int max_nn,
@@ -271,9 +285,11 @@ int MedianHashIndex::Impl::searchRadius(const float* query, double radius,
   const LayoutView view(layout);
   const Path path(view, query);
   const Sphere sphere{{query[0], query[1], query[2]}, limit, limit, kAll};
-  std::size_t capacity = 1024;
+  std::size_t capacity = max_nn > 0 ? std::min(mostCollected(max_nn), layout.size() + 1024) : 1024;
   Candidates* found = &work.candidates(capacity);
   while (!kernels->collect(view, path, sphere, *found)) {
+    // Where there are many more than are wanted, the nearest are found without collecting all.
+    if (max_nn > 0) return nearestWithin(query, limit, max_nn, indices, sqr_distances);
     capacity = std::max(4 * capacity, found->capacity + 1);
     found = &work.candidates(capacity);
   }

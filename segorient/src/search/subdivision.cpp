@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "layout.h"
+#include "parallel_error.h"
 
 namespace segorient::search {
 namespace {
@@ -143,6 +144,7 @@ class Subdivision {
 #pragma omp parallel num_threads(threads) if (threads > 1)
 #pragma omp single
     divide(1, 0, 0, count);
+    error_.rethrow();
     for (std::size_t node = layout_.regions.size() - 1; node > 0; --node) {
       layout_.boxes[node] = merged(layout_.boxes[2 * node], layout_.boxes[2 * node + 1]);
     }
@@ -161,7 +163,7 @@ class Subdivision {
       return;
     }
     const std::size_t half = count / 2;
-    {
+    error_.guard([&] {
       FastVector<BuildPoint>& scratch = scratch_[static_cast<std::size_t>(omp_get_thread_num())];
       scratch.clear();
       scratch.resize(count + kMoreScratch);
@@ -169,7 +171,8 @@ class Subdivision {
       BuildPoint* to = (level % 2 == 0 ? other_ : points_) + begin;
       const float value = divideInTwo(from, count, to, half, axis, scratch.data());
       layout_.splits[node] = {value, static_cast<std::uint32_t>(axis)};
-    }
+    });
+    if (error_.failed()) return;
     const std::size_t middle = begin + half;
 #pragma omp task if (count > kTaskSize)
     divide(2 * node, level + 1, begin, middle);
@@ -183,6 +186,7 @@ class Subdivision {
   std::size_t levels_;
   Layout& layout_;
   std::vector<FastVector<BuildPoint>> scratch_;  // by thread
+  ParallelError error_;
 };
 
 }  // namespace

@@ -74,15 +74,18 @@ class Neighborhoods {
   std::vector<std::uint32_t> counts_;
 };
 
-/// The neighbours within a radius of every point: rows of different lengths.
+/// The neighbours within a radius of every point: rows of different lengths, count(i), indices(i)
+/// and sqrDistances(i) of point i, ordered as in Neighborhoods.
 ///
-/// Rows belong to points and are ordered as in Neighborhoods. They lie in parts, one for each
-/// region of the search, one after another as they were found: where rows of other regions will
-/// begin is not known before those are found.
+/// Rows do not lie one after another: each region of the search has a part of its own, as nobody
+/// knows how long the rows of others will be. They stay where they are until the table is filled
+/// again.
 ///
-/// Memory: sizeof(pcl::index_t) + 4 bytes a neighbour, or sizeof(pcl::index_t) without distances;
-/// room for as many again at most, typically a quarter of them, that nothing is written to; 16
-/// bytes a row. A table that is filled again uses the memory it has.
+/// Memory: 16 bytes a row and sizeof(pcl::index_t) + 4 bytes a neighbour, or sizeof(pcl::index_t)
+/// without distances. There is more room than that, which nothing is written to: a part has a
+/// quarter more than the rows of the region before it took, and 1024 entries at least. memory()
+/// counts it, so it depends on the number of threads. A table that is filled again keeps the room
+/// it has, until it is destroyed.
 class RadiusNeighborhoods {
  public:
   /// Rows one after another. Whoever fills it may make the arrays longer than `used`.
@@ -113,13 +116,18 @@ class RadiusNeighborhoods {
     return with_distances_ ? parts_[rows_[row].part].distances.data() + rows_[row].begin : nullptr;
   }
 
-  /// For the search that fills the table: every row is empty afterwards. Different threads may fill
-  /// different parts, and set the rows in them, at a time.
+  // What follows is for the search that fills the table.
+
+  /// Every row is empty afterwards. Different threads may fill different parts, and set the rows in
+  /// them, at a time.
   void reset(std::size_t rows, std::size_t parts, bool with_distances = true) {
     with_distances_ = with_distances;
     rows_.assign(rows, Row{});
     parts_.resize(parts > 0 ? parts : 1);
-    for (Part& part : parts_) part.used = 0;
+    for (Part& part : parts_) {
+      part.used = 0;
+      if (!with_distances) part.distances = {};
+    }
   }
   Part& part(std::size_t i) { return parts_[i]; }
   void setRow(std::size_t row, std::size_t part, std::size_t begin, std::size_t count) {

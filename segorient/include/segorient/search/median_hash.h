@@ -7,6 +7,7 @@
 #include <segorient/common/neighborhoods.h>
 #include <segorient/search/median_hash_index.h>
 
+#include <type_traits>
 #include <vector>
 
 namespace segorient::search {
@@ -94,15 +95,21 @@ class MedianHash : public pcl::search::KdTree<PointT> {
 
   /// The k nearest of every point of the input cloud (or of its indices), itself first: row i of
   /// `out` belongs to point i (or to the i-th index). Runs on getNumberOfThreads() threads.
+  /// With a point representation of more than three dimensions `out` has no rows at all.
   /// \param with_distances false leaves the squared distances out, which is faster
+  /// \throws std::bad_alloc if there is no memory for k entries a point; `out` is empty then
   void nearestKSearchAll(int k, Neighborhoods& out, bool with_distances = true) const;
 
-  /// All points within `radius` of every point of the input cloud (or of its indices), in rows as
-  /// those of nearestKSearchAll().
-  /// \param max_nn keeps the closest max_nn of each row only; 0 = all
+  /// All points nearer than `radius` to every point of the input cloud (or of its indices), in rows
+  /// as those of nearestKSearchAll(), ascending and exact whatever was set. Rows are empty if the
+  /// radius is not above 0 or its square is 0 in float.
+  /// \param max_nn keeps the closest max_nn of each row only, the point itself in any case; 0 = all
   /// \throws std::bad_alloc if there is no memory for all that is found; `out` is empty then
   void radiusSearchAll(double radius, RadiusNeighborhoods& out, unsigned int max_nn = 0,
                        bool with_distances = true) const;
+  /// Not with_distances in the place of max_nn.
+  template <typename Bool, typename = std::enable_if_t<std::is_same_v<Bool, bool>>>
+  void radiusSearchAll(double radius, RadiusNeighborhoods& out, Bool, bool = true) const = delete;
 
   /// Most points in a region of the median subdivision; takes effect at the next setInputCloud().
   /// Exact results do not depend on it. Default 4096; below 8 means 8, above 32768 means 32768.

@@ -7,6 +7,7 @@
 #include <segorient/common/point_view.h>
 
 #include <memory>
+#include <type_traits>
 #include <vector>
 
 namespace segorient::search {
@@ -23,19 +24,21 @@ class MedianHashIndex {
     std::size_t region_size = 4096;  ///< most points in a region
     int threads = 0;                 ///< 0 = all cores
     /// Distances are at most (1 + epsilon) times the true ones; 0 = exact. Single queries make no
-    /// use of it where the points are in order, as in a scan: they are faster exactly, there.
+    /// use of it where the points are in order, as in a scan: exact queries are faster there.
     float epsilon = 0.0F;
   };
 
   MedianHashIndex();
   ~MedianHashIndex();
+  /// What was moved from may be built again, assigned to or destroyed, no more.
   MedianHashIndex(MedianHashIndex&&) noexcept;
   MedianHashIndex& operator=(MedianHashIndex&&) noexcept;
   MedianHashIndex(const MedianHashIndex&) = delete;
   MedianHashIndex& operator=(const MedianHashIndex&) = delete;
 
-  /// Points, and indices, that there may be: 32 bits number them, whatever pcl::index_t is.
-  static constexpr std::size_t kMostPoints = 0xffffffffU;
+  /// Points, and indices, that there may be: 32 bits number up to four cells for each, whatever
+  /// pcl::index_t is.
+  static constexpr std::size_t kMostPoints = 1'000'000'000;
 
   /// Copies the points; those with NaN or infinite coordinates are left out. More than kMostPoints
   /// are not taken: the index is empty then.
@@ -81,6 +84,7 @@ class MedianHashIndex {
 
   /// The k nearest of every row that build() was given: row i of `out` belongs to row i (or to the
   /// i-th index) and begins with that point itself. Rows of points left out are empty.
+  /// \throws std::bad_alloc if there is no memory for rows * k entries; `out` is empty then
   void nearestKAll(int k, Neighborhoods& out, bool with_distances = true) const {
     nearestKAll(k, out, with_distances, epsilon());
   }
@@ -88,11 +92,15 @@ class MedianHashIndex {
   void nearestKAll(int k, Neighborhoods& out, bool with_distances, float epsilon) const;
 
   /// All points nearer than `radius` to every row that build() was given, as nearestKAll(): each
-  /// row ascending, the point itself first.
-  /// \param max_nn keeps the closest max_nn of a row only; 0 = all
+  /// row ascending, the point itself first, exact for any epsilon. Rows are empty if the radius is
+  /// not above 0 or its square is 0 in float.
+  /// \param max_nn keeps the closest max_nn of a row only, the point itself in any case; 0 = all
   /// \throws std::bad_alloc if there is no memory for all that is found; `out` is empty then
   void radiusAll(double radius, RadiusNeighborhoods& out, unsigned int max_nn = 0,
                  bool with_distances = true) const;
+  /// Not with_distances in the place of max_nn.
+  template <typename Bool, typename = std::enable_if_t<std::is_same_v<Bool, bool>>>
+  void radiusAll(double radius, RadiusNeighborhoods& out, Bool, bool = true) const = delete;
 
   float epsilon() const;                 ///< as given to build()
   void setNumberOfThreads(int threads);  ///< 0 = all cores; results do not depend on it
