@@ -60,6 +60,7 @@ class SearchFuzzer {
       ask(cloud_.view()[row]);
     }
     askAll();
+    askAllWithin();
   }
 
  private:
@@ -129,9 +130,7 @@ class SearchFuzzer {
     expectProperty(table.size() == rows, "a row for each point");
     for (std::size_t row = 0; row < rows; row += 1 + rows / 4) {
       const pcl::index_t self = with_indices_ ? indices_[row] : static_cast<pcl::index_t>(row);
-      const bool valid = self >= 0 && static_cast<std::size_t>(self) < cloud_.size() &&
-                         isFinite(cloud_.view()[static_cast<std::size_t>(self)]);
-      if (!valid || k_ <= 0) {
+      if (!isValid(self) || k_ <= 0) {
         expectProperty(table.count(row) == 0, "an invalid row is empty");
         continue;
       }
@@ -142,6 +141,36 @@ class SearchFuzzer {
       found.distances.assign(table.sqrDistances(row), table.sqrDistances(row) + table.count(row));
       expectProperty(found.same(truth, truth.size()), "a row is that of brute force");
     }
+  }
+
+  // With the radius of a distance that occurs.
+  void askAllWithin() {
+    const std::size_t rows = with_indices_ ? indices_.size() : cloud_.size();
+    double radius = 1.0;
+    RadiusNeighborhoods table;
+    for (std::size_t row = 0; row < rows; row += 1 + rows / 4) {
+      const pcl::index_t self = with_indices_ ? indices_[row] : static_cast<pcl::index_t>(row);
+      std::vector<Neighbor> truth;
+      if (isValid(self)) truth = bruteForceRow(cloud_.view(), self, rows, indices());
+      if (!truth.empty()) radius = std::sqrt(static_cast<double>(truth[truth.size() / 2].distance));
+      const auto limit = static_cast<float>(radius * radius);
+      if (!(radius > 0.0) || !(limit > 0.0F) || !std::isfinite(limit)) continue;
+      index_.radiusAll(radius, table, max_nn_);
+      expectProperty(table.size() == rows, "a row within a radius for each point");
+      auto within = static_cast<std::size_t>(std::count_if(
+          truth.begin(), truth.end(), [&](const Neighbor& n) { return n.distance < limit; }));
+      if (max_nn_ > 0) within = std::min<std::size_t>(within, max_nn_);
+      expectProperty(table.count(row) == within, "a row has all within the radius");
+      Found found;
+      found.indices.assign(table.indices(row), table.indices(row) + within);
+      found.distances.assign(table.sqrDistances(row), table.sqrDistances(row) + within);
+      expectProperty(found.same(truth, within), "a row within a radius is that of brute force");
+    }
+  }
+
+  bool isValid(pcl::index_t i) const {
+    return i >= 0 && static_cast<std::size_t>(i) < cloud_.size() &&
+           isFinite(cloud_.view()[static_cast<std::size_t>(i)]);
   }
 
   MedianHashIndex::Options options_;

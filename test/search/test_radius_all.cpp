@@ -10,6 +10,9 @@
 #include <limits>
 #include <new>
 #include <random>
+#include <type_traits>
+#include <utility>
+#include <vector>
 
 #include "brute_force.h"
 #include "sanitized.h"
@@ -243,6 +246,15 @@ TEST_P(RadiusAll, TablesMayBeFilledAgain) {
 
 INSTANTIATE_TEST_SUITE_P(Clouds, RadiusAll, testing::ValuesIn(searchClouds(1000)));
 
+template <typename Flag, typename = void>
+struct TakesForMaxNn : std::false_type {};
+template <typename Flag>
+struct TakesForMaxNn<Flag, std::void_t<decltype(std::declval<const MedianHashIndex&>().radiusAll(
+                               1.0, std::declval<RadiusNeighborhoods&>(), std::declval<Flag>()))>>
+    : std::true_type {};
+static_assert(TakesForMaxNn<unsigned int>::value && TakesForMaxNn<int>::value);
+static_assert(!TakesForMaxNn<bool>::value, "whoever writes that means with_distances");
+
 #ifndef SEGORIENT_MEMORY_SANITIZED
 // Everything is near everything, which is more than there is memory for: an error that the caller
 // can catch, from any thread, not an end of the program.
@@ -259,13 +271,24 @@ TEST(RadiusAllLargeRegions, MoreThanMemoryHolds) {
     index.build(cloud.view(), nullptr, options);
     RadiusNeighborhoods table;
     index.radiusAll(0.05, table);
-    const bool filled = table.size() == cloud.size();
-    try {
-      index.radiusAll(1e6, table);
-    } catch (const std::bad_alloc&) {
-      std::exit(filled && table.size() == 0 ? 0 : 2);
-    }
-    std::exit(1);
+    Neighborhoods nearest;
+    index.nearestKAll(3, nearest);
+    int failed = table.size() == cloud.size() && nearest.size() == cloud.size() ? 0 : 1;
+    const auto throws = [&](const auto& search) {
+      try {
+        search();
+        failed = 1;
+      } catch (const std::bad_alloc&) {
+      }
+    };
+    throws([&] { index.radiusAll(1e6, table); });
+    throws([&] { index.nearestKAll(100000, nearest); });
+    throws([&] {
+      std::vector<std::vector<pcl::index_t>> indices;
+      std::vector<std::vector<float>> distances;
+      index.radiusBatch(cloud.view(), 1e6, indices, distances, 0, true);
+    });
+    std::exit(failed + static_cast<int>(table.size() + nearest.size()));
   };
   GTEST_FLAG_SET(death_test_style, "threadsafe");
   EXPECT_EXIT(lacks_memory(), testing::ExitedWithCode(0), "");
