@@ -103,11 +103,11 @@ PipelineOptions optionsFrom(const py::dict& given) {
         given["method"].cast<std::string>() + "'");
   }
   setAngle(given, "alpha", options.segmentation.alpha);
-  setAngle(given, "alpha", options.sheets.alpha);
+  setAngle(given, "alpha", options.orientation.automatic.alpha);
   setAngle(given, "beta", options.segmentation.beta);
-  setAngle(given, "beta", options.sheets.beta);
+  setAngle(given, "beta", options.orientation.automatic.beta);
   setAngle(given, "epsilon", options.segmentation.epsilon);
-  setAngle(given, "epsilon", options.sheets.epsilon);
+  setAngle(given, "epsilon", options.orientation.automatic.epsilon);
   setAngle(given, "gamma", options.orientation.gamma);
   setAngle(given, "delta", options.recomputation.delta);
   if (given.contains("delta")) {

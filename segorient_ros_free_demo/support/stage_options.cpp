@@ -101,11 +101,11 @@ void StageOptions::apply(const CommandLine& line, const CommonOptions& common,
   }
   require(known, "--normals is one of auto plane lct ldt awas awas3");
   setAngle(line, "alpha", alpha_, options.segmentation.alpha);
-  setAngle(line, "alpha", alpha_, options.sheets.alpha);
+  setAngle(line, "alpha", alpha_, options.orientation.automatic.alpha);
   setAngle(line, "beta", beta_, options.segmentation.beta);
-  setAngle(line, "beta", beta_, options.sheets.beta);
+  setAngle(line, "beta", beta_, options.orientation.automatic.beta);
   setAngle(line, "epsilon", epsilon_, options.segmentation.epsilon);
-  setAngle(line, "epsilon", epsilon_, options.sheets.epsilon);
+  setAngle(line, "epsilon", epsilon_, options.orientation.automatic.epsilon);
   setAngle(line, "gamma", gamma_, options.orientation.gamma);
   setAngle(line, "delta", delta_, options.recomputation.delta);
   if (line.given("delta")) {

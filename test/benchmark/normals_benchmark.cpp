@@ -5,15 +5,12 @@
 // accuracy, CGAL's where it is installed.
 //   normals_benchmark [FILE...]    PCD or PLY files with true normals; without any, a torus and a
 //   cube normals_benchmark --time [N]   one thread, ratios to our own all-points search; 1,000,000
-//   points
-#include <pcl/features/normal_3d_omp.h>
+//   points#include <pcl/features/normal_3d_omp.h>
 #include <pcl/io/pcd_io.h>
 #include <pcl/io/ply_io.h>
 #include <pcl/point_types.h>
 #include <pcl/search/kdtree.h>
 #include <pcl/surface/mls.h>
-#include <segorient/common/compact_cloud.h>
-#include <segorient/features/automatic_normals.h>
 #include <segorient/features/local_normals.h>
 #include <segorient/features/recompute_normals.h>
 #include <segorient/search/median_hash_index.h>
@@ -28,6 +25,8 @@
 #include <string>
 #include <vector>
 
+#include "common/compact_cloud.h"
+#include "features/automatic_normals.h"
 #include "normals_peers.h"
 
 namespace {

@@ -70,19 +70,28 @@ inline std::vector<Column> withoutSteps() {
     return own(step, options);
   };
   return {
-      without("denoising", [](PipelineOptions& o) { o.denoise = false; }),
-      without("wall split", [](PipelineOptions& o) { o.sheet_normals.split_walls = false; }),
-      without("dominant plane", [](PipelineOptions& o) { o.sheet_normals.dominant_plane = false; }),
-      without("support", [](PipelineOptions& o) { o.sheets.require_support = false; }),
-      without("clean-up", [](PipelineOptions& o) { o.sheets.clean_up = false; }),
-      without("contraction", [](PipelineOptions& o) { o.automatic.contract_certain = false; }),
-      without("cluster flips", [](PipelineOptions& o) { o.automatic.flip_clusters = false; }),
-      without("loose parts", [](PipelineOptions& o) { o.automatic.turn_loose_parts = false; }),
-      without("winding number", [](PipelineOptions& o) { o.automatic.wind_components = false; }),
-      without("viewpoint", [](PipelineOptions& o) { o.automatic.infer_viewpoint = false; }),
-      without("winding normals", [](PipelineOptions& o) { o.winding_normals = false; }),
-      without("wedges", [](PipelineOptions& o) { o.filter_wedges = false; }),
-      without("filter", [](PipelineOptions& o) { o.filter_rounds = 0; })};
+      without("denoising", [](PipelineOptions& o) { o.orientation.automatic.denoise = false; }),
+      without("wall split",
+              [](PipelineOptions& o) { o.orientation.automatic.split_walls = false; }),
+      without("dominant plane",
+              [](PipelineOptions& o) { o.orientation.automatic.dominant_plane = false; }),
+      without("support",
+              [](PipelineOptions& o) { o.orientation.automatic.require_support = false; }),
+      without("clean-up", [](PipelineOptions& o) { o.orientation.automatic.clean_up = false; }),
+      without("contraction",
+              [](PipelineOptions& o) { o.orientation.automatic.contract_certain = false; }),
+      without("cluster flips",
+              [](PipelineOptions& o) { o.orientation.automatic.flip_clusters = false; }),
+      without("loose parts",
+              [](PipelineOptions& o) { o.orientation.automatic.turn_loose_parts = false; }),
+      without("winding number",
+              [](PipelineOptions& o) { o.orientation.automatic.wind_components = false; }),
+      without("viewpoint",
+              [](PipelineOptions& o) { o.orientation.automatic.infer_viewpoint = false; }),
+      without("winding normals",
+              [](PipelineOptions& o) { o.orientation.automatic.winding_normals = false; }),
+      without("wedges", [](PipelineOptions& o) { o.orientation.automatic.filter_wedges = false; }),
+      without("filter", [](PipelineOptions& o) { o.orientation.automatic.filter_rounds = 0; })};
 }
 
 inline Column automatic() {

@@ -10,13 +10,11 @@
 //     million points on 14,400 small faces.
 //   orientation_stage_benchmark invariance CLOUD.ply|.pcd ...
 //     Points whose normal changes when the rows are shuffled, and when other numbers of threads are
-//     used, by method; the whole pipeline, compared bit by bit.
-#include <pcl/io/pcd_io.h>
+//     used, by method; the whole pipeline, compared bit by bit.#include <pcl/io/pcd_io.h>
 #include <pcl/io/ply_io.h>
 #include <pcl/point_cloud.h>
 #include <pcl/point_types.h>
 #include <segorient/common/cloud_access.h>
-#include <segorient/common/compact_cloud.h>
 #include <segorient/common/neighborhoods.h>
 #include <segorient/features/local_normals.h>
 #include <segorient/orientation/pipeline.h>
@@ -32,6 +30,8 @@
 #include <random>
 #include <string>
 #include <vector>
+
+#include "common/compact_cloud.h"
 
 namespace {
 

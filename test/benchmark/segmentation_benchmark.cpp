@@ -10,13 +10,12 @@
 //   segmentation_benchmark plate [POINTS]       both sides of thin plates
 //   segmentation_benchmark surface [POINTS...]  triangulated area, holes and boundaries of solids
 //   segmentation_benchmark growth               time and memory of one segment's triangulation
-//   segmentation_benchmark FILE...              coverage and triangulation of clouds (pcd, ply)
-#include <pcl/console/print.h>
+//   segmentation_benchmark FILE...              coverage and triangulation of clouds (pcd,
+//   ply)#include <pcl/console/print.h>
 #include <pcl/io/pcd_io.h>
 #include <pcl/io/ply_io.h>
 #include <pcl/search/kdtree.h>
 #include <segorient/common/cloud_access.h>
-#include <segorient/common/compact_cloud.h>
 #include <segorient/features/local_normals.h>
 #include <segorient/search/median_hash_index.h>
 #include <segorient/segmentation/cloud_segmentation.h>
@@ -36,6 +35,7 @@
 
 #include "../support/labelled_solids.h"
 #include "../support/partition_quality.h"
+#include "common/compact_cloud.h"
 
 namespace {
 std::atomic<std::size_t> live_bytes{0};

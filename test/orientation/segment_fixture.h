@@ -3,10 +3,6 @@
 #pragma once
 
 #include <segorient/common/neighborhoods.h>
-#include <segorient/orientation/extremal.h>
-#include <segorient/orientation/segment_links.h>
-#include <segorient/orientation/segment_methods.h>
-#include <segorient/orientation/segment_relations.h>
 #include <segorient/search/median_hash_index.h>
 #include <segorient/segmentation/segmentation.h>
 
@@ -14,6 +10,10 @@
 #include <cmath>
 #include <vector>
 
+#include "orientation/paper/combination.h"
+#include "orientation/paper/extremal_points.h"
+#include "orientation/paper/segment_links.h"
+#include "orientation/paper/segment_relations.h"
 #include "oriented_shapes.h"
 
 namespace segorient::test {

@@ -2,14 +2,14 @@
 // Copyright (c) 2026, the segorient authors
 #pragma once
 
-#include <segorient/features/sheet_normals.h>
 #include <segorient/search/median_hash_index.h>
-#include <segorient/segmentation/sheet_segmentation.h>
 
 #include <cmath>
 #include <vector>
 
+#include "features/sheet_normals.h"
 #include "labelled_solids.h"
+#include "segmentation/sheet_segmentation.h"
 
 namespace segorient::test {
 

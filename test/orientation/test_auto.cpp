@@ -240,9 +240,10 @@ TEST(Auto, FacesOfANarrowWedgeFaceApartInNoise) {
 TEST(Auto, FilterIsWorthItsTime) {
   const LabelledCloud cloud = sample("cube", cube(), 6000, 50, 0.7);
   PipelineOptions filtered;
-  filtered.automatic.infer_viewpoint = false;  // which mends the same points by other means
+  filtered.orientation.automatic.infer_viewpoint =
+      false;  // which mends the same points by other means
   PipelineOptions unfiltered = filtered;
-  unfiltered.filter_rounds = 0;
+  unfiltered.orientation.automatic.filter_rounds = 0;
   EXPECT_GT(shareOutward(orient(cloud.xyz, filtered).normals, cloud.normals),
             shareOutward(orient(cloud.xyz, unfiltered).normals, cloud.normals) + 0.005);
 }
@@ -268,7 +269,7 @@ TEST(Auto, DenoisingIsWorthItsTime) {
     truth.push_back(0.F);
   }
   PipelineOptions rough;
-  rough.denoise = false;
+  rough.orientation.automatic.denoise = false;
   const OrientedCloud smooth = orient(xyz);
   EXPECT_TRUE(smooth.report.denoised);
   const double share = shareOutward(smooth.normals, truth);

@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026, the segorient authors
-// Votes across borders at all dihedral angles, and the contraction of what they say.
-#include <gtest/gtest.h>
-#include <segorient/orientation/border_votes.h>
-#include <segorient/orientation/cluster_graph.h>
-
+// Votes across borders at all dihedral angles, and the contraction of what they say.#include
+// <gtest/gtest.h>
 #include <random>
 
+#include "orientation/automatic/border_votes.h"
+#include "orientation/automatic/cluster_graph.h"
 #include "sheet_fixture.h"
 
 namespace segorient::test {

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026, the segorient authors
 #include <gtest/gtest.h>
-#include <segorient/orientation/box_subdivision.h>
-#include <segorient/orientation/extremal.h>
 
 #include <algorithm>
 #include <cmath>
 #include <numeric>
 #include <vector>
 
+#include "orientation/paper/box_subdivision.h"
+#include "orientation/paper/extremal_points.h"
 #include "oriented_shapes.h"
 
 namespace segorient {

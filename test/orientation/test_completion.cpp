@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026, the segorient authors
 #include <gtest/gtest.h>
-#include <segorient/orientation/completion.h>
-#include <segorient/orientation/point_tree.h>
 #include <segorient/search/median_hash_index.h>
 
 #include <algorithm>
 #include <limits>
 #include <vector>
 
+#include "orientation/paper/completion.h"
+#include "orientation/paper/hoppe_tree.h"
 #include "oriented_shapes.h"
 
 namespace segorient {

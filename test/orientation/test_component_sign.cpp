@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026, the segorient authors
 #include <gtest/gtest.h>
-#include <segorient/orientation/component_sign.h>
 #include <segorient/search/median_hash_index.h>
 
 #include <vector>
 
+#include "orientation/paper/outward_components.h"
 #include "oriented_shapes.h"
 
 namespace segorient {

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026, the segorient authors
 #include <gtest/gtest.h>
-#include <segorient/orientation/consistency.h>
-#include <segorient/orientation/folded_segments.h>
 
 #include <vector>
 
+#include "orientation/paper/folded_segments.h"
+#include "orientation/paper/mixed_segments.h"
 #include "segment_fixture.h"
 
 namespace segorient {

@@ -20,7 +20,7 @@ constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
 OrientedCloud orient(const std::vector<float>& xyz, const OrientationHints& hints,
                      bool infer_viewpoint = true) {
   PipelineOptions options;
-  options.automatic.infer_viewpoint = infer_viewpoint;
+  options.orientation.automatic.infer_viewpoint = infer_viewpoint;
   options.orientation.hints = std::make_shared<OrientationHints>(hints);
   return orientCloud(viewOf(xyz), nullptr, options);
 }

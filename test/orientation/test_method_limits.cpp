@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026, the segorient authors
-// Where the paper says that its methods fail: what each of them does there, and what it reports.
-#include <gtest/gtest.h>
-#include <segorient/orientation/orient_segments.h>
+// Where the paper says that its methods fail: what each of them does there, and what it
+// reports.#include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
 #include <vector>
 
+#include "orientation/orient_segments.h"
 #include "segment_fixture.h"
 
 namespace segorient {

@@ -164,9 +164,9 @@ TEST_F(OrientedNormalEstimationTest, GettersReturnWhatWasSet) {
   EXPECT_EQ(estimation.getNumberOfThreads(), 3U);
   EXPECT_EQ(estimation.getOptions().segmentation.beta, 0.2F);
   // AUTO orients by other segments than it returns.
-  EXPECT_EQ(estimation.getOptions().sheets.alpha, 0.1F);
-  EXPECT_EQ(estimation.getOptions().sheets.beta, 0.2F);
-  EXPECT_EQ(estimation.getOptions().sheets.epsilon, 0.05F);
+  EXPECT_EQ(estimation.getOptions().orientation.automatic.alpha, 0.1F);
+  EXPECT_EQ(estimation.getOptions().orientation.automatic.beta, 0.2F);
+  EXPECT_EQ(estimation.getOptions().orientation.automatic.epsilon, 0.05F);
 }
 
 }  // namespace

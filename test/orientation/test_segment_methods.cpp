@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026, the segorient authors
 #include <gtest/gtest.h>
-#include <segorient/orientation/segment_methods.h>
 
 #include <cmath>
 #include <numeric>
 #include <string>
 #include <vector>
 
+#include "orientation/paper/combination.h"
 #include "segment_fixture.h"
 
 namespace segorient {

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026, the segorient authors
 #include <gtest/gtest.h>
-#include <segorient/orientation/segment_relations.h>
-#include <segorient/orientation/triangulated_boundary.h>
 #include <segorient/surface/segment_mesh.h>
 
 #include <cmath>
 #include <vector>
 
+#include "orientation/paper/segment_relations.h"
+#include "orientation/paper/triangulated_boundary.h"
 #include "segment_fixture.h"
 
 namespace segorient {

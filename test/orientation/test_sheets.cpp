@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026, the segorient authors
-// Sheets: normals, denoising, segments and the final filter on thin walls, edges and noise.
-#include <gtest/gtest.h>
-#include <segorient/features/sheet_denoise.h>
-#include <segorient/orientation/sheet_filter.h>
-
+// Sheets: normals, denoising, segments and the final filter on thin walls, edges and noise.#include
+// <gtest/gtest.h>
 #include <array>
 #include <random>
 
+#include "features/sheet_denoise.h"
+#include "orientation/automatic/sheet_filter.h"
 #include "sheet_fixture.h"
 
 namespace segorient::test {

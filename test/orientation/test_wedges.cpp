@@ -1,14 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026, the segorient authors
-// The final filter where two faces meet at a narrow angle.
-#include <gtest/gtest.h>
-#include <segorient/orientation/sheet_filter.h>
+// The final filter where two faces meet at a narrow angle.#include <gtest/gtest.h>
 
 #include <array>
 #include <cstdlib>
 #include <functional>
 #include <random>
 
+#include "orientation/automatic/sheet_filter.h"
 #include "sheet_fixture.h"
 
 namespace segorient::test {

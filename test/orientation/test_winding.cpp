@@ -1,17 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026, the segorient authors
-// Winding numbers of spheres, components inside one another, and the sensor's place.
-#include <gtest/gtest.h>
-#include <segorient/common/compact_cloud.h>
-#include <segorient/orientation/auto_orientation.h>
-#include <segorient/orientation/auto_viewpoint.h>
-#include <segorient/orientation/winding_components.h>
-#include <segorient/orientation/winding_number.h>
-
+// Winding numbers of spheres, components inside one another, and the sensor's place.#include
+// <gtest/gtest.h>
 #include <algorithm>
 #include <limits>
 #include <numeric>
 
+#include "common/compact_cloud.h"
+#include "orientation/automatic/orient_sheets.h"
+#include "orientation/sensors/viewpoint_fit.h"
+#include "orientation/winding/winding_components.h"
+#include "orientation/winding/winding_number.h"
 #include "sheet_fixture.h"
 
 namespace segorient::test {
@@ -280,7 +279,7 @@ TEST(LooseParts, AreFoundByTheirBorders) {
   const Neighborhoods table = neighborsOf(bands.ball.xyz);
   segmentation.segments.resize(4);  // the last one has no points
   for (const bool by_winding : {false, true}) {
-    AutoOrientationOptions options;
+    AutomaticOptions options;
     options.turn_loose_parts = by_winding;
     const AutoOrientation out =
         orientSheets(viewOf(bands.ball.xyz), table, field, segmentation, options);
@@ -319,7 +318,7 @@ TEST(LooseParts, MayBeTheLargest) {
                          reliable.data()};
   const Neighborhoods table = neighborsOf(ball.xyz);
   for (const bool by_winding : {false, true}) {
-    AutoOrientationOptions options;
+    AutomaticOptions options;
     options.turn_loose_parts = by_winding;
     const AutoOrientation out = orientSheets(viewOf(ball.xyz), table, field, segmentation, options);
     for (std::size_t s = 0; s < 4; ++s) {
@@ -346,7 +345,7 @@ struct Scene {
     segmentation.signs.push_back(1);
     ++segmentation.segments[static_cast<std::size_t>(label)].size;
   }
-  AutoOrientation orient(float step, const AutoOrientationOptions& options = {}) const {
+  AutoOrientation orient(float step, const AutomaticOptions& options = {}) const {
     const std::size_t n = segmentation.labels.size();
     const std::vector<float> spacing(n, step);
     const std::vector<float> above(n, std::numeric_limits<float>::max());
@@ -472,7 +471,7 @@ TEST(Viewpoint, TurnsWhatNothingCouldHaveBeenSeenFrom) {
     scene.add(label, label == 0, {x, y, z}, {s * x, s * y, s * z});
   }
   for (const bool guess : {false, true}) {
-    AutoOrientationOptions options;
+    AutomaticOptions options;
     options.infer_viewpoint = guess;
     const AutoOrientation out = scene.orient(0.016F, options);
     const std::int8_t sign = out.result.segments[0].sign;

@@ -1,11 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026, the segorient authors
-// Normals from the winding-number field: against its definition, and where it is to help.
-#include <gtest/gtest.h>
-#include <segorient/common/compact_cloud.h>
-#include <segorient/orientation/pipeline.h>
-#include <segorient/orientation/winding_normals.h>
-#include <segorient/orientation/winding_number.h>
+// Normals from the winding-number field: against its definition, and where it is to help.#include
+// <gtest/gtest.h>#include <segorient/orientation/pipeline.h>
 
 #include <algorithm>
 #include <cmath>
@@ -13,6 +9,9 @@
 #include <random>
 #include <vector>
 
+#include "common/compact_cloud.h"
+#include "orientation/winding/winding_normals.h"
+#include "orientation/winding/winding_number.h"
 #include "sheet_fixture.h"
 
 namespace segorient::test {
@@ -91,7 +90,7 @@ TEST(WindingNormals, AreWorthTheirTimeAtAcuteEdges) {
   for (const double sigma : {0.3, 0.6}) {
     const LabelledCloud cloud = sample("roof", roof(), 12000, 7, sigma);
     PipelineOptions without;
-    without.winding_normals = false;
+    without.orientation.automatic.winding_normals = false;
     const auto wrong = [&](const PipelineOptions& options) {
       const OrientedCloud oriented = orientCloud(viewOf(cloud.xyz), nullptr, options);
       return 1 - shareOutward(oriented.normals, cloud.normals);

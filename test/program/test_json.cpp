@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026, the segorient authors
 #include <gtest/gtest.h>
-
 #include <boost/property_tree/json_parser.hpp>
+
 #include <limits>
 #include <sstream>
 

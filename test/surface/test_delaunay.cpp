@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026, the segorient authors
 #include <gtest/gtest.h>
-#include <segorient/surface/delaunay.h>
 
 #include <algorithm>
 #include <cmath>
@@ -9,6 +8,8 @@
 #include <set>
 #include <string>
 #include <utility>
+
+#include "surface/delaunay.h"
 
 namespace segorient::test {
 namespace {

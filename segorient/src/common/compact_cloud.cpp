@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026, the segorient authors
-#include <segorient/common/compact_cloud.h>
+#include "common/compact_cloud.h"
+
 #include <segorient/common/threads.h>
 
 #include <algorithm>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026, the segorient authors
-#include <segorient/common/instruction_set.h>
+#include "common/instruction_set.h"
 
 #include <algorithm>
 #include <cstdlib>

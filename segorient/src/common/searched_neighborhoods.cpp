@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026, the segorient authors
-#include <segorient/common/searched_neighborhoods.h>
+#include "common/searched_neighborhoods.h"
 
 #include <algorithm>
 #include <cstddef>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026, the segorient authors
-#include <segorient/features/automatic_normals.h>
+#include "features/automatic_normals.h"
 
 #include <algorithm>
 #include <array>
@@ -10,7 +10,7 @@
 #include <numeric>
 #include <sstream>
 
-#include "cloud_noise.h"
+#include "features/cloud_noise.h"
 
 namespace segorient {
 namespace {

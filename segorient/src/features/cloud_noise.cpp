@@ -1,14 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026, the segorient authors
-#include "cloud_noise.h"
-
-#include <segorient/common/median.h>
+#include "features/cloud_noise.h"
 
 #include <algorithm>
 #include <cmath>
 #include <utility>
 
-#include "local_fit_job.h"
+#include "common/median.h"
+#include "features/local_fit_job.h"
 
 namespace segorient::detail {
 namespace {

@@ -3,15 +3,15 @@
 //
 // The estimators for one instruction set; see lanes.inl.
 
-#include "lanes.inl"
+#include "features/lanes.inl"
 
-#include "plane_lanes.inl"
+#include "features/plane_lanes.inl"
 
-#include "surface_lanes.inl"
+#include "features/surface_lanes.inl"
 
-#include "cubic_lanes.inl"
+#include "features/cubic_lanes.inl"
 
-#include "triangulation_lanes.inl"
+#include "features/triangulation_lanes.inl"
 
 inline void storeNormals(const LocalFitJob& job, const std::size_t* rows, std::size_t used,
                          const Lanes3& normal, Lanes curvature) {

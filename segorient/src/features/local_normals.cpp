@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026, the segorient authors
-#include <segorient/common/instruction_set.h>
 #include <segorient/common/threads.h>
 #include <segorient/features/local_normals.h>
+#include "common/instruction_set.h"
 
-#include "../common/kernel_macros.h"
-#include "local_fit_job.h"
-#include "surface_fit.h"
+#include "common/kernel_macros.h"
+#include "features/local_fit_job.h"
+#include "features/surface_fit.h"
 
 #if defined(__SSE2__)
 #include <immintrin.h>
@@ -30,7 +30,7 @@ namespace detail {
 namespace portable {
 namespace {
 #define SEGORIENT_LANES 4
-#include "local_kernels.inl"
+#include "features/local_kernels.inl"
 #undef SEGORIENT_LANES
 }  // namespace
 }  // namespace portable
@@ -46,7 +46,7 @@ namespace {
 namespace avx2 {
 namespace {
 #define SEGORIENT_LANES 8
-#include "local_kernels.inl"
+#include "features/local_kernels.inl"
 #undef SEGORIENT_LANES
 }  // namespace
 }  // namespace avx2
@@ -61,7 +61,7 @@ namespace {
 namespace avx512 {
 namespace {
 #define SEGORIENT_LANES 16
-#include "local_kernels.inl"
+#include "features/local_kernels.inl"
 #undef SEGORIENT_LANES
 }  // namespace
 }  // namespace avx512

@@ -6,9 +6,9 @@
 #include <map>
 #include <utility>
 
-#include "point_set.h"
-#include "recompute_scene.h"
-#include "symmetric_eigen.h"
+#include "features/point_set.h"
+#include "features/recompute_scene.h"
+#include "features/symmetric_eigen.h"
 
 namespace segorient::detail {
 namespace {

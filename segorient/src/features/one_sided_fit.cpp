@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026, the segorient authors
-#include "one_sided_fit.h"
+#include "features/one_sided_fit.h"
 
 #include <algorithm>
 #include <cmath>
 
-#include "symmetric_eigen.h"
+#include "features/symmetric_eigen.h"
 
 namespace segorient::detail {
 namespace {

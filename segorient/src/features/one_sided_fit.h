@@ -5,7 +5,7 @@
 #include <array>
 #include <cstddef>
 
-#include "cholesky.h"
+#include "features/cholesky.h"
 
 namespace segorient::detail {
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026, the segorient authors
-#include "one_sided_patch.h"
+#include "features/one_sided_patch.h"
 
 #include <algorithm>
 

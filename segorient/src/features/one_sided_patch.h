@@ -6,9 +6,9 @@
 #include <cstdint>
 #include <vector>
 
-#include "one_sided_fit.h"
-#include "point_set.h"
-#include "recompute_scene.h"
+#include "features/one_sided_fit.h"
+#include "features/point_set.h"
+#include "features/recompute_scene.h"
 
 namespace segorient::detail {
 

@@ -6,8 +6,8 @@
 #include <map>
 #include <utility>
 
-#include "one_sided_patch.h"
-#include "recompute_scene.h"
+#include "features/one_sided_patch.h"
+#include "features/recompute_scene.h"
 
 namespace segorient::detail {
 namespace {

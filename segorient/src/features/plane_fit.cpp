@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026, the segorient authors
-#include "local_fit_job.h"
-#include "symmetric_eigen.h"
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
+
+#include "features/local_fit_job.h"
+#include "features/symmetric_eigen.h"
 
 namespace segorient::detail {
 

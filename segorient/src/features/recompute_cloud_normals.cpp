@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026, the segorient authors
-#include <segorient/common/compact_cloud.h>
 #include <segorient/features/recompute_normals.h>
-#include <segorient/search/median_hash_index.h>
 
 #include <algorithm>
+
+#include "search/prepared_cloud.h"
 
 namespace segorient {
 namespace {
@@ -50,37 +50,24 @@ RecomputationReport recomputeCloudNormals(const PointView& points,
     if (!refersTo(*neighborhoods, points.size)) return {};
     return repeat(points, *neighborhoods, regular, options, rounds, labels, normals);
   }
-  const CompactCloud cloud = compactCloud(points, &indices, options.threads);
-  search::MedianHashIndex index;
-  search::MedianHashIndex::Options search_options;
-  search_options.threads = options.threads;
-  index.build(cloud.view(), nullptr, search_options);
-  Neighborhoods table;
-  // More than there are would only cost memory.
-  const std::size_t wanted = static_cast<std::size_t>(std::max(options.k, 1)) + 1;
-  index.nearestKAll(static_cast<int>(std::min(wanted, cloud.size())), table, false);
-
-  const auto sourceOf = [&](std::size_t row) {
-    return static_cast<std::size_t>(indices[static_cast<std::size_t>(cloud.source[row])]);
-  };
-  std::vector<std::int32_t> compact_labels(cloud.size());
-  std::vector<float> compact_normals(4 * cloud.size());
-  for (std::size_t row = 0; row < cloud.size(); ++row) {
-    compact_labels[row] = labels[sourceOf(row)];
-    std::copy_n(&normals[4 * sourceOf(row)], 4, &compact_normals[4 * row]);
+  PreparedCloud cloud(points, &indices, options.threads);
+  cloud.findNeighbors(std::max(options.k, 1), false);
+  std::vector<std::int32_t> point_labels(cloud.size());
+  std::vector<float> point_normals(4 * cloud.size());
+  for (std::size_t i = 0; i < cloud.size(); ++i) {
+    point_labels[i] = labels[cloud.rowOf(i)];
+    std::copy_n(&normals[4 * cloud.rowOf(i)], 4, &point_normals[4 * i]);
   }
-  const std::vector<std::int32_t> old_labels = compact_labels;
-  const std::vector<float> old_normals = compact_normals;
-  const RecomputationReport report =
-      repeat(cloud.view(), table, regular, options, rounds, compact_labels, compact_normals);
-  for (std::size_t i = 0; i < indices.size(); ++i) {
-    if (cloud.row_of[i] < 0) continue;
-    const auto row = static_cast<std::size_t>(cloud.row_of[i]);
-    const auto point = static_cast<std::size_t>(indices[i]);
-    if (compact_labels[row] != old_labels[row]) labels[point] = compact_labels[row];
-    if (!std::equal(&compact_normals[4 * row], &compact_normals[4 * row] + 3,
-                    &old_normals[4 * row])) {
-      std::copy_n(&compact_normals[4 * row], 3, &normals[4 * point]);
+  const std::vector<std::int32_t> old_labels = point_labels;
+  const std::vector<float> old_normals = point_normals;
+  const RecomputationReport report = repeat(cloud.points(), cloud.neighborhoods(), regular, options,
+                                            rounds, point_labels, point_normals);
+  for (std::size_t row = 0; row < cloud.rows(); ++row) {
+    if (cloud.pointOf(row) < 0) continue;
+    const auto i = static_cast<std::size_t>(cloud.pointOf(row));
+    if (point_labels[i] != old_labels[i]) labels[row] = point_labels[i];
+    if (!std::equal(&point_normals[4 * i], &point_normals[4 * i] + 3, &old_normals[4 * i])) {
+      std::copy_n(&point_normals[4 * i], 3, &normals[4 * row]);
     }
   }
   return report;

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cstddef>
 
-#include "recompute_scene.h"
+#include "features/recompute_scene.h"
 
 namespace segorient {
 

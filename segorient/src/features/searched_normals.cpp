@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026, the segorient authors
-#include <segorient/common/compact_cloud.h>
 #include <segorient/common/threads.h>
 #include <segorient/features/searched_normals.h>
-#include <segorient/search/median_hash_index.h>
 
 #include <algorithm>
 #include <cmath>
 #include <iterator>
 #include <limits>
+
+#include "search/prepared_cloud.h"
 
 namespace segorient {
 namespace {
@@ -73,27 +73,43 @@ class TableBuilder {
   Neighborhoods table_;
 };
 
-/// All normals from the neighbours among the distinct points themselves.
-void estimateAll(const CompactCloud& cloud, const search::MedianHashIndex& index, int k,
-                 const pcl::Indices& indices, const LocalNormalOptions& options, float* normals,
-                 LocalCurvature* curvatures) {
-  Neighborhoods table;
-  index.nearestKAll(k, table, false);
-  std::vector<float> compact(4 * cloud.size());
-  std::vector<LocalCurvature> compact_curvatures(curvatures ? cloud.size() : 0);
-  estimateNormals(cloud.view(), cloud.view(), table, options, compact.data(),
-                  curvatures ? compact_curvatures.data() : nullptr);
+/// Curvatures are over lengths.
+void restoreUnit(float unit, std::size_t count, LocalCurvature* curvatures) {
+  for (std::size_t i = 0; curvatures != nullptr && i < count; ++i) {
+    curvatures[i].pc1 /= unit;
+    curvatures[i].pc2 /= unit;
+  }
+}
+
+/// All normals from the neighbours among the points of a cloud themselves.
+/// \param k the point itself counted
+void estimateAll(PreparedCloud& cloud, int k, const pcl::Indices& indices,
+                 const LocalNormalOptions& options, float* normals, LocalCurvature* curvatures) {
+  cloud.findNeighbors(k - 1, false);
+  std::vector<float> of_points(4 * cloud.size());
+  std::vector<LocalCurvature> point_curvatures(curvatures ? cloud.size() : 0);
+  estimateNormals(cloud.points(), cloud.points(), cloud.neighborhoods(), options, of_points.data(),
+                  curvatures ? point_curvatures.data() : nullptr);
   for (std::size_t i = 0; i < indices.size(); ++i) {
-    const pcl::index_t row = isRow(indices[i], cloud.row_of.size())
-                                 ? cloud.row_of[static_cast<std::size_t>(indices[i])]
-                                 : -1;
-    if (row < 0) {
+    const pcl::index_t point =
+        isRow(indices[i], cloud.rows()) ? cloud.pointOf(static_cast<std::size_t>(indices[i])) : -1;
+    if (point < 0) {
       setUndefined(normals + 4 * i, curvatures ? curvatures + i : nullptr);
       continue;
     }
-    std::copy_n(&compact[4 * static_cast<std::size_t>(row)], 4, normals + 4 * i);
-    if (curvatures) curvatures[i] = compact_curvatures[static_cast<std::size_t>(row)];
+    std::copy_n(&of_points[4 * static_cast<std::size_t>(point)], 4, normals + 4 * i);
+    if (curvatures) curvatures[i] = point_curvatures[static_cast<std::size_t>(point)];
   }
+  restoreUnit(cloud.unit(), indices.size(), curvatures);
+}
+
+/// Rows in the unit of a cloud.
+std::vector<float> inUnitOf(const PreparedCloud& cloud, const PointView& points) {
+  std::vector<float> out(4 * points.size, 0.F);
+  for (std::size_t i = 0; i < points.size; ++i) {
+    for (std::size_t a = 0; a < 3; ++a) out[4 * i + a] = points[i][a] / cloud.unit();
+  }
+  return out;
 }
 
 }  // namespace
@@ -102,27 +118,29 @@ void searchAndEstimateNormals(const PointView& input, const pcl::Indices& indice
                               const PointView* surface, const NeighborhoodSize& size,
                               const LocalNormalOptions& options, float* normals,
                               LocalCurvature* curvatures) {
-  const CompactCloud cloud = compactCloud(surface ? *surface : input, nullptr, options.threads);
-  search::MedianHashIndex index;
-  search::MedianHashIndex::Options search_options;
-  search_options.threads = options.threads;
-  index.build(cloud.view(), nullptr, search_options);
+  PreparedCloud cloud(surface ? *surface : input, nullptr, options.threads);
   const int k =
-      static_cast<int>(std::min(static_cast<std::size_t>(std::max(size.k, 0)), index.size()));
+      static_cast<int>(std::min(static_cast<std::size_t>(std::max(size.k, 0)), cloud.size()));
 
   // Searching for all points at once costs a fraction of as many single queries.
-  if (!surface && size.k > 0 && indices.size() > input.size / 4) {
-    estimateAll(cloud, index, k, indices, options, normals, curvatures);
+  if (!surface && k > 0 && indices.size() > input.size / 4) {
+    estimateAll(cloud, k, indices, options, normals, curvatures);
     return;
   }
+  const search::MedianHashIndex& index = cloud.index();
+  const double radius = size.radius / static_cast<double>(cloud.unit());
+  const std::vector<float> queries = inUnitOf(cloud, input);
+  const PointView query_view{queries.data(), 4, input.size};
   const NeighborSearch search = [&](pcl::index_t i, pcl::Indices& found, std::vector<float>& sqr) {
-    const float* query = input[static_cast<std::size_t>(i)];
-    if (size.k <= 0) return index.radius(query, size.radius, found, sqr, 0, true);
+    const float* query = query_view[static_cast<std::size_t>(i)];
+    if (size.k <= 0) return index.radius(query, radius, found, sqr, 0, true);
     found.resize(static_cast<std::size_t>(k));
     sqr.resize(static_cast<std::size_t>(k));
     return index.nearestK(query, k, found.data(), sqr.data());
   };
-  searchAndEstimateNormals(input, indices, cloud.view(), search, options, normals, curvatures);
+  searchAndEstimateNormals(query_view, indices, cloud.points(), search, options, normals,
+                           curvatures);
+  restoreUnit(cloud.unit(), indices.size(), curvatures);
 }
 
 void searchAndEstimateNormals(const PointView& input, const pcl::Indices& indices,

@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026, the segorient authors
+#include "features/sheet_denoise.h"
+
 #include <segorient/common/threads.h>
-#include <segorient/features/sheet_denoise.h>
 
 #include <algorithm>
 #include <cstddef>
 
-#include "sheet_fit.h"
+#include "features/sheet_fit.h"
 
 namespace segorient {
 

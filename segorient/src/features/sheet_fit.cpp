@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026, the segorient authors
-#include "sheet_fit.h"
+#include "features/sheet_fit.h"
 
 #include <Eigen/Eigenvalues>
+
 #include <algorithm>
 #include <cmath>
 

@@ -4,12 +4,13 @@
 
 #include <segorient/common/neighborhoods.h>
 #include <segorient/common/point_view.h>
-#include <segorient/features/sheet_normals.h>
-
 #include <Eigen/Core>
+
 #include <array>
 #include <cstddef>
 #include <limits>
+
+#include "features/sheet_normals.h"
 
 namespace segorient::detail {
 

@@ -1,15 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026, the segorient authors
-#include <segorient/common/median.h>
+#include "features/sheet_normals.h"
+
 #include <segorient/common/threads.h>
-#include <segorient/features/sheet_normals.h>
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <utility>
 
-#include "sheet_fit.h"
+#include "common/median.h"
+#include "features/sheet_fit.h"
 
 namespace segorient {
 namespace {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026, the segorient authors
-#include "surface_fit.h"
+#include "features/surface_fit.h"
 
 #include <cmath>
 #include <limits>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026, the segorient authors
-#include "symmetric_eigen.h"
+#include "features/symmetric_eigen.h"
 
 #include <algorithm>
 #include <cmath>

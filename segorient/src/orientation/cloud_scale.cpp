@@ -1,17 +1,18 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026, the segorient authors
-#include "cloud_scale.h"
-
-#include <segorient/common/median.h>
+#include "orientation/cloud_scale.h"
 
 #include <Eigen/Core>
 #include <Eigen/Eigenvalues>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
 #include <utility>
 #include <vector>
+
+#include "common/median.h"
 
 namespace segorient {
 namespace {

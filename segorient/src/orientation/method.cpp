@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026, the segorient authors
 #include <segorient/orientation/method.h>
+#include <segorient/orientation/orientation_options.h>
 
 #include <array>
 
@@ -25,6 +26,18 @@ bool fromString(const std::string& name, OrientationMethod& method) {
     }
   }
   return false;
+}
+
+OrientationOptions paperOptions(OrientationMethod method) {
+  OrientationOptions options;
+  options.method = method;
+  options.angle = SegmentAngle::REFERENCE_NORMALS;
+  options.boundary = BoundaryTest::TRIANGULATED;
+  options.triangulation.critical_factor = 1.F;
+  options.triangulation.fill_gaps = false;
+  options.check_borders = false;
+  options.turn_outward = false;
+  return options;
 }
 
 }  // namespace segorient

@@ -1,17 +1,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026, the segorient authors
-#include <segorient/orientation/completion.h>
-#include <segorient/orientation/component_sign.h>
-#include <segorient/orientation/orient_segments.h>
-#include <segorient/orientation/point_tree.h>
+#include "orientation/orient_segments.h"
 
 #include <algorithm>
 #include <cmath>
 #include <utility>
 #include <vector>
 
-#include "auto_stages.h"
-#include "regular_segments.h"
+#include "orientation/automatic/orient_points.h"
+#include "orientation/paper/completion.h"
+#include "orientation/paper/hoppe_tree.h"
+#include "orientation/paper/outward_components.h"
+#include "orientation/paper/regular_segments.h"
 
 namespace segorient {
 namespace {
@@ -64,9 +64,8 @@ OrientationResult orientAutomatically(const PointView& points, const PointView& 
                                       const Neighborhoods& neighborhoods,
                                       const Segmentation& segmentation,
                                       const OrientationOptions& options, const PointHints& hints) {
-  PipelineOptions settings;
-  settings.threads = options.threads;
-  detail::AutoNormals found = detail::orientPoints(points, neighborhoods, settings, hints);
+  detail::AutoNormals found =
+      detail::orientPoints(points, neighborhoods, options.automatic, hints, options.threads);
   OrientationResult result;
   result.components = std::move(found.orientation.result.components);
   result.point_signs.assign(points.size, 0);

@@ -1,17 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026, the segorient authors
-#include <segorient/common/compact_cloud.h>
-#include <segorient/common/neighborhoods.h>
-#include <segorient/common/unit_vector.h>
-#include <segorient/features/sheet_normals.h>
 #include <segorient/orientation/oriented_segmentation.h>
-#include <segorient/search/median_hash_index.h>
 
 #include <algorithm>
-#include <cmath>
+#include <cstdint>
 #include <vector>
 
-#include "segment_members.h"
+#include "common/unit_vector.h"
+#include "features/sheet_normals.h"
+#include "orientation/orient_segments.h"
+#include "search/prepared_cloud.h"
+#include "segmentation/segmentation_rows.h"
 
 namespace segorient {
 namespace {
@@ -20,24 +19,15 @@ int defaultNeighbors(const OrientationOptions& options) {
   return options.method == OrientationMethod::AUTO ? kSheetNeighbors : 12;
 }
 
-Neighborhoods findNeighbors(const CompactCloud& cloud, int wanted, const PointSearch& search,
-                            int threads) {
+void findNeighbors(PreparedCloud& cloud, int wanted, const PointSearch& search) {
   // More neighbours cost time and memory and say nothing more about who borders whom.
-  constexpr std::size_t kMostNeighbors = 128;
-  const std::size_t most = std::max<std::size_t>(1, cloud.size()) - 1;
-  const std::size_t neighbors = std::min({kMostNeighbors, most, static_cast<std::size_t>(wanted)});
-  const int k = static_cast<int>(neighbors) + 1;
-  Neighborhoods out;
+  constexpr int kMostNeighbors = 128;
+  const int k = std::min(kMostNeighbors, wanted);
   if (search) {
-    searchNeighborhoods(cloud, search, k, out);
-    return out;
+    cloud.findNeighbors(k, search);
+  } else {
+    cloud.findNeighbors(k);
   }
-  search::MedianHashIndex index;
-  search::MedianHashIndex::Options search_options;
-  search_options.threads = threads;
-  index.build(cloud.view(), nullptr, search_options);
-  index.nearestKAll(k, out);
-  return out;
 }
 
 bool labelsInRange(const Segmentation& segmentation, std::size_t rows) {
@@ -47,73 +37,25 @@ bool labelsInRange(const Segmentation& segmentation, std::size_t rows) {
                      [&](std::int32_t label) { return label < segments; });
 }
 
-std::vector<float> compactNormals(const CompactCloud& cloud, const NormalView& normals) {
-  std::vector<float> out(4 * cloud.size());
-  for (std::size_t i = 0; i < cloud.size(); ++i) {
-    const float* normal = normals[static_cast<std::size_t>(cloud.source[i])];
-    unitVector(normal, &out[4 * i]);
-    out[4 * i + 3] = normal[normals.curvature];
-  }
-  return out;
-}
-
-Segmentation compactSegmentation(const CompactCloud& cloud, const std::vector<float>& normals,
-                                 const Segmentation& segmentation) {
-  Segmentation out;
-  out.segments = segmentation.segments;
-  out.labels.resize(cloud.size());
-  out.signs.resize(cloud.size());
-  for (std::size_t i = 0; i < cloud.size(); ++i) {
-    const auto row = static_cast<std::size_t>(cloud.source[i]);
-    out.labels[i] = std::isfinite(normals[4 * i]) ? std::max(segmentation.labels[row], -1) : -1;
-    out.signs[i] = segmentation.signs[row] < 0 ? std::int8_t{-1} : std::int8_t{1};
-  }
-  collectMembers(out);
-  return out;
-}
-
 // Results of the distinct points for all rows: a repeated point's normal may have either sign, so
 // its sign is the one that turns it like the first.
-OrientationResult scatter(const CompactCloud& cloud, const PointView& normals,
-                          const OrientationResult& compact) {
+OrientationResult scatter(const PreparedCloud& cloud, const PointView& normals,
+                          const OrientationResult& of_points) {
   OrientationResult out;
-  out.segments = compact.segments;
-  out.components = compact.components;
-  const std::size_t rows = cloud.row_of.size();
-  out.point_signs.assign(rows, 0);
-  out.point_confidences.assign(rows, 0.F);
-  out.point_components.assign(rows, -1);
-  for (std::size_t row = 0; row < rows; ++row) {
-    if (cloud.row_of[row] < 0 || !isFinite(normals[row])) continue;
-    const auto i = static_cast<std::size_t>(cloud.row_of[row]);
-    const float* first = normals[static_cast<std::size_t>(cloud.source[i])];
-    const float* own = normals[row];
-    const bool turned = first[0] * own[0] + first[1] * own[1] + first[2] * own[2] < 0.F;
-    out.point_signs[row] =
-        static_cast<std::int8_t>(turned ? -compact.point_signs[i] : compact.point_signs[i]);
-    out.point_confidences[row] = compact.point_confidences[i];
-    out.point_components[row] = compact.point_components[i];
+  out.segments = of_points.segments;
+  out.components = of_points.components;
+  out.point_signs = cloud.scatter(of_points.point_signs, 1, std::int8_t{0});
+  out.point_confidences = cloud.scatter(of_points.point_confidences, 1, 0.F);
+  out.point_components = cloud.scatter(of_points.point_components, 1, std::int32_t{-1});
+  for (std::size_t row = 0; row < cloud.rows(); ++row) {
+    if (!isFinite(normals[row])) {
+      out.point_signs[row] = 0;
+      out.point_confidences[row] = 0.F;
+      out.point_components[row] = -1;
+    } else if (segmentation::isTurned(cloud, normals, row)) {
+      out.point_signs[row] = static_cast<std::int8_t>(-out.point_signs[row]);
+    }
   }
-  return out;
-}
-
-Segmentation scatter(const CompactCloud& cloud, const PointView& normals,
-                     const Segmentation& compact) {
-  Segmentation out;
-  out.segments = compact.segments;
-  const std::size_t rows = cloud.row_of.size();
-  out.labels.assign(rows, -1);
-  out.signs.assign(rows, 0);
-  for (std::size_t row = 0; row < rows; ++row) {
-    if (cloud.row_of[row] < 0) continue;
-    const auto i = static_cast<std::size_t>(cloud.row_of[row]);
-    const float* first = normals[static_cast<std::size_t>(cloud.source[i])];
-    const float* own = normals[row];
-    const bool turned = first[0] * own[0] + first[1] * own[1] + first[2] * own[2] < 0.F;
-    out.labels[row] = compact.labels[i];
-    out.signs[row] = static_cast<std::int8_t>(turned ? -compact.signs[i] : compact.signs[i]);
-  }
-  collectMembers(out);
   return out;
 }
 
@@ -143,24 +85,32 @@ OrientedSegmentation orientSegmentation(const PointView& points, const NormalVie
   if (normals.size != points.size) return out;
   if (segmentation != nullptr && !labelsInRange(*segmentation, points.size)) return out;
 
-  const CompactCloud cloud = compactCloud(points, nullptr, options.threads);
-  const std::vector<float> distinct_normals = compactNormals(cloud, normals);
-  const NormalView normal_view{distinct_normals.data(), 4, cloud.size()};
-  const Neighborhoods neighborhoods =
-      findNeighbors(cloud, k > 0 ? k : defaultNeighbors(options), search, options.threads);
+  PreparedCloud cloud(points, nullptr, options.threads);
+  std::vector<float> point_normals = segmentation::gatherNormals(cloud, normals);
+  for (std::size_t i = 0; i < cloud.size(); ++i) {
+    unitVector(&point_normals[4 * i], &point_normals[4 * i]);
+  }
+  const NormalView normal_view{point_normals.data(), 4, cloud.size()};
+  findNeighbors(cloud, k > 0 ? k : defaultNeighbors(options), search);
+  const Neighborhoods& neighborhoods = cloud.neighborhoods();
 
-  const Segmentation distinct =
+  const Segmentation of_points =
       segmentation != nullptr
-          ? compactSegmentation(cloud, distinct_normals, *segmentation)
-          : segmentByNormals(cloud.view(), normal_view, neighborhoods, segmentation_options);
+          ? segmentation::gather(cloud, point_normals, *segmentation)
+          : segmentByNormals(cloud.points(), normal_view, neighborhoods, segmentation_options);
   SegmentGraph graph;  // the default method does without
-  if (options.method != OrientationMethod::AUTO) graph = buildSegmentGraph(distinct, neighborhoods);
+  if (options.method != OrientationMethod::AUTO)
+    graph = buildSegmentGraph(of_points, neighborhoods);
   PointHints hints;
-  if (options.hints) hints = resolveHints(*options.hints, cloud, nullptr, options.threads);
+  if (options.hints) hints = resolveHints(*options.hints, cloud);
   out.orientation = scatter(
       cloud, normals,
-      orientSegments(cloud.view(), normal_view, neighborhoods, distinct, graph, options, hints));
-  out.segmentation = segmentation != nullptr ? *segmentation : scatter(cloud, normals, distinct);
+      orientSegments(cloud.points(), normal_view, neighborhoods, of_points, graph, options, hints));
+  std::vector<std::int32_t> rank;
+  out.segmentation = segmentation != nullptr
+                         ? *segmentation
+                         : segmentation::scatter(cloud, of_points, &normals, &rank);
+  segmentation::reorder(rank, out.orientation.segments);
   invertTurned(out.orientation.segments, out.segmentation);
   return out;
 }

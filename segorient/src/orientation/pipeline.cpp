@@ -1,153 +1,88 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026, the segorient authors
-#include <segorient/common/compact_cloud.h>
-#include <segorient/features/automatic_normals.h>
 #include <segorient/orientation/pipeline.h>
-#include <segorient/search/median_hash_index.h>
-#include <sys/resource.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
-#include <cstring>
+#include <cstdint>
 #include <iomanip>
 #include <limits>
 #include <sstream>
+#include <utility>
 
-#include "auto_stages.h"
-#include "cloud_scale.h"
-#include "segment_members.h"
-#include "unoriented_normals.h"
+#include "common/peak_memory.h"
+#include "features/automatic_normals.h"
+#include "features/sheet_normals.h"
+#include "orientation/automatic/stages.h"
+#include "orientation/cloud_scale.h"
+#include "orientation/orient_segments.h"
+#include "orientation/sensors/point_hints.h"
+#include "orientation/stage_clock.h"
+#include "orientation/surface_stages.h"
+#include "segmentation/segmentation_rows.h"
 
 namespace segorient {
 namespace {
 
 constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
 
-// Says which stage is running, and keeps the time of each. A stage may be taken up again.
-class Stages {
- public:
-  Stages(const PipelineProgress& progress, PipelineReport& report)
-      : progress_(progress), report_(report) {}
-
-  // Also called as a stage goes on.
-  void begin(const char* stage, double fraction) {
-    if (stage_ != nullptr && std::strcmp(stage_, stage) == 0) {
-      if (progress_) progress_(stage, fraction);
-      return;
-    }
-    end();
-    stage_ = stage;
-    start_ = Clock::now();
-    if (progress_) progress_(stage, fraction);
-  }
-
-  void end() {
-    if (stage_ == nullptr) return;
-    const double seconds = std::chrono::duration<double>(Clock::now() - start_).count();
-    const auto same = std::find_if(report_.stages.begin(), report_.stages.end(),
-                                   [this](const StageTime& s) { return s.stage == stage_; });
-    if (same == report_.stages.end()) {
-      report_.stages.push_back({stage_, seconds});
-    } else {
-      same->seconds += seconds;
-    }
-    report_.seconds += seconds;
-    stage_ = nullptr;
-  }
-
- private:
-  using Clock = std::chrono::steady_clock;
-  const PipelineProgress& progress_;
-  PipelineReport& report_;
-  const char* stage_ = nullptr;
-  Clock::time_point start_;
-};
-
-// The distinct points with all that the stages find out about them.
+// What the stages find out about the points of a cloud.
 struct Working {
-  CompactCloud cloud;
-  search::MedianHashIndex index;
-  Neighborhoods neighborhoods;
-  std::vector<float> normals;
-  Segmentation segmentation;
+  detail::SurfaceStages surface;
   OrientationResult orientation;
-
-  NormalView normalView() const { return {normals.data(), 4, cloud.size()}; }
 };
 
-std::size_t peakMemory() {
-  rusage usage{};
-  if (getrusage(RUSAGE_SELF, &usage) != 0) return 0;
-  return static_cast<std::size_t>(usage.ru_maxrss) * 1024;
-}
-
-void findNeighbors(const PipelineOptions& options, Working& work, PipelineReport& report) {
-  search::MedianHashIndex::Options search_options;
-  search_options.threads = options.threads;
-  work.index.build(work.cloud.view(), nullptr, search_options);
-  const CloudScale scale = measureScale(work.cloud.view(), work.index);
+// The paper's stages (2.1 to 2.3.1), and its methods of orientation (3).
+void runPaper(const PipelineOptions& options, detail::StageClock& clock, Working& work,
+              PipelineReport& report) {
+  detail::SurfaceStages& surface = work.surface;
+  const CloudScale scale = measureScale(surface.cloud.points(), surface.cloud.index());
   report.spacing = scale.spacing;
   report.noise = scale.noise;
-  const int wanted = options.k > 0 ? options.k : neighborsForNoise(scale.noise);
-  // More than there are would only cost memory.
-  const std::size_t others = work.cloud.size() > 0 ? work.cloud.size() - 1 : 0;
-  report.k = static_cast<int>(std::min(static_cast<std::size_t>(wanted), others));
-  work.index.nearestKAll(report.k + 1, work.neighborhoods);
-}
-
-void findSegments(const PipelineOptions& options, Working& work) {
-  SegmentationOptions segmentation_options = options.segmentation;
-  segmentation_options.neighbors = 0;
-  segmentation_options.threads = options.threads;
+  surface.findNeighbors(options.k > 0 ? options.k : neighborsForNoise(scale.noise));
+  report.k = surface.k;
+  clock.begin("normals", 0.4);
+  surface.findNormals(options);
+  report.normals_chosen = surface.normals_chosen;
+  clock.begin("segmentation", 0.5);
+  SegmentationOptions cuts = options.segmentation;
+  cuts.neighbors = 0;
+  cuts.threads = options.threads;
   // A point of a thin part that is given to the other side's segment is turned over with it.
-  segmentation_options.settle_edges = false;
-  work.segmentation = segmentByNormals(work.cloud.view(), work.normalView(), work.neighborhoods,
-                                       segmentation_options);
-}
-
-// Normals near sharp edges anew from one side only, and the segments that follow from them.
-void recompute(const PipelineOptions& options, Working& work) {
-  RecomputationOptions recomputation = options.recomputation;
-  recomputation.estimator = options.normals.estimator;
-  recomputation.k = 0;
-  recomputation.threads = options.threads;
+  cuts.settle_edges = false;
+  surface.findSegments(cuts);
+  if (options.recomputations > 0) clock.begin("recomputation", 0.65);
   for (int round = 0; round < options.recomputations; ++round) {
-    std::vector<std::uint8_t> regular;
-    for (const Segment& segment : work.segmentation.segments) {
-      regular.push_back(segment.kind == SegmentKind::Regular ? 1 : 0);
-    }
-    std::vector<std::int32_t> labels = work.segmentation.labels;
-    recomputeNormals(work.cloud.view(), work.neighborhoods, regular, recomputation, labels,
-                     work.normals);
-    findSegments(options, work);
+    surface.recomputeNormals(options);
+    surface.findSegments(cuts);
   }
-}
-
-void findOrientation(const PipelineOptions& options, Working& work) {
-  OrientationOptions orientation_options = options.orientation;
-  orientation_options.threads = options.threads;
-  const SegmentGraph graph = buildSegmentGraph(work.segmentation, work.neighborhoods);
-  work.orientation = orientSegments(work.cloud.view(), work.normalView(), work.neighborhoods,
-                                    work.segmentation, graph, orientation_options);
+  clock.begin("orientation", 0.8);
+  OrientationOptions how = options.orientation;
+  how.threads = options.threads;
+  const Neighborhoods& neighborhoods = surface.cloud.neighborhoods();
+  const SegmentGraph graph = buildSegmentGraph(surface.segmentation, neighborhoods);
+  work.orientation = orientSegments(surface.cloud.points(), surface.normalView(), neighborhoods,
+                                    surface.segmentation, graph, how);
 }
 
 // Turns the distinct points' normals and segments as they were oriented. The normals' own signs now
 // say it all, so a point's sign in its segment is what is left: -1 where it disagrees with it.
 void applyOrientation(Working& work) {
   const OrientationResult& orientation = work.orientation;
-  for (std::size_t i = 0; i < work.cloud.size(); ++i) {
+  std::vector<float>& normals = work.surface.normals;
+  Segmentation& segmentation = work.surface.segmentation;
+  for (std::size_t i = 0; i < work.surface.cloud.size(); ++i) {
     const auto sign = static_cast<float>(orientation.point_signs[i]);
-    for (std::size_t a = 0; a < 3; ++a) work.normals[4 * i + a] *= sign == 0.F ? kNaN : sign;
-    if (sign == 0.F) work.normals[4 * i + 3] = kNaN;
-    const std::int32_t label = work.segmentation.labels[i];
+    for (std::size_t a = 0; a < 3; ++a) normals[4 * i + a] *= sign == 0.F ? kNaN : sign;
+    if (sign == 0.F) normals[4 * i + 3] = kNaN;
+    const std::int32_t label = segmentation.labels[i];
     if (label < 0) continue;
     const int segment_sign = orientation.segments[static_cast<std::size_t>(label)].sign;
-    work.segmentation.signs[i] = static_cast<std::int8_t>(
-        work.segmentation.signs[i] * orientation.point_signs[i] * segment_sign);
+    segmentation.signs[i] =
+        static_cast<std::int8_t>(segmentation.signs[i] * orientation.point_signs[i] * segment_sign);
   }
-  for (std::size_t s = 0; s < work.segmentation.segments.size(); ++s) {
-    for (float& c : work.segmentation.segments[s].reference_normal) {
+  for (std::size_t s = 0; s < segmentation.segments.size(); ++s) {
+    for (float& c : segmentation.segments[s].reference_normal) {
       c *= static_cast<float>(orientation.segments[s].sign);
     }
   }
@@ -165,11 +100,15 @@ std::string sheetChoice(const detail::AutoStages& stages) {
 }
 
 // The default method brings its own stages; its normals come out oriented.
-void runAutomatic(const PipelineOptions& options, const PointHints& hints, Stages& stages,
-                  Working& work, PipelineReport& report) {
+void runAutomatic(const PipelineOptions& options, detail::StageClock& clock, Working& work,
+                  PipelineReport& report) {
+  PointHints hints;
+  if (options.orientation.hints) {
+    hints = resolveHints(*options.orientation.hints, work.surface.cloud);
+  }
   detail::AutoStages result = detail::runAutoStages(
-      work.cloud, options, hints,
-      [&stages](const char* stage, double fraction) { stages.begin(stage, fraction); });
+      work.surface.cloud, options, hints,
+      [&clock](const char* stage, double fraction) { clock.begin(stage, fraction); });
   report.k = result.k;
   report.spacing = result.spacing;
   report.noise = result.noise;
@@ -177,66 +116,35 @@ void runAutomatic(const PipelineOptions& options, const PointHints& hints, Stage
   report.normals_chosen = sheetChoice(result);
   report.contradictions = std::move(result.orientation.contradictions);
   report.clusters = std::move(result.orientation.clusters);
-  work.normals = std::move(result.normals);
-  work.segmentation = std::move(result.segmentation);
+  work.surface.normals = std::move(result.normals);
+  work.surface.segmentation = std::move(result.segmentation);
   work.orientation.segments = std::move(result.segments);
   work.orientation.components = std::move(result.orientation.result.components);
   work.orientation.point_confidences = std::move(result.confidences);
   work.orientation.point_components = std::move(result.components);
 }
 
-// Lengths back to the input's units.
-void restoreUnit(Working& work, PipelineReport& report) {
-  const float unit = work.cloud.unit;
-  report.spacing *= unit;
-  for (Contradiction& c : report.contradictions) {
-    for (float& v : c.where) v *= unit;
-  }
-  for (Segment& s : work.segmentation.segments) {
-    for (float& v : s.centroid) v *= unit;
-    s.area *= unit * unit;
-    s.rms *= unit;
-  }
-}
-
-// From distinct points to input rows.
-void scatter(const Working& work, OrientedCloud& out) {
-  const std::size_t rows = work.cloud.row_of.size();
-  out.normals.assign(4 * rows, kNaN);
-  out.confidences.assign(rows, 0.F);
-  out.components.assign(rows, -1);
-  out.segmentation.labels.assign(rows, -1);
-  out.segmentation.signs.assign(rows, 0);
-  const pcl::index_t* row_of = work.cloud.row_of.data();
-  constexpr std::size_t kAhead = 16;  // the input may be in any order
-  for (std::size_t row = 0; row < rows; ++row) {
-    if (row + kAhead < rows && row_of[row + kAhead] >= 0) {
-      const auto next = static_cast<std::size_t>(row_of[row + kAhead]);
-      __builtin_prefetch(&work.normals[4 * next]);
-      __builtin_prefetch(&work.orientation.point_confidences[next]);
-      __builtin_prefetch(&work.orientation.point_components[next]);
-      __builtin_prefetch(&work.segmentation.labels[next]);
-      __builtin_prefetch(&work.segmentation.signs[next]);
-    }
-    if (row_of[row] < 0) continue;
-    const auto i = static_cast<std::size_t>(row_of[row]);
-    std::copy_n(&work.normals[4 * i], 4, &out.normals[4 * row]);
-    out.confidences[row] = work.orientation.point_confidences[i];
-    out.components[row] = work.orientation.point_components[i];
-    out.segmentation.labels[row] = work.segmentation.labels[i];
-    out.segmentation.signs[row] = work.segmentation.signs[i];
-  }
-  out.segmentation.segments = work.segmentation.segments;
-  collectMembers(out.segmentation);
+// From points to input rows, lengths back to the input's unit.
+void scatter(Working& work, OrientedCloud& out) {
+  const PreparedCloud& cloud = work.surface.cloud;
+  out.normals = cloud.scatter(work.surface.normals, 4, kNaN);
+  out.confidences = cloud.scatter(work.orientation.point_confidences, 1, 0.F);
+  out.components = cloud.scatter(work.orientation.point_components, 1, std::int32_t{-1});
+  std::vector<std::int32_t> rank;
+  out.segmentation = segmentation::scatter(cloud, work.surface.segmentation, nullptr, &rank);
+  segmentation::reorder(rank, work.orientation.segments);
   out.segments = work.orientation.segments;
+  out.report.spacing *= cloud.unit();
+  for (Contradiction& c : out.report.contradictions) {
+    for (float& v : c.where) v *= cloud.unit();
+  }
 }
 
 void fillReport(const Working& work, const OrientedCloud& cloud, PipelineReport& report) {
-  report.points = work.cloud.row_of.size();
-  report.non_finite = static_cast<std::size_t>(
-      std::count(work.cloud.row_of.begin(), work.cloud.row_of.end(), pcl::index_t{-1}));
-  report.duplicates = report.points - report.non_finite - work.cloud.size();
-  for (std::size_t row = 0; row < report.points; ++row) {
+  report.points = work.surface.cloud.rows();
+  report.non_finite = work.surface.cloud.withoutPoint();
+  report.duplicates = work.surface.cloud.duplicates();
+  for (std::size_t row = 0; row < cloud.confidences.size(); ++row) {
     if (!std::isfinite(cloud.normals[4 * row])) ++report.without_normal;
   }
   for (std::size_t s = 0; s < cloud.segments.size(); ++s) {
@@ -257,6 +165,18 @@ void fillReport(const Working& work, const OrientedCloud& cloud, PipelineReport&
   report.peak_memory = peakMemory();
 }
 
+// Where only some rows were asked for: what the report says about rows is about those.
+void countRows(const PreparedCloud& cloud, const std::vector<pcl::index_t>& indices,
+               PipelineReport& report) {
+  report.points = indices.size();
+  report.non_finite =
+      static_cast<std::size_t>(std::count_if(indices.begin(), indices.end(), [&](pcl::index_t row) {
+        return row < 0 || static_cast<std::size_t>(row) >= cloud.rows() ||
+               cloud.pointOf(static_cast<std::size_t>(row)) < 0;
+      }));
+  report.duplicates = report.points - report.non_finite - cloud.size();
+}
+
 }  // namespace
 
 OrientedCloud orientCloud(const PointView& points, const std::vector<pcl::index_t>* indices,
@@ -264,36 +184,25 @@ OrientedCloud orientCloud(const PointView& points, const std::vector<pcl::index_
   OrientedCloud out;
   out.report.method = options.orientation.method;
   out.report.estimator = options.normals.estimator;
-  Stages stages(progress, out.report);
+  detail::StageClock clock(progress);
   Working work;
   // Fractions: shares of the time on clouds of a million points.
-  stages.begin("search", 0.0);
-  work.cloud = compactCloud(points, indices, options.threads);
-  normalizeUnit(work.cloud);
+  clock.begin("search", 0.0);
+  work.surface.cloud = PreparedCloud(points, indices, options.threads);
   if (options.orientation.method == OrientationMethod::AUTO) {
-    PointHints hints;
-    if (options.orientation.hints) {
-      hints = resolveHints(*options.orientation.hints, work.cloud, indices, options.threads);
-    }
-    runAutomatic(options, hints, stages, work, out.report);
+    runAutomatic(options, clock, work, out.report);
   } else {
-    findNeighbors(options, work, out.report);
-    stages.begin("normals", 0.4);
-    out.report.normals_chosen = detail::findUnorientedNormals(
-        work.cloud.view(), work.index, work.neighborhoods, options, work.normals);
-    stages.begin("segmentation", 0.5);
-    findSegments(options, work);
-    if (options.recomputations > 0) stages.begin("recomputation", 0.65);
-    recompute(options, work);
-    stages.begin("orientation", 0.8);
-    findOrientation(options, work);
+    runPaper(options, clock, work, out.report);
+    applyOrientation(work);
   }
-  stages.begin("output", 0.95);
-  if (options.orientation.method != OrientationMethod::AUTO) applyOrientation(work);
-  restoreUnit(work, out.report);
+  clock.begin("output", 0.95);
   scatter(work, out);
+  if (indices != nullptr) out = selectRows(out, *indices);
   fillReport(work, out, out.report);
-  stages.end();
+  if (indices != nullptr) countRows(work.surface.cloud, *indices, out.report);
+  clock.end();
+  out.report.stages = clock.times();
+  for (const StageTime& stage : out.report.stages) out.report.seconds += stage.seconds;
   if (progress) progress("output", 1.0);
   return out;
 }
@@ -335,7 +244,7 @@ OrientedCloud selectRows(const OrientedCloud& cloud, const std::vector<pcl::inde
     out.segmentation.labels[i] = cloud.segmentation.labels[row];
     out.segmentation.signs[i] = cloud.segmentation.signs[row];
   }
-  collectMembers(out.segmentation);
+  segmentation::collectMembers(out.segmentation);
   return out;
 }
 

@@ -8,8 +8,8 @@
 #include <limits>
 #include <memory>
 
-#include "index_impl.h"
-#include "parallel_error.h"
+#include "search/index_impl.h"
+#include "search/parallel_error.h"
 
 namespace segorient::search {
 namespace {

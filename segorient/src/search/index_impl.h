@@ -13,8 +13,8 @@
 #include <mutex>
 #include <vector>
 
-#include "kernels.h"
-#include "layout.h"
+#include "search/kernels.h"
+#include "search/layout.h"
 
 namespace segorient::search {
 

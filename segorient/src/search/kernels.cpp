@@ -6,16 +6,16 @@
 // once, in the .inl files, for any width of vector. They call nothing of the standard library: an
 // inline function compiled for one instruction set could otherwise be linked into code that runs on
 // machines without it.
-#include "kernels.h"
+#include "search/kernels.h"
 
-#include <segorient/common/instruction_set.h>
+#include "common/instruction_set.h"
 
 #include <algorithm>
 #include <cstring>
 #include <limits>
 #include <vector>
 
-#include "../common/kernel_macros.h"
+#include "common/kernel_macros.h"
 
 #if defined(__x86_64__) && (defined(__GNUC__) || defined(__clang__))
 #define SEGORIENT_X86 1
@@ -36,25 +36,25 @@ constexpr float kLargest = std::numeric_limits<float>::max();
 constexpr std::uint32_t kKeyBias = 0x00100000U;
 
 namespace scalar {
-#include "simd_scalar.inl"
+#include "search/simd_scalar.inl"
 
-#include "kernels_ranges.inl"
+#include "search/kernels_ranges.inl"
 
-#include "kernels_take.inl"
+#include "search/kernels_take.inl"
 
-#include "kernels_one.inl"
+#include "search/kernels_one.inl"
 }  // namespace scalar
 
 #if SEGORIENT_X86
 
 namespace sse2 {
-#include "simd_sse2.inl"
+#include "search/simd_sse2.inl"
 
-#include "kernels_ranges.inl"
+#include "search/kernels_ranges.inl"
 
-#include "kernels_take_listed.inl"
+#include "search/kernels_take_listed.inl"
 
-#include "kernels_one.inl"
+#include "search/kernels_one.inl"
 }  // namespace sse2
 
 /// For each mask of eight lanes the lanes that are set, in a byte each.
@@ -81,13 +81,13 @@ constexpr LaneTable kLanes;
 #endif
 
 namespace avx2 {
-#include "simd_avx2.inl"
+#include "search/simd_avx2.inl"
 
-#include "kernels_ranges.inl"
+#include "search/kernels_ranges.inl"
 
-#include "kernels_take.inl"
+#include "search/kernels_take.inl"
 
-#include "kernels_one.inl"
+#include "search/kernels_one.inl"
 }  // namespace avx2
 
 #if defined(__clang__)
@@ -101,13 +101,13 @@ namespace avx2 {
 #endif
 
 namespace avx512 {
-#include "simd_avx512.inl"
+#include "search/simd_avx512.inl"
 
-#include "kernels_ranges.inl"
+#include "search/kernels_ranges.inl"
 
-#include "kernels_take.inl"
+#include "search/kernels_take.inl"
 
-#include "kernels_one.inl"
+#include "search/kernels_one.inl"
 }  // namespace avx512
 
 #if defined(__clang__)

@@ -14,7 +14,7 @@
 #include <limits>
 #include <vector>
 
-#include "layout.h"
+#include "search/layout.h"
 
 namespace segorient::search {
 

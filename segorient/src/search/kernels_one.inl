@@ -3,11 +3,11 @@
 //
 // The kernels for one instruction set, after what takes the nearest out of a block.
 
-#include "kernels_sort.inl"
+#include "search/kernels_sort.inl"
 
-#include "kernels_groups.inl"
+#include "search/kernels_groups.inl"
 
-#include "kernels_all_points.inl"
+#include "search/kernels_all_points.inl"
 
 constexpr Kernels kKernels{kName,          collect,     collectRegion,   gatherAround,
                            nearestInBlock, sortNearest, nearestInRegion, withinInRegion};

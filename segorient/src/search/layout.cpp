@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026, the segorient authors
-#include "layout.h"
+#include "search/layout.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <memory>
 
-#include "parallel_error.h"
+#include "search/parallel_error.h"
 
 namespace segorient::search {
 namespace {

@@ -6,8 +6,8 @@
 #include <memory>
 #include <utility>
 
-#include "index_impl.h"
-#include "parallel_error.h"
+#include "search/index_impl.h"
+#include "search/parallel_error.h"
 
 namespace segorient::search {
 

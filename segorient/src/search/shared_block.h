@@ -10,7 +10,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "kernels.h"
+#include "search/kernels.h"
 
 namespace segorient::search {
 

@@ -3,7 +3,7 @@
 
 constexpr const char* kName = "avx2";
 constexpr std::uint32_t kWidth = 8;
-#include "simd_vector.inl"
+#include "search/simd_vector.inl"
 
 inline Vector largestOf(Vector a, Vector b) {
   return _mm256_max_ps(a, b);
@@ -44,4 +44,4 @@ inline std::size_t compressIds(const std::uint32_t* ids, unsigned int mask, std:
   return static_cast<std::size_t>(_mm_popcnt_u32(mask));
 }
 
-#include "simd_keys.inl"
+#include "search/simd_keys.inl"

@@ -6,7 +6,7 @@
 
 constexpr const char* kName = "avx512";
 constexpr std::uint32_t kWidth = 16;
-#include "simd_vector.inl"
+#include "search/simd_vector.inl"
 
 // What is not masked draws a warning from some versions of g++ about its own header.
 constexpr __mmask16 kAll = 0xffff;
@@ -46,4 +46,4 @@ inline std::size_t compressIds(const std::uint32_t* ids, unsigned int mask, std:
   return static_cast<std::size_t>(_mm_popcnt_u32(mask));
 }
 
-#include "simd_keys.inl"
+#include "search/simd_keys.inl"

@@ -5,7 +5,7 @@
 
 constexpr const char* kName = "sse2";
 constexpr std::uint32_t kWidth = 4;
-#include "simd_vector.inl"
+#include "search/simd_vector.inl"
 
 inline Vector squareRoot(Vector v) {
   return _mm_sqrt_ps(v);

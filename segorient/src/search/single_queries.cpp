@@ -4,8 +4,8 @@
 #include <cmath>
 #include <utility>
 
-#include "index_impl.h"
-#include "shared_block.h"
+#include "search/index_impl.h"
+#include "search/shared_block.h"
 
 namespace segorient::search {
 

@@ -1,14 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026, the segorient authors
 #include <omp.h>
-
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
 
-#include "layout.h"
-#include "parallel_error.h"
+#include "search/layout.h"
+#include "search/parallel_error.h"
 
 namespace segorient::search {
 namespace {

@@ -4,7 +4,7 @@
 
 #include <utility>
 
-#include "growth_state.h"
+#include "segmentation/growth_state.h"
 
 namespace segorient {
 

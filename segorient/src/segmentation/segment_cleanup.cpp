@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026, the segorient authors
-#include "../common/disjoint_sets.h"
-#include "small_adjacency.h"
+#include "common/disjoint_sets.h"
+#include "segmentation/small_adjacency.h"
 
 namespace segorient::segmentation {
 namespace {

@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026, the segorient authors
 #include <Eigen/Eigenvalues>
+
 #include <array>
 #include <utility>
 
-#include "growth_state.h"
-#include "segment_order.h"
+#include "segmentation/growth_state.h"
+#include "segmentation/segment_order.h"
+#include "segmentation/segmentation_rows.h"
 
 namespace segorient::segmentation {
 namespace {
@@ -97,7 +99,7 @@ Segmentation finish(const PointView& points, const GrowthState& state,
   }
   result.labels = std::move(labels);
   result.signs = std::move(signs);
-  fillMembers(result);
+  collectMembers(result);
   measure(points, state, result);
   return result;
 }

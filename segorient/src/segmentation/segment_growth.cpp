@@ -5,7 +5,7 @@
 #include <limits>
 #include <memory>
 
-#include "growth_state.h"
+#include "segmentation/growth_state.h"
 
 namespace segorient::segmentation {
 namespace {

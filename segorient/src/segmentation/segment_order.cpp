@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026, the segorient authors
-#include "segment_order.h"
+#include "segmentation/segment_order.h"
 
 #include <algorithm>
 
@@ -23,23 +23,6 @@ std::vector<std::int32_t> rankLabels(const std::vector<std::int32_t>& labels,
   for (std::size_t r = 0; r < order.size(); ++r) rank[order[r]] = static_cast<std::int32_t>(r);
   count = order.size();
   return rank;
-}
-
-void fillMembers(Segmentation& result) {
-  std::uint32_t first = 0;
-  for (Segment& segment : result.segments) {
-    segment.first = first;
-    first += segment.size;
-  }
-  result.members.resize(first);
-  std::vector<std::uint32_t> next;
-  next.reserve(result.segments.size());
-  for (const Segment& segment : result.segments) next.push_back(segment.first);
-  for (std::size_t p = 0; p < result.labels.size(); ++p) {
-    const std::int32_t label = result.labels[p];
-    if (label < 0) continue;
-    result.members[next[static_cast<std::size_t>(label)]++] = static_cast<pcl::index_t>(p);
-  }
 }
 
 }  // namespace segorient::segmentation

@@ -14,7 +14,4 @@ namespace segorient::segmentation {
 std::vector<std::int32_t> rankLabels(const std::vector<std::int32_t>& labels,
                                      const std::vector<std::uint32_t>& sizes, std::size_t& count);
 
-/// Segment::first and the members, from the labels and the segments' sizes.
-void fillMembers(Segmentation& result);
-
 }  // namespace segorient::segmentation

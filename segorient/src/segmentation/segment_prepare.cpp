@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026, the segorient authors
 #include <segorient/common/threads.h>
-#include <segorient/common/unit_vector.h>
 
 #include <array>
 #include <limits>
 
-#include "growth_state.h"
+#include "common/unit_vector.h"
+#include "segmentation/growth_state.h"
 
 namespace segorient::segmentation {
 namespace {

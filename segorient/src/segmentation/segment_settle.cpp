@@ -5,8 +5,8 @@
 #include <array>
 #include <iterator>
 
-#include "distinct_points.h"
-#include "growth_state.h"
+#include "segmentation/distinct_points.h"
+#include "segmentation/growth_state.h"
 
 namespace segorient::segmentation {
 namespace {

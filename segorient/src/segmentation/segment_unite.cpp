@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026, the segorient authors
 #include <segorient/common/threads.h>
-
 #include <Eigen/Dense>
+
 #include <numeric>
 #include <utility>
 
-#include "distinct_points.h"
-#include "growth_state.h"
+#include "segmentation/distinct_points.h"
+#include "segmentation/growth_state.h"
 
 namespace segorient::segmentation {
 namespace {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026, the segorient authors
-#include "sheet_grower.h"
+#include "segmentation/sheet_grower.h"
 
 namespace segorient::detail {
 

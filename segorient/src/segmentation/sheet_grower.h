@@ -2,11 +2,11 @@
 // Copyright (c) 2026, the segorient authors
 #pragma once
 
-#include <segorient/segmentation/sheet_segmentation.h>
-
 #include <algorithm>
 #include <cmath>
 #include <vector>
+
+#include "segmentation/sheet_segmentation.h"
 
 namespace segorient::detail {
 

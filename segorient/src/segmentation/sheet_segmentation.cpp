@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026, the segorient authors
+#include "segmentation/sheet_segmentation.h"
+
 #include <segorient/common/threads.h>
-#include <segorient/segmentation/sheet_segmentation.h>
 
 #include <algorithm>
 #include <cmath>
 
-#include "sheet_grower.h"
+#include "segmentation/sheet_grower.h"
 
 namespace segorient {
 

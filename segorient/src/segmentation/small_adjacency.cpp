@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026, the segorient authors
-#include "small_adjacency.h"
+#include "segmentation/small_adjacency.h"
 
 namespace segorient::segmentation {
 

@@ -7,7 +7,7 @@
 #include <memory>
 #include <new>
 
-#include "growth_state.h"
+#include "segmentation/growth_state.h"
 
 namespace segorient::segmentation {
 

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026, the segorient authors
-#include <segorient/surface/delaunay.h>
+#include "surface/delaunay.h"
+
+#include <boost/polygon/voronoi_builder.hpp>
 
 #include <algorithm>
-#include <boost/polygon/voronoi_builder.hpp>
 #include <numeric>
 #include <utility>
 

@@ -2,12 +2,12 @@
 // Copyright (c) 2026, the segorient authors
 #include <segorient/common/threads.h>
 #include <segorient/surface/segment_mesh.h>
-
 #include <Eigen/Geometry>
+
 #include <algorithm>
 #include <cmath>
 
-#include "triangle_selection.h"
+#include "surface/triangle_selection.h"
 
 namespace segorient {
 namespace {

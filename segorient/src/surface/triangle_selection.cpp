@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026, the segorient authors
-#include "triangle_selection.h"
-
-#include <segorient/common/median.h>
+#include "surface/triangle_selection.h"
 
 #include <algorithm>
 #include <cmath>
+
+#include "common/median.h"
 
 namespace segorient::surface {
 namespace {

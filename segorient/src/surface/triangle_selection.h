@@ -2,11 +2,12 @@
 // Copyright (c) 2026, the segorient authors
 #pragma once
 
-#include <segorient/surface/delaunay.h>
 #include <segorient/surface/segment_mesh.h>
 
 #include <cstdint>
 #include <vector>
+
+#include "surface/delaunay.h"
 
 namespace segorient::surface {
 

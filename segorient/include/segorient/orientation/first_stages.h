@@ -2,14 +2,12 @@
 // Copyright (c) 2026, the segorient authors
 #pragma once
 
-#include <segorient/common/compact_cloud.h>
-#include <segorient/common/neighborhoods.h>
 #include <segorient/common/point_view.h>
 #include <segorient/orientation/pipeline.h>
-#include <segorient/search/median_hash_index.h>
 #include <segorient/segmentation/segmentation.h>
 
 #include <cstddef>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -27,6 +25,9 @@ class FirstStages {
   /// belongs to OrientationMethod::AUTO are not used \param progress may be empty
   FirstStages(const PointView& points, const PipelineOptions& options,
               PipelineProgress progress = {});
+  ~FirstStages();
+  FirstStages(const FirstStages&) = delete;
+  FirstStages& operator=(const FirstStages&) = delete;
 
   /// Unoriented ones, by `options.normals`; those near sharp edges anew, `options.recomputations`
   /// times.
@@ -41,29 +42,16 @@ class FirstStages {
   std::vector<float> normalsBySegment() const;
   Segmentation segmentation() const;  ///< sizes are in distinct points; members are not set
 
-  const std::vector<StageTime>& times() const { return times_; }
-  int k() const { return k_; }  ///< neighbours used, the point itself not counted
+  const std::vector<StageTime>& times() const;
+  int k() const;  ///< neighbours used, the point itself not counted
   /// How the normals were found, and why so: see PipelineReport::normals_chosen.
-  const std::string& normalsChosen() const { return normals_chosen_; }
+  const std::string& normalsChosen() const;
   std::size_t nonFinite() const;
   std::size_t duplicates() const;
 
  private:
-  class Timer;
-
-  void segment(double done, Segmentation* faces);
-  void recomputeNormals();
-
-  const PipelineOptions& options_;
-  PipelineProgress progress_;
-  std::vector<StageTime> times_;
-  CompactCloud cloud_;
-  search::MedianHashIndex index_;
-  Neighborhoods neighborhoods_;
-  std::vector<float> normals_;
-  Segmentation segmentation_;
-  std::string normals_chosen_;
-  int k_ = 0;
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
 };
 
 }  // namespace segorient

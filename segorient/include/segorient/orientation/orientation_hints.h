@@ -2,9 +2,6 @@
 // Copyright (c) 2026, the segorient authors
 #pragma once
 
-#include <pcl/types.h>
-#include <segorient/common/compact_cloud.h>
-
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -40,25 +37,5 @@ struct OrientationHints {
   std::vector<float> normals;
   std::vector<Seed> seeds;  ///< each counts for the point nearest to it; NaN or zero: none
 };
-
-/// The same by distinct point, in the units of a CompactCloud.
-struct PointHints {
-  struct Seed {
-    std::size_t point = 0;
-    std::array<float, 3> normal{0.F, 0.F, 0.F};  ///< unit length
-  };
-
-  SurfaceKind surface = SurfaceKind::UNKNOWN;
-  bool has_viewpoint = false;
-  std::array<float, 3> viewpoint{0.F, 0.F, 0.F};
-  /// 3 floats a point: sum of the unit vectors that its normal is said to point along; empty = none
-  std::vector<float> directions;
-  std::vector<Seed> seeds;
-};
-
-/// \param cloud the distinct points of the cloud that `hints` is about
-/// \param indices as they were given to compactCloud()
-PointHints resolveHints(const OrientationHints& hints, const CompactCloud& cloud,
-                        const std::vector<pcl::index_t>* indices = nullptr, int threads = 0);
 
 }  // namespace segorient

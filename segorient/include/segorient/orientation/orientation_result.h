@@ -2,6 +2,7 @@
 // Copyright (c) 2026, the segorient authors
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
@@ -46,6 +47,22 @@ struct ComponentOrientationResult {
   /// is not orientable, or segments mix two sides of it.
   float contradiction = 0.F;
   std::size_t points = 0;
+};
+
+/// A border where sure evidence was overruled: the surface cannot be oriented there.
+struct Contradiction {
+  std::int32_t a = 0;  ///< segments
+  std::int32_t b = 0;
+  float weight = 0.F;                         ///< votes overruled
+  std::array<float, 3> where{0.F, 0.F, 0.F};  ///< a point of the border
+};
+
+/// Segments that certain borders hold together: their relative orientation was not in doubt, but
+/// for single ones that the winding number of a clean closed surface has turned over.
+struct ClusterOrientationResult {
+  std::size_t points = 0;
+  std::int32_t component = -1;  ///< into OrientationResult::components
+  float confidence = 0.F;       ///< how far its borders to other clusters agree; 1 without any
 };
 
 /// What every method of orientation returns. The oriented normal of point i is

@@ -58,12 +58,16 @@ class OrientedNormalEstimation : public pcl::NormalEstimation<PointInT, PointOut
 
   /// Largest angle between the normals of neighbours in a segment, radians; default 20 degrees, but
   /// AUTO takes 15 on clean data for the segments that it orients by.
-  void setAlpha(float alpha) { options_.segmentation.alpha = options_.sheets.alpha = alpha; }
+  void setAlpha(float alpha) {
+    options_.segmentation.alpha = options_.orientation.automatic.alpha = alpha;
+  }
   float getAlpha() const { return options_.segmentation.alpha; }
 
   /// Largest angle between a normal and its segment's reference normal, radians; default 30
   /// degrees.
-  void setBeta(float beta) { options_.segmentation.beta = options_.sheets.beta = beta; }
+  void setBeta(float beta) {
+    options_.segmentation.beta = options_.orientation.automatic.beta = beta;
+  }
   float getBeta() const { return options_.segmentation.beta; }
 
   /// Angles between segments up to this decide, radians; default 35 degrees. AUTO does not look at
@@ -73,7 +77,7 @@ class OrientedNormalEstimation : public pcl::NormalEstimation<PointInT, PointOut
 
   /// By how much the clean-up of segments may exceed beta, radians; default 10 degrees.
   void setEpsilon(float epsilon) {
-    options_.segmentation.epsilon = options_.sheets.epsilon = epsilon;
+    options_.segmentation.epsilon = options_.orientation.automatic.epsilon = epsilon;
   }
   float getEpsilon() const { return options_.segmentation.epsilon; }
 

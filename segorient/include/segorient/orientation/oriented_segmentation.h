@@ -2,9 +2,9 @@
 // Copyright (c) 2026, the segorient authors
 #pragma once
 
+#include <segorient/common/point_search.h>
 #include <segorient/common/point_view.h>
-#include <segorient/common/searched_neighborhoods.h>
-#include <segorient/orientation/orient_segments.h>
+#include <segorient/orientation/orientation_options.h>
 #include <segorient/orientation/orientation_result.h>
 #include <segorient/segmentation/region_growing.h>
 #include <segorient/segmentation/segmentation.h>

@@ -6,13 +6,10 @@
 #include <segorient/common/point_view.h>
 #include <segorient/features/local_normals.h>
 #include <segorient/features/recompute_normals.h>
-#include <segorient/features/sheet_normals.h>
-#include <segorient/orientation/auto_orientation.h>
-#include <segorient/orientation/orient_segments.h>
+#include <segorient/orientation/orientation_options.h>
 #include <segorient/orientation/orientation_result.h>
 #include <segorient/segmentation/region_growing.h>
 #include <segorient/segmentation/segmentation.h>
-#include <segorient/segmentation/sheet_segmentation.h>
 
 #include <cstddef>
 #include <functional>
@@ -36,17 +33,7 @@ struct PipelineOptions {
   int recomputations = 0;
   RecomputationOptions recomputation;  ///< its estimator, k and threads are not used
   OrientationOptions orientation;      ///< its threads are not used
-  int threads = 0;                     ///< see resolveThreads()
-
-  // The steps of OrientationMethod::AUTO; the other methods use none of these.
-  SheetNormalOptions sheet_normals;  ///< its threads is not used
-  SheetSegmentationOptions sheets;
-  AutoOrientationOptions automatic;  ///< its threads is not used
-  bool denoise = true;        ///< smooth positions first where the noise is above about a spacing
-  int filter_rounds = 2;      ///< of filterOrientedNormals(); 0 = off
-  bool filter_wedges = true;  ///< its special care for narrow wedges
-  /// refineByWinding() after the filter; does nothing without it, nor without noise
-  bool winding_normals = true;
+  int threads = 0;                     ///< 0 = all cores; the result does not depend on it
 };
 
 /// Called when a stage begins and as it goes on, from the calling thread.

@@ -3,22 +3,25 @@
 #pragma once
 
 #include <segorient/common/neighborhoods.h>
+#include <segorient/common/point_search.h>
 #include <segorient/common/point_view.h>
 #include <segorient/segmentation/region_growing.h>
 #include <segorient/segmentation/segmentation.h>
 
-#include <functional>
+#include <cstddef>
+#include <memory>
 #include <vector>
 
 namespace segorient {
+
+class PreparedCloud;
 
 /// Segmentation of a cloud as it comes: with NaN points, duplicates, indices. The part of
 /// NormalSegmentation that does not depend on the point type.
 class CloudSegmentation {
  public:
   /// k nearest of one of the cloud's points, as indices into the cloud, itself included.
-  using Search = std::function<int(pcl::index_t point, int k, pcl::Indices& indices,
-                                   std::vector<float>& sqr_distances)>;
+  using Search = PointSearch;
 
   struct Input {
     PointView points;    ///< the whole cloud
@@ -50,16 +53,16 @@ class CloudSegmentation {
 
  private:
   bool computeWithTable(const Input& input, const SegmentationOptions& options);
-  void computeCompact(const Input& input, const SegmentationOptions& options);
+  void computePrepared(const Input& input, const SegmentationOptions& options);
+  const Neighborhoods& table() const;
+  std::size_t rowOf(pcl::index_t point) const;
 
   Segmentation result_;
   Segmentation faces_;
   bool united_ = false;
   SegmentationReport report_;
-  const Neighborhoods* table_ = nullptr;
-  Neighborhoods own_table_;
-  std::vector<pcl::index_t> source_;        ///< row of own_table_ to index into the cloud
-  std::vector<pcl::index_t> row_of_point_;  ///< and back; -1 = in no row
+  const Neighborhoods* table_ = nullptr;  ///< the user's
+  std::shared_ptr<PreparedCloud> cloud_;  ///< otherwise
   int neighbors_ = 0;
 };
 

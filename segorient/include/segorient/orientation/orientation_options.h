@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the segorient authors
+#pragma once
+
+#include <segorient/orientation/method.h>
+#include <segorient/orientation/orientation_hints.h>
+#include <segorient/surface/segment_mesh.h>
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+
+namespace segorient {
+
+/// Which angle stands for two neighbouring segments in propagation (paper, 3.1).
+enum class SegmentAngle : std::uint8_t {
+  REFERENCE_NORMALS,  ///< between the reference normals: the paper's
+  ACROSS_BORDER       ///< between the normals of the point pairs across the border, averaged
+};
+
+/// How boundaries are told (paper, 3.2.2).
+enum class BoundaryTest : std::uint8_t {
+  LOCAL,        ///< from the neighbours of border points
+  TRIANGULATED  ///< from triangulations of the segments: the paper's
+};
+
+/// Settings of the default method, OrientationMethod::AUTO; the other methods use none of these.
+/// Each step can be switched off to see what it is worth. Angles in radians.
+struct AutomaticOptions {
+  // Normals of single sheets.
+  bool denoise = true;         ///< smooth positions first where the noise is above about a spacing
+  bool split_walls = true;     ///< keep the points of a parallel wall nearby out of a fit
+  bool dominant_plane = true;  ///< at edges, fit the plane that most neighbours lie on
+
+  // Segments of single sheets.
+  /// Largest angle between neighbours' normals; 0 = 15 degrees on clean data to 20 on noisy.
+  float alpha = 0.F;
+  float beta = 0.5235988F;      ///< largest angle to the segment's reference normal (30 degrees)
+  float epsilon = 0.1745329F;   ///< what clean-up allows beyond beta (10 degrees)
+  bool require_support = true;  ///< a point joins only with several neighbours inside
+  bool clean_up = true;         ///< passes 1 and 2 of the paper
+
+  // Their signs.
+  bool contract_certain = true;  ///< join unanimous borders first; otherwise all at once
+  bool flip_clusters = true;     ///< single clusters are turned over while that agrees better
+  bool wind_components = true;   ///< in and out by the winding number; otherwise by convention
+  bool turn_loose_parts = true;  ///< what borders hardly tell, the winding number does; needs
+                                 ///< wind_components
+  bool infer_viewpoint = true;   ///< a scan from one place: what disagrees with it is turned over,
+                                 ///< but for cavities that the winding number vouches for
+
+  // The normals that are returned.
+  int filter_rounds = 2;      ///< of averaging over neighbours that are on one sheet; 0 = off
+  bool filter_wedges = true;  ///< its special care for narrow wedges
+  /// Where noise leaves two faces possible, the field of all oriented points decides; needs
+  /// filter_rounds.
+  bool winding_normals = true;
+};
+
+/// How segments are oriented. Angles in radians.
+struct OrientationOptions {
+  OrientationMethod method = OrientationMethod::AUTO;
+
+  // The paper's methods.
+  /// Paper's gamma: angles up to here, and from pi - gamma on, decide; extremal points must be as
+  /// near.
+  float gamma = 0.6108652F;
+  SegmentAngle angle = SegmentAngle::ACROSS_BORDER;
+  BoundaryTest boundary = BoundaryTest::LOCAL;
+  TriangulationOptions triangulation;  ///< for BoundaryTest::TRIANGULATED; its threads are not used
+  float min_margin = 0.5F;  ///< majority that a boundary needs to decide: 0.5 is three to one
+  std::size_t max_box_points =
+      120;  ///< most points in a box of the subdivision for extremal points
+  /// Whether segments and borders are checked (beyond the paper): segments that lie over
+  /// themselves, or contradict a large part of their borders, are dissolved, as they run from one
+  /// side over to another where bodies touch, and their points oriented one by one; a link whose
+  /// angle and whose boundary say opposite things decides nothing in COMBINED and EXTREMAL. Not for
+  /// PROPAGATION.
+  bool check_borders = true;
+
+  // The default method.
+  AutomaticOptions automatic;
+
+  // All methods.
+  /// Whether each connected component is turned outward; otherwise its largest segment keeps its
+  /// sign, or, by EXTREMAL, what extremal points say about each segment is the last word. HOPPE has
+  /// its own rule: the highest point's normal points up (paper, 3.1).
+  bool turn_outward = true;
+  /// What is known beforehand, by input row; null = nothing. Only AUTO uses it.
+  std::shared_ptr<const OrientationHints> hints;
+  int threads = 0;  ///< 0 = all cores; no result depends on it
+};
+
+/// The paper's rules to the letter for one of its methods: angles between reference normals,
+/// boundaries from triangulations with the paper's critical length and its gaps left open, no check
+/// of borders beyond the paper, components left as their first segment was. \param method
+/// PROPAGATION, BOUNDARY, EXTREMAL, COMBINED or HOPPE
+OrientationOptions paperOptions(OrientationMethod method = OrientationMethod::COMBINED);
+
+}  // namespace segorient

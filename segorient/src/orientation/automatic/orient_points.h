@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the segorient authors
+#pragma once
+
+#include <segorient/common/neighborhoods.h>
+#include <segorient/common/point_view.h>
+#include <segorient/orientation/orientation_options.h>
+
+#include <cstdint>
+#include <functional>
+#include <vector>
+
+#include "orientation/automatic/orient_sheets.h"
+#include "orientation/sensors/point_hints.h"
+
+namespace segorient::detail {
+
+/// Oriented normals of points whose neighbours are known.
+struct AutoNormals {
+  std::vector<float> normals;            ///< 4 floats a point: oriented normal, residual
+  std::vector<float> confidences;        ///< of the orientation, 0 to 1
+  std::vector<std::int32_t> components;  ///< -1 where there is no normal
+  AutoOrientation orientation;           ///< of the sheets' segments
+  float spacing = 0.F;                   ///< median
+};
+
+/// Sheet normals, sheet segments, their orientation, and the filter that makes the final normals.
+/// \param begin called with a stage's name and the fraction of the work done before it; may be
+///        empty
+AutoNormals orientPoints(const PointView& points, const Neighborhoods& neighborhoods,
+                         const AutomaticOptions& settings, const PointHints& hints, int threads,
+                         const std::function<void(const char*, double)>& begin = {});
+
+}  // namespace segorient::detail

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the segorient authors
+#pragma once
+
+#include <segorient/common/neighborhoods.h>
+#include <segorient/common/point_view.h>
+#include <segorient/orientation/orientation_options.h>
+#include <segorient/orientation/orientation_result.h>
+#include <segorient/segmentation/segmentation.h>
+
+#include <cstdint>
+#include <vector>
+
+#include "orientation/sensors/point_hints.h"
+#include "segmentation/sheet_segmentation.h"
+
+namespace segorient {
+
+/// What orientSheets() found beside the result itself.
+struct AutoOrientation {
+  OrientationResult result;
+  std::vector<std::int32_t> cluster_of;            ///< per segment, into `clusters`
+  std::vector<ClusterOrientationResult> clusters;  ///< by descending number of points
+  std::vector<Contradiction> contradictions;       ///< by descending weight
+  float viewpoint_agreement = 0.F;                 ///< see ViewpointFit
+};
+
+/// Orients segments that do not mix sides, whatever they are part of: closed or open, nested,
+/// linked, many parts. Borders vote; certain borders are contracted, the surest first; what is left
+/// between some tens of clusters is decided by all their borders together; connected components are
+/// turned outward by the winding number, and where that says nothing (a plane), to +z; parts whose
+/// borders hardly tell are turned over where the winding number says so clearly; hints then go
+/// before all that as OrientationHints says.
+AutoOrientation orientSheets(const PointView& points, const Neighborhoods& neighborhoods,
+                             const SheetField& field, const Segmentation& segmentation,
+                             const AutomaticOptions& options = {}, const PointHints& hints = {},
+                             int threads = 0);
+
+}  // namespace segorient

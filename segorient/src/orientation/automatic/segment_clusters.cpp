@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the segorient authors
+#include "orientation/automatic/segment_clusters.h"
+
+#include <numeric>
+
+namespace segorient::detail {
+namespace {
+
+std::size_t at(std::int32_t i) {
+  return static_cast<std::size_t>(i);
+}
+
+}  // namespace
+
+SegmentClusters::SegmentClusters(const Segmentation& segmentation,
+                                 const std::vector<BorderVote>& votes, const Rules& rules) {
+  const std::size_t n = segmentation.segments.size();
+  std::vector<std::uint32_t> sizes(n);
+  for (std::size_t s = 0; s < n; ++s) sizes[s] = segmentation.segments[s].size;
+  ClusterGraph graph(sizes, votes);
+  if (rules.contract_certain) {
+    ClusterGraph::Rule certain;
+    certain.unanimity = 0.9F;
+    certain.weight = 4.F;  // a border of a few points
+    certain.reliable = 0.5F;
+    // Where next to all of a longer border agree, that makes up for fewer sure normals, as they are
+    // in sparse stripes of a clean cloud.
+    ClusterGraph::Rule unanimous;
+    unanimous.unanimity = 0.97F;
+    unanimous.weight = 4.F * certain.weight;
+    unanimous.reliable = 0.5F * certain.reliable;
+    graph.contract({certain, unanimous});
+    // Two large clusters are joined only with all evidence on the table.
+    ClusterGraph::Rule likely;
+    likely.unanimity = 0.6F;
+    likely.both_larger = static_cast<std::uint32_t>(rules.points / 50);
+    graph.contract({likely});
+  }
+  of_.resize(n);
+  inside_.resize(n);
+  for (std::size_t s = 0; s < n; ++s) {
+    int sign = 1;
+    of_[s] = graph.find(static_cast<std::int32_t>(s), sign);
+    inside_[s] = static_cast<std::int8_t>(sign);
+  }
+  edges_ = graph.edges();
+  graph.contract({ClusterGraph::Rule{}});
+  sign_.assign(n, 1);
+  root_.assign(n, -1);
+  for (std::size_t s = 0; s < n; ++s) {
+    int sign = 1;
+    root_[at(of_[s])] = graph.find(of_[s], sign);
+    sign_[at(of_[s])] = static_cast<std::int8_t>(sign);
+  }
+  if (rules.flip) flip();
+}
+
+// Greedy contraction leaves single clusters that all their borders together would rather see turned
+// over.
+void SegmentClusters::flip() {
+  const std::size_t n = size();
+  std::vector<std::uint32_t> offset(n + 1, 0);
+  for (const auto& e : edges_) {
+    ++offset[at(e.a) + 1];
+    ++offset[at(e.b) + 1];
+  }
+  std::partial_sum(offset.begin(), offset.end(), offset.begin());
+  std::vector<std::uint32_t> incident(offset.back());
+  std::vector<std::uint32_t> next(offset.begin(), offset.end() - 1);
+  for (std::uint32_t e = 0; e < edges_.size(); ++e) {
+    incident[next[at(edges_[e].a)]++] = e;
+    incident[next[at(edges_[e].b)]++] = e;
+  }
+  constexpr int kRounds = 50;  // each flip lowers the energy; a few rounds are the rule
+  for (int round = 0; round < kRounds; ++round) {
+    bool moved = false;
+    for (std::size_t c = 0; c < n; ++c) {
+      float against = 0.F;
+      for (std::uint32_t k = offset[c]; k < offset[c + 1]; ++k) {
+        const auto& e = edges_[incident[k]];
+        against -= e.weight * static_cast<float>(sign_[at(e.a)] * sign_[at(e.b)]);
+      }
+      if (against > 1e-3F) {
+        sign_[c] = static_cast<std::int8_t>(-sign_[c]);
+        moved = true;
+      }
+    }
+    if (!moved) break;
+  }
+}
+
+}  // namespace segorient::detail

@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the segorient authors
+#include "orientation/automatic/wide_votes.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+
+namespace segorient::detail {
+namespace {
+
+// Steps from neighbour to neighbour, of about two spacings each.
+constexpr int kSteps = 4;
+// Fewer points are what noise has carried across.
+constexpr float kLeastPoints = 24.F;
+// A sum of unit normals is this much of their number where the surface is hardly bent.
+constexpr float kHardlyBent = 0.9F;
+// Of planes within 18 degrees of each other one may as well lie behind the other.
+constexpr float kParallel = 0.95F;
+// Faces of a wedge meet at 60 degrees or less.
+constexpr float kWedge = 0.5F;
+// In spacings: what is nearer to a plane is on neither side of it.
+constexpr float kClear = 0.5F;
+// Points that are asked; half of them have to know something.
+constexpr std::size_t kAsked = 16;
+
+bool isBent(const SheetGroup& sum) {
+  const float least = kHardlyBent * sum.count;
+  return dot(sum.normal, sum.normal) < least * least;
+}
+
+// Where two planes meet, with consistent normals, each is behind the other (a ridge) or before it
+// (a valley). \return by how much in spacings, below 0 if one is behind and one before, 0 if that
+// says nothing, or if wedges_only and the planes meet in no ridge or valley that is acute
+float compareSides(const SheetGroup& a, const SheetGroup& b, bool wedges_only) {
+  const float cosine = dot(a.normal, b.normal);
+  if (std::fabs(cosine) > kParallel) return 0.F;
+  const Vec3 chord{b.mean[0] - a.mean[0], b.mean[1] - a.mean[1], b.mean[2] - a.mean[2]};
+  const float before_a = dot(a.normal, chord);
+  const float before_b = -dot(b.normal, chord);
+  const float least = std::min(std::fabs(before_a), std::fabs(before_b));
+  if (!(least >= kClear)) return 0.F;
+  const bool agree = (before_a < 0.F) == (before_b < 0.F);
+  if (wedges_only && (agree ? -cosine : cosine) < kWedge) return 0.F;
+  return agree ? least : -least;
+}
+
+}  // namespace
+
+WideVoter::WideVoter(const PointView& points, const Neighborhoods& neighborhoods,
+                     const SheetField& field, const Segmentation& segmentation)
+    : points_(points), nb_(neighborhoods), field_(field), segmentation_(segmentation) {}
+
+// The points of a segment that few steps lead to.
+SheetGroup WideVoter::spread(std::size_t from, std::int32_t label) {
+  SheetGroup group;
+  group.label = label;
+  ++spreads_;
+  front_.clear();
+  const auto take = [&](std::size_t q) {
+    if (segmentation_.labels[q] != label || seen_[q] == spreads_) return;
+    seen_[q] = spreads_;
+    front_.push_back(static_cast<std::uint32_t>(q));
+  };
+  const auto takeNeighbors = [&](std::size_t q) {
+    const pcl::index_t* row = nb_.indices(q) + 1;
+    const int degree = std::min(nb_.count(q) - 1, kSheetDegree);
+    for (int j = 0; j < degree; ++j) take(static_cast<std::size_t>(row[j]));
+  };
+  take(from);
+  if (front_.empty()) takeNeighbors(from);
+  std::size_t begin = 0;
+  for (int step = 0; step < kSteps; ++step) {
+    const std::size_t end = front_.size();
+    for (; begin < end; ++begin) takeNeighbors(front_[begin]);
+  }
+  const float h = field_.spacing[from];
+  const float* p = points_[from];
+  for (const std::uint32_t q : front_) {
+    const float* x = points_[q];
+    group.add({(x[0] - p[0]) / h, (x[1] - p[1]) / h, (x[2] - p[2]) / h},
+              field_.normals + std::size_t{4} * q, segmentation_.signs[q]);
+  }
+  return group;
+}
+
+float WideVoter::vote(const std::vector<pcl::index_t>& border, std::int32_t a, std::int32_t b,
+                      bool wedges_only) {
+  for (const std::int32_t s : {a, b}) {
+    const auto size = segmentation_.segments[static_cast<std::size_t>(s)].size;
+    if (static_cast<float>(size) < kLeastPoints) return 0.F;
+  }
+  seen_.resize(points_.size, 0);
+  float sum = 0.F;
+  float absolute = 0.F;
+  std::size_t voters = 0;
+  const std::size_t asked = std::min(border.size(), kAsked);
+  for (std::size_t i = 0; i < asked; ++i) {
+    const auto p = static_cast<std::size_t>(border[i * border.size() / asked]);
+    SheetGroup first = spread(p, a);
+    SheetGroup second = spread(p, b);
+    if (std::min(first.count, second.count) < kLeastPoints || isBent(first) || isBent(second)) {
+      continue;
+    }
+    first.finish();
+    second.finish();
+    const float value = compareSides(first, second, wedges_only);
+    if (!(std::fabs(value) < std::numeric_limits<float>::max())) continue;
+    sum += value;
+    absolute += std::fabs(value);
+    voters += value != 0.F ? 1 : 0;
+  }
+  return 2 * voters >= asked && absolute > 0.F ? sum / absolute : 0.F;
+}
+
+}  // namespace segorient::detail

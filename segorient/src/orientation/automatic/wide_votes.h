@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the segorient authors
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "orientation/automatic/border_groups.h"
+#include "orientation/automatic/border_votes.h"
+
+namespace segorient::detail {
+
+/// Lets the points of a border vote again, each by the planes of what lies within some steps from
+/// neighbour to neighbour around it in either segment. Where noise reaches across a sharp crease,
+/// the nearest points contradict each other, while the means of more lie apart by more than the
+/// noise. Consistent normals have either plane behind the other one, or either before it.
+class WideVoter {
+ public:
+  WideVoter(const PointView& points, const Neighborhoods& neighborhoods, const SheetField& field,
+            const Segmentation& segmentation);
+
+  /// \param border points of segments a and b that have neighbours in the other one
+  /// \param wedges_only whether to count only planes that meet at an acute angle, where the nearest
+  ///        points are wrong most easily
+  /// \return above 0 where the two agree as they are, -1 to 1 by how far the points agree with each
+  ///         other; 0 where the segments are bent or parallel, or too few points could vote
+  float vote(const std::vector<pcl::index_t>& border, std::int32_t a, std::int32_t b,
+             bool wedges_only);
+
+ private:
+  SheetGroup spread(std::size_t from, std::int32_t label);
+
+  const PointView& points_;
+  const Neighborhoods& nb_;
+  const SheetField& field_;
+  const Segmentation& segmentation_;
+  std::vector<std::uint32_t>
+      seen_;  // by point, empty before the first vote: the number of the spread that saw it last
+  std::uint32_t spreads_ = 0;
+  std::vector<std::uint32_t> front_;
+};
+
+}  // namespace segorient::detail

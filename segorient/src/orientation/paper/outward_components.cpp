@@ -1,0 +1,236 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the segorient authors
+#include "orientation/paper/outward_components.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <numeric>
+#include <utility>
+#include <vector>
+
+namespace segorient {
+namespace {
+
+using Rows = std::vector<pcl::index_t>;
+
+std::size_t at(std::int32_t i) {
+  return static_cast<std::size_t>(i);
+}
+
+std::vector<Rows> rowsByComponent(const OrientationResult& result) {
+  std::vector<Rows> rows(result.components.size());
+  for (std::size_t i = 0; i < result.point_components.size(); ++i) {
+    const std::int32_t component = result.point_components[i];
+    if (component >= 0) rows[at(component)].push_back(static_cast<pcl::index_t>(i));
+  }
+  return rows;
+}
+
+struct Bounds {
+  std::array<float, 3> low;
+  std::array<float, 3> high;
+
+  Bounds(const PointView& points, const Rows& rows) {
+    low.fill(std::numeric_limits<float>::max());
+    high.fill(std::numeric_limits<float>::lowest());
+    for (const pcl::index_t row : rows) {
+      const float* p = points[static_cast<std::size_t>(row)];
+      for (std::size_t a = 0; a < 3; ++a) {
+        low[a] = std::min(low[a], p[a]);
+        high[a] = std::max(high[a], p[a]);
+      }
+    }
+  }
+  bool contains(const Bounds& other) const {
+    bool inside = true;
+    for (std::size_t a = 0; a < 3; ++a) {
+      inside = inside && low[a] < other.low[a] && other.high[a] < high[a];
+    }
+    return inside;
+  }
+};
+
+// At most `count` of the rows, evenly spread over them (and so over space, as rows are in Z-order).
+Rows sample(const Rows& rows, std::size_t count) {
+  if (rows.size() <= count) return rows;
+  Rows out(count);
+  for (std::size_t i = 0; i < count; ++i) out[i] = rows[i * rows.size() / count];
+  return out;
+}
+
+// Turns a component by the votes of its extremal points.
+void turnOutward(const std::vector<ExtremalPoint>& extremal, float gamma,
+                 const std::vector<std::int8_t>& signs, ComponentOrientationResult& component) {
+  float balance = 0.F;
+  float total = 0.F;
+  for (const ExtremalPoint& found : extremal) {
+    if (!(found.angle < gamma)) continue;
+    const int sign = found.sign * signs[static_cast<std::size_t>(found.point)];
+    balance += static_cast<float>(sign) * std::cos(found.angle);
+    total += std::cos(found.angle);
+  }
+  component.evidence = balance;
+  component.confidence = total > 0.F ? std::abs(balance) / total : 0.F;
+  component.by = total > 0.F ? DecidedBy::EXTREMAL : DecidedBy::NOTHING;
+  component.sign = balance < 0.F ? std::int8_t{-1} : std::int8_t{1};
+}
+
+// The part of the sphere of directions around x that an oriented component fills, seen from inside
+// its material: 1 in a closed body, 0 outside, -1 in a hollow one's cavity by its own wall.
+class SolidAngle {
+ public:
+  SolidAngle(const PointView& points, const PointView& normals, const Neighborhoods& neighborhoods,
+             const OrientationResult& result)
+      : points_(points), normals_(normals), neighborhoods_(neighborhoods), result_(result) {}
+
+  double at(const float* x, const Rows& rows, double share, int component_sign) const {
+    double sum = 0.0;
+    for (const pcl::index_t row : rows) {
+      const auto i = static_cast<std::size_t>(row);
+      const float* p = points_[i];
+      const float* n = normals_[i];
+      double along = 0.0;
+      double squared = 0.0;
+      for (std::size_t a = 0; a < 3; ++a) {
+        const double d = static_cast<double>(p[a]) - x[a];
+        along += d * n[a];
+        squared += d * d;
+      }
+      if (squared > 0.0)
+        sum += result_.point_signs[i] * area(i) * along / (squared * std::sqrt(squared));
+    }
+    constexpr double kSphere = 12.566370614359172;
+    return component_sign * sum * share / kSphere;
+  }
+
+ private:
+  // What a point stands for: its neighbours' disc, shared among them.
+  double area(std::size_t row) const {
+    constexpr double kPi = 3.141592653589793;
+    const int count = neighborhoods_.count(row);
+    if (count < 2) return 0.0;
+    const float* p = points_[row];
+    const float* q = points_[static_cast<std::size_t>(neighborhoods_.indices(row)[count - 1])];
+    double squared = 0.0;
+    for (std::size_t a = 0; a < 3; ++a) {
+      squared += (static_cast<double>(q[a]) - p[a]) * (static_cast<double>(q[a]) - p[a]);
+    }
+    return kPi * squared / (count - 0.5);
+  }
+
+  const PointView& points_;
+  const PointView& normals_;
+  const Neighborhoods& neighborhoods_;
+  const OrientationResult& result_;
+};
+
+// Whether larger components enclose others is asked for the largest ones only: for crumbs it
+// neither matters nor can be told.
+constexpr std::size_t kMostNested = 64;
+constexpr std::size_t kProbes = 24;  // points of the inner component
+constexpr std::size_t kSources =
+    4096;  // points of the outer one: 1 / 64 of the radius apart on a sphere
+
+void turnCavities(const PointView& points, const SolidAngle& solid_angle,
+                  const std::vector<Rows>& rows,
+                  std::vector<ComponentOrientationResult>& components) {
+  const std::size_t count = std::min(kMostNested, components.size());
+  std::vector<Bounds> bounds;
+  for (std::size_t c = 0; c < count; ++c) bounds.emplace_back(points, rows[c]);
+  // Outer ones first.
+  std::vector<std::size_t> order(count);
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::vector<std::ptrdiff_t> depth(count);
+  for (std::size_t c = 0; c < count; ++c) {
+    depth[c] = std::count_if(bounds.begin(), bounds.end(),
+                             [&](const Bounds& other) { return other.contains(bounds[c]); });
+  }
+  std::stable_sort(order.begin(), order.end(),
+                   [&](std::size_t l, std::size_t r) { return depth[l] < depth[r]; });
+  for (std::size_t i = 0; i < count; ++i) {
+    const std::size_t inner = order[i];
+    const Rows probes = sample(rows[inner], kProbes);
+    double filled = 0.0;
+    bool enclosed = false;
+    for (std::size_t j = 0; j < i; ++j) {
+      const std::size_t outer = order[j];
+      if (!bounds[outer].contains(bounds[inner])) continue;
+      enclosed = true;
+      const Rows sources = sample(rows[outer], kSources);
+      const double share =
+          static_cast<double>(rows[outer].size()) / static_cast<double>(sources.size());
+      for (const pcl::index_t probe : probes) {
+        filled += solid_angle.at(points[static_cast<std::size_t>(probe)], sources, share,
+                                 components[outer].sign) /
+                  static_cast<double>(probes.size());
+      }
+    }
+    if (!enclosed) continue;
+    ComponentOrientationResult& component = components[inner];
+    if (filled > 0.5) component.sign = static_cast<std::int8_t>(-component.sign);
+    const double doubt = std::min(1.0, 2.0 * std::abs(filled - (filled > 0.5 ? 1.0 : 0.0)));
+    component.by = DecidedBy::ENCLOSURE;
+    component.confidence *= static_cast<float>(1.0 - doubt);
+  }
+}
+
+}  // namespace
+
+void sortComponents(OrientationResult& result) {
+  std::vector<ComponentOrientationResult>& components = result.components;
+  for (ComponentOrientationResult& component : components) component.points = 0;
+  for (const std::int32_t c : result.point_components) {
+    if (c >= 0) ++components[at(c)].points;
+  }
+  std::vector<std::size_t> order(components.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::stable_sort(order.begin(), order.end(), [&](std::size_t l, std::size_t r) {
+    return components[l].points > components[r].points;
+  });
+  std::vector<std::int32_t> number(components.size());
+  std::vector<ComponentOrientationResult> sorted;
+  for (std::size_t i = 0; i < order.size(); ++i) {
+    number[order[i]] = static_cast<std::int32_t>(i);
+    sorted.push_back(components[order[i]]);
+  }
+  components.swap(sorted);
+  for (std::int32_t& c : result.point_components) {
+    if (c >= 0) c = number[at(c)];
+  }
+  for (SegmentOrientationResult& segment : result.segments) {
+    if (segment.component >= 0) segment.component = number[at(segment.component)];
+  }
+}
+
+void orientComponents(const PointView& points, const PointView& normals,
+                      const Neighborhoods& neighborhoods, const ComponentSignOptions& options,
+                      OrientationResult& result, const std::vector<ExtremalPoint>& of_all) {
+  sortComponents(result);
+  const std::vector<Rows> rows = rowsByComponent(result);
+  const bool known = rows.size() == 1 && !of_all.empty();
+  for (std::size_t c = 0; c < rows.size(); ++c) {
+    turnOutward(known ? of_all
+                      : findExtremalPoints(points, normals, rows[c], options.max_box_points,
+                                           options.threads),
+                options.gamma, result.point_signs, result.components[c]);
+  }
+  turnCavities(points, SolidAngle(points, normals, neighborhoods, result), rows, result.components);
+
+  for (std::size_t i = 0; i < result.point_signs.size(); ++i) {
+    const std::int32_t c = result.point_components[i];
+    if (c < 0) continue;
+    result.point_signs[i] =
+        static_cast<std::int8_t>(result.point_signs[i] * result.components[at(c)].sign);
+  }
+  for (SegmentOrientationResult& segment : result.segments) {
+    if (segment.component < 0) continue;
+    const std::int8_t sign = result.components[at(segment.component)].sign;
+    segment.sign = static_cast<std::int8_t>(segment.sign * sign);
+    segment.extremal_agreement *= sign;
+  }
+}
+
+}  // namespace segorient

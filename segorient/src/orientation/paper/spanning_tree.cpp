@@ -1,0 +1,176 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the segorient authors
+#include "orientation/paper/spanning_tree.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+namespace segorient {
+namespace {
+
+// A guess is told from a decision by its confidence alone where the flag is not looked at.
+constexpr float kGuessConfidence = 0.25F;
+
+std::size_t at(std::int32_t i) {
+  return static_cast<std::size_t>(i);
+}
+
+// Angle between the two lines, in [0, pi/2].
+float lineAngle(float cosine) {
+  return std::acos(std::min(1.F, std::abs(cosine)));
+}
+
+int signOfValue(float value) {
+  return value < 0.F ? -1 : 1;
+}
+
+}  // namespace
+
+SegmentSpread::SegmentSpread(const SegmentEvidence& evidence, const SegmentMethodOptions& options,
+                             Rule rule)
+    : evidence_(evidence), options_(options), rule_(rule) {
+  results_.resize(evidence.segmentation.segments.size());
+  sortBySize();
+  labelComponents();
+}
+
+void SegmentSpread::sortBySize() {
+  by_size_.resize(results_.size());
+  std::iota(by_size_.begin(), by_size_.end(), 0);
+  std::stable_sort(by_size_.begin(), by_size_.end(), [&](std::int32_t l, std::int32_t r) {
+    const std::vector<Segment>& segments = evidence_.segmentation.segments;
+    return segments[at(l)].size > segments[at(r)].size;
+  });
+}
+
+void SegmentSpread::labelComponents() {
+  const SegmentLinks& links = evidence_.links;
+  std::int32_t components = 0;
+  std::vector<std::int32_t> stack;
+  for (std::size_t s = 0; s < results_.size(); ++s) {
+    if (results_[s].component >= 0) continue;
+    if (!isRegular(evidence_.segmentation, static_cast<std::int32_t>(s))) continue;
+    results_[s].component = components;
+    stack.push_back(static_cast<std::int32_t>(s));
+    while (!stack.empty()) {
+      const std::int32_t top = stack.back();
+      stack.pop_back();
+      for (std::uint32_t i = links.offsets[at(top)]; i < links.offsets[at(top) + 1]; ++i) {
+        const std::int32_t other = links.links[links.incident[i]].other(top);
+        if (results_[at(other)].component >= 0) continue;
+        results_[at(other)].component = components;
+        stack.push_back(other);
+      }
+    }
+    ++components;
+  }
+}
+
+bool SegmentSpread::isOpen(std::int32_t segment) const {
+  return isRegular(evidence_.segmentation, segment) && signOf(segment) == 0;
+}
+
+float SegmentSpread::cost(std::uint32_t link) const {
+  if (rule_ == Rule::BOUNDARY) return 1.F - std::abs(evidence_.boundary[link].margin);
+  return lineAngle(evidence_.cosines[link]);
+}
+
+void SegmentSpread::orient(std::int32_t segment, int sign, DecidedBy by, float confidence,
+                           bool hard) {
+  SegmentOrientationResult& result = results_[at(segment)];
+  result.sign = static_cast<std::int8_t>(sign);
+  result.by = by;
+  result.confidence = confidence;
+  result.hard = hard;
+  const SegmentLinks& links = evidence_.links;
+  for (std::uint32_t i = links.offsets[at(segment)]; i < links.offsets[at(segment) + 1]; ++i) {
+    const std::uint32_t link = links.incident[i];
+    const std::int32_t other = links.links[link].other(segment);
+    if (isOpen(other)) front_.push({cost(link), link, other});
+  }
+}
+
+// Whether angle and boundary both decide, and not the same.
+bool SegmentSpread::contradictory(std::uint32_t link) const {
+  if (!options_.compare_borders) return false;
+  const float cosine = evidence_.cosines[link];
+  const BoundaryVote& vote = evidence_.boundary[link];
+  return lineAngle(cosine) <= options_.gamma && vote.decides(options_.min_margin) &&
+         signOfValue(cosine) != signOfValue(vote.margin);
+}
+
+bool SegmentSpread::decideByAngle(const Step& step) {
+  const float cosine = evidence_.cosines[step.link];
+  const float angle = lineAngle(cosine);
+  const bool unreliable = angle > options_.gamma;
+  if (rule_ == Rule::ANGLE_THEN_BOUNDARY && (unreliable || contradictory(step.link))) return false;
+  const std::int32_t from = evidence_.links.links[step.link].other(step.target);
+  orient(step.target, signOf(from) * signOfValue(cosine), DecidedBy::PROPAGATION,
+         (unreliable ? kGuessConfidence : 1.F) * std::abs(cosine), unreliable);
+  return true;
+}
+
+// The largest neighbour first, see SegmentLinks::incident.
+bool SegmentSpread::decideByBoundary(std::int32_t segment) {
+  const SegmentLinks& links = evidence_.links;
+  for (std::uint32_t i = links.offsets[at(segment)]; i < links.offsets[at(segment) + 1]; ++i) {
+    const std::uint32_t link = links.incident[i];
+    const std::int32_t other = links.links[link].other(segment);
+    const BoundaryVote& vote = evidence_.boundary[link];
+    if (signOf(other) == 0 || !vote.decides(options_.min_margin)) continue;
+    if (rule_ == Rule::ANGLE_THEN_BOUNDARY && contradictory(link)) continue;
+    orient(segment, signOf(other) * signOfValue(vote.margin), DecidedBy::BOUNDARY,
+           std::abs(vote.margin));
+    return true;
+  }
+  return false;
+}
+
+// Signed evidence of all oriented neighbours, in border points.
+float SegmentSpread::balance(std::int32_t segment) const {
+  const SegmentLinks& links = evidence_.links;
+  float sum = 0.F;
+  for (std::uint32_t i = links.offsets[at(segment)]; i < links.offsets[at(segment) + 1]; ++i) {
+    const std::uint32_t link = links.incident[i];
+    const float vote =
+        rule_ == Rule::ANGLE ? evidence_.cosines[link] : evidence_.boundary[link].margin;
+    sum += static_cast<float>(signOf(links.links[link].other(segment))) * vote *
+           static_cast<float>(std::max(1U, evidence_.boundary[link].points));
+  }
+  return sum;
+}
+
+void SegmentSpread::visit(const Step& step) {
+  if (!isOpen(step.target)) return;
+  if (rule_ != Rule::BOUNDARY && decideByAngle(step)) return;
+  if (rule_ != Rule::ANGLE && decideByBoundary(step.target)) return;
+  guesses_.push({std::abs(balance(step.target)), step.target});
+}
+
+// A segment stays in the front once for each oriented neighbour, so a hard one is tried again
+// whenever another of its neighbours has been oriented.
+void SegmentSpread::spread() {
+  while (!front_.empty()) {
+    const Step step = front_.top();
+    front_.pop();
+    visit(step);
+  }
+}
+
+bool SegmentSpread::guessOne() {
+  while (!guesses_.empty()) {
+    const Guess guess = guesses_.top();
+    guesses_.pop();
+    if (!isOpen(guess.target)) continue;
+    const float sum = balance(guess.target);
+    const auto by = rule_ == Rule::ANGLE ? DecidedBy::PROPAGATION : DecidedBy::BOUNDARY;
+    const float share = std::abs(sum) / (std::abs(sum) + 1.F);
+    orient(guess.target, signOfValue(sum), sum != 0.F ? by : DecidedBy::NOTHING,
+           kGuessConfidence * share, true);
+    return true;
+  }
+  return false;
+}
+
+}  // namespace segorient

@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the segorient authors
+#include "orientation/sensors/point_hints.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace segorient {
+namespace {
+
+using Vector = std::array<float, 3>;
+
+// In double: viewpoints may be far away.
+bool normalize(const double* v, Vector& out) {
+  const double length = std::sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
+  if (!(length > 0.0) || !std::isfinite(length)) return false;
+  for (std::size_t a = 0; a < 3; ++a) out[a] = static_cast<float>(v[a] / length);
+  return true;
+}
+
+// In the unit of a PreparedCloud; what is farther than floats can square is brought nearer.
+Vector scaled(const Vector& v, float unit) {
+  constexpr double kFar = 1e15;
+  double largest = 0.0;
+  for (const float c : v) {
+    largest = std::max(largest, std::fabs(static_cast<double>(c)) / static_cast<double>(unit));
+  }
+  const double factor = (largest > kFar ? kFar / largest : 1.0) / static_cast<double>(unit);
+  Vector out{};
+  for (std::size_t a = 0; a < 3; ++a)
+    out[a] = static_cast<float>(factor * static_cast<double>(v[a]));
+  return out;
+}
+
+void add(const Vector& v, float* out) {
+  for (std::size_t a = 0; a < 3; ++a) out[a] += v[a];
+}
+
+std::size_t rowsOf(const std::vector<float>& values) {
+  return values.size() / 3;
+}
+
+void addDirections(const OrientationHints& hints, const PreparedCloud& cloud,
+                   std::vector<float>& directions) {
+  if (hints.normals.empty() && hints.viewpoints.empty()) return;
+  directions.assign(3 * cloud.size(), 0.F);
+  for (std::size_t row = 0; row < cloud.rows(); ++row) {
+    if (cloud.pointOf(row) < 0) continue;
+    const auto i = static_cast<std::size_t>(cloud.pointOf(row));
+    float* out = &directions[3 * i];
+    Vector unit_vector{};
+    if (row < rowsOf(hints.normals)) {
+      const float* n = &hints.normals[3 * row];
+      const double v[3] = {static_cast<double>(n[0]), static_cast<double>(n[1]),
+                           static_cast<double>(n[2])};
+      if (normalize(v, unit_vector)) add(unit_vector, out);
+    }
+    if (row < rowsOf(hints.viewpoints)) {
+      double v[3];
+      for (std::size_t a = 0; a < 3; ++a) {
+        v[a] = static_cast<double>(hints.viewpoints[3 * row + a]) -
+               static_cast<double>(cloud.unit()) * static_cast<double>(cloud.points()[i][a]);
+      }
+      if (normalize(v, unit_vector)) add(unit_vector, out);
+    }
+  }
+}
+
+void addSeeds(const OrientationHints& hints, PreparedCloud& cloud,
+              std::vector<PointHints::Seed>& seeds) {
+  if (hints.seeds.empty() || cloud.size() == 0) return;
+  const search::MedianHashIndex& index = cloud.index();
+  for (const OrientationHints::Seed& given : hints.seeds) {
+    PointHints::Seed seed;
+    const double n[3] = {static_cast<double>(given.normal[0]), static_cast<double>(given.normal[1]),
+                         static_cast<double>(given.normal[2])};
+    const Vector position = scaled(given.position, cloud.unit());
+    if (!normalize(n, seed.normal) || !isFinite(position.data())) continue;
+    pcl::index_t nearest = 0;
+    float distance = 0.F;
+    if (index.nearestK(position.data(), 1, &nearest, &distance) < 1) continue;
+    seed.point = static_cast<std::size_t>(nearest);
+    seeds.push_back(seed);
+  }
+}
+
+}  // namespace
+
+PointHints resolveHints(const OrientationHints& hints, PreparedCloud& cloud) {
+  PointHints out;
+  out.surface = hints.surface;
+  out.viewpoint = scaled(hints.viewpoint, cloud.unit());
+  out.has_viewpoint = hints.has_viewpoint && isFinite(out.viewpoint.data());
+  addDirections(hints, cloud, out.directions);
+  addSeeds(hints, cloud, out.seeds);
+  return out;
+}
+
+}  // namespace segorient

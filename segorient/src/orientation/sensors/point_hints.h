@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the segorient authors
+#pragma once
+
+#include <segorient/orientation/orientation_hints.h>
+
+#include <array>
+#include <cstddef>
+#include <vector>
+
+#include "search/prepared_cloud.h"
+
+namespace segorient {
+
+/// The same by distinct point, in the unit of a PreparedCloud.
+struct PointHints {
+  struct Seed {
+    std::size_t point = 0;
+    std::array<float, 3> normal{0.F, 0.F, 0.F};  ///< unit length
+  };
+
+  SurfaceKind surface = SurfaceKind::UNKNOWN;
+  bool has_viewpoint = false;
+  std::array<float, 3> viewpoint{0.F, 0.F, 0.F};
+  /// 3 floats a point: sum of the unit vectors that its normal is said to point along; empty = none
+  std::vector<float> directions;
+  std::vector<Seed> seeds;
+};
+
+/// \param cloud that that `hints` is about
+PointHints resolveHints(const OrientationHints& hints, PreparedCloud& cloud);
+
+}  // namespace segorient

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the segorient authors
+#include "orientation/surface_stages.h"
+
+#include <segorient/features/local_normals.h>
+#include <segorient/features/recompute_normals.h>
+#include <segorient/segmentation/region_growing.h>
+
+#include <cstdint>
+
+#include "features/automatic_normals.h"
+
+namespace segorient::detail {
+
+void SurfaceStages::findNormals(const PipelineOptions& options) {
+  normals.resize(4 * cloud.size());
+  if (options.normals.estimator == NormalEstimator::Automatic) {
+    const AutomaticNormalReport report =
+        options.k > 0
+            ? estimateNormalsAutomatically(cloud.points(), cloud.neighborhoods(), options.threads,
+                                           normals.data())
+            : estimateNormalsAutomatically(cloud.points(), cloud.index(), cloud.neighborhoods(),
+                                           options.threads, normals.data());
+    normals_chosen = report.text();
+    return;
+  }
+  LocalNormalOptions settings = options.normals;
+  settings.k = 0;
+  settings.threads = options.threads;
+  estimateNormals(cloud.points(), cloud.neighborhoods(), settings, normals.data());
+  normals_chosen = "as asked for";
+}
+
+void SurfaceStages::findSegments(const SegmentationOptions& options, Segmentation* faces) {
+  segmentation = segmentByNormals(cloud.points(), normalView(), cloud.neighborhoods(), options,
+                                  nullptr, faces);
+}
+
+void SurfaceStages::recomputeNormals(const PipelineOptions& options) {
+  RecomputationOptions settings = options.recomputation;
+  settings.estimator = options.normals.estimator;
+  settings.k = 0;
+  settings.threads = options.threads;
+  std::vector<std::uint8_t> regular;
+  for (const Segment& segment : segmentation.segments) {
+    regular.push_back(segment.kind == SegmentKind::Regular ? 1 : 0);
+  }
+  segorient::recomputeNormals(cloud.points(), cloud.neighborhoods(), regular, settings,
+                              segmentation.labels, normals);
+}
+
+}  // namespace segorient::detail

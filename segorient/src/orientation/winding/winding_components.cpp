@@ -1,0 +1,368 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the segorient authors
+#include "orientation/winding/winding_components.h"
+
+#include <segorient/common/threads.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <numeric>
+#include <utility>
+
+#include "orientation/winding/winding_number.h"
+
+namespace segorient {
+namespace {
+
+// Each turn lowers the sum; a few rounds are the rule.
+constexpr int kRounds = 20;
+
+struct Box {
+  std::array<float, 3> low;
+  std::array<float, 3> high;
+  Box() {
+    low.fill(std::numeric_limits<float>::max());
+    high.fill(std::numeric_limits<float>::lowest());
+  }
+  void add(const float* p) {
+    for (std::size_t a = 0; a < 3; ++a) {
+      low[a] = std::min(low[a], p[a]);
+      high[a] = std::max(high[a], p[a]);
+    }
+  }
+  bool contains(const float* p, float margin) const {
+    for (std::size_t a = 0; a < 3; ++a) {
+      if (p[a] < low[a] - margin || p[a] > high[a] + margin) return false;
+    }
+    return true;
+  }
+  float diagonal() const {
+    float s = 0.F;
+    for (std::size_t a = 0; a < 3; ++a) s += (high[a] - low[a]) * (high[a] - low[a]);
+    return std::sqrt(s);
+  }
+};
+
+// One sample point that a component's field reaches, and the field there.
+struct Reach {
+  std::uint32_t sample;
+  float w;
+};
+
+// Finds the samples near a box without looking at all of them.
+class SampleGrid {
+ public:
+  void build(const PointView& points, const std::vector<std::uint32_t>& samples) {
+    box_ = Box();
+    for (const std::uint32_t i : samples) box_.add(points[i]);
+    // About as many cells as samples.
+    side_ = static_cast<std::size_t>(std::ceil(std::cbrt(static_cast<double>(samples.size()))));
+    side_ = std::max<std::size_t>(side_, 1);
+    start_.assign(side_ * side_ * side_ + 1, 0);
+    std::vector<std::size_t> cells;
+    for (const std::uint32_t i : samples) {
+      cells.push_back(cellOf(points[i]));
+      ++start_[cells.back() + 1];
+    }
+    std::partial_sum(start_.begin(), start_.end(), start_.begin());
+    order_.resize(samples.size());
+    std::vector<std::uint32_t> next(start_.begin(), start_.end() - 1);
+    for (std::size_t k = 0; k < cells.size(); ++k) {
+      order_[next[cells[k]]++] = static_cast<std::uint32_t>(k);
+    }
+  }
+
+  // Calls visit(k) for each sample k that is near, and some others.
+  template <typename Visit>
+  void forEachNear(const Box& box, float margin, Visit&& visit) const {
+    std::array<std::size_t, 3> first;
+    std::array<std::size_t, 3> last;
+    for (std::size_t a = 0; a < 3; ++a) {
+      first[a] = cellAlong(a, box.low[a] - margin);
+      last[a] = cellAlong(a, box.high[a] + margin);
+    }
+    for (std::size_t z = first[2]; z <= last[2]; ++z) {
+      for (std::size_t y = first[1]; y <= last[1]; ++y) {
+        const std::size_t row = side_ * (y + side_ * z);
+        for (std::uint32_t k = start_[row + first[0]]; k < start_[row + last[0] + 1]; ++k) {
+          visit(order_[k]);
+        }
+      }
+    }
+  }
+
+ private:
+  // Monotone, so that what is between two coordinates is between their cells.
+  std::size_t cellAlong(std::size_t axis, float x) const {
+    const float extent = box_.high[axis] - box_.low[axis];
+    const float cell = (x - box_.low[axis]) / extent * static_cast<float>(side_);
+    if (!(extent > 0.F) || !(cell > 0.F)) return 0;
+    return cell < static_cast<float>(side_ - 1) ? static_cast<std::size_t>(cell) : side_ - 1;
+  }
+  std::size_t cellOf(const float* p) const {
+    return cellAlong(0, p[0]) + side_ * (cellAlong(1, p[1]) + side_ * cellAlong(2, p[2]));
+  }
+
+  Box box_;
+  std::size_t side_ = 1;
+  std::vector<std::uint32_t> start_;
+  std::vector<std::uint32_t> order_;
+};
+
+class Solver {
+ public:
+  Solver(const PointView& points, const std::vector<float>& dipoles,
+         const std::vector<float>& spacing, const std::vector<std::int32_t>& components,
+         std::size_t count, int threads)
+      : points_(points),
+        dipoles_(dipoles),
+        spacing_(spacing),
+        threads_(resolveThreads(threads)),
+        rows_(count),
+        boxes_(count),
+        reach_(count) {
+    for (std::size_t i = 0; i < components.size(); ++i) {
+      if (components[i] < 0) continue;
+      const auto c = static_cast<std::size_t>(components[i]);
+      rows_[c].push_back(static_cast<std::uint32_t>(i));
+      boxes_[c].add(points[i]);
+    }
+  }
+
+  std::vector<ComponentWinding> solve() {
+    takeSamples();
+    for (std::size_t c = 0; c < rows_.size(); ++c) evaluate(c);
+    insertOneByOne();
+    flipWhileBetter();
+    return results();
+  }
+
+  std::vector<std::int8_t> turnParts(std::size_t fixed, const TurnRule& rule) {
+    windAsTurned();
+    std::vector<std::pair<double, std::size_t>> order;
+    for (std::size_t c = fixed; c < rows_.size(); ++c) order.emplace_back(-gain(c), c);
+    std::sort(order.begin(), order.end());
+    bool moved = true;
+    for (int round = 0; round < kRounds && moved; ++round) {
+      moved = false;
+      for (const auto& [first_gain, c] : order) {
+        if (!gainsEnough(c, rule)) continue;
+        flip(c);
+        moved = true;
+      }
+    }
+    return {signs_.begin(), signs_.end()};
+  }
+
+  std::vector<float> riseIfTurned(std::size_t fixed) {
+    windAsTurned();
+    std::vector<float> rise(rows_.size(), 0.F);
+    for (std::size_t c = fixed; c < rows_.size(); ++c) {
+      const double change = ownResidual(c, true) - ownResidual(c, false);
+      if (std::isfinite(change)) rise[c] = static_cast<float>(change);
+    }
+    return rise;
+  }
+
+ private:
+  // The field of all parts as they are turned now.
+  void windAsTurned() {
+    takeSamples();
+    signs_.assign(rows_.size(), 1);
+    for (std::size_t c = 0; c < rows_.size(); ++c) {
+      evaluate(c);
+      for (const Reach& r : reach_[c]) field_[r.sample] += static_cast<double>(r.w);
+    }
+  }
+
+  // Enough of each component to see it, and of the large ones in proportion: some thousand in all.
+  void takeSamples() {
+    constexpr double kAll = 2000.0;
+    constexpr std::size_t kLeast = 24;
+    for (std::size_t c = 0; c < rows_.size(); ++c) {
+      const auto& rows = rows_[c];
+      const auto share = static_cast<std::size_t>(kAll * static_cast<double>(rows.size()) /
+                                                  static_cast<double>(points_.size));
+      const std::size_t want = std::min(rows.size(), std::max(kLeast, share));
+      for (std::size_t k = 0; k < want; ++k) {
+        samples_.push_back(rows[k * rows.size() / want]);
+        owner_.push_back(static_cast<std::uint32_t>(c));
+        weight_.push_back(static_cast<double>(rows.size()) / static_cast<double>(want));
+      }
+    }
+    field_.assign(samples_.size(), -0.5);
+    grid_.build(points_, samples_);
+  }
+
+  void evaluate(std::size_t c) {
+    // For a WindingNumber, no rows are all points.
+    if (rows_[c].empty()) return;
+    WindingNumber winding;
+    winding.build(points_, dipoles_, rows_[c]);
+    auto& reach = reach_[c];
+    const float margin = boxes_[c].diagonal();
+    grid_.forEachNear(boxes_[c], margin, [&](std::uint32_t k) {
+      if (boxes_[c].contains(points_[samples_[k]], margin)) reach.push_back({k, 0.F});
+    });
+    std::sort(reach.begin(), reach.end(),
+              [](const Reach& a, const Reach& b) { return a.sample < b.sample; });
+#pragma omp parallel for num_threads(threads_) schedule(dynamic, 64)
+    for (std::size_t r = 0; r < reach.size(); ++r) {
+      const std::uint32_t i = samples_[reach[r].sample];
+      reach[r].w = winding.evaluate(points_[i], spacing_[i]);
+    }
+  }
+
+  // The largest first, each with the sign that suits what is there already.
+  void insertOneByOne() {
+    signs_.assign(rows_.size(), 0);
+    for (std::size_t c = 0; c < rows_.size(); ++c) {
+      double plus = 0.0;
+      double minus = 0.0;
+      for (const Reach& r : reach_[c]) {
+        if (owner_[r.sample] > c) continue;
+        const double f = field_[r.sample];
+        const auto w = static_cast<double>(r.w);
+        plus += weight_[r.sample] * (f + w) * (f + w);
+        minus += weight_[r.sample] * (f - w) * (f - w);
+      }
+      signs_[c] = minus < plus ? -1 : 1;
+      for (const Reach& r : reach_[c]) field_[r.sample] += signs_[c] * static_cast<double>(r.w);
+    }
+  }
+
+  // What flipping a component would add to the sum of squares.
+  double change(std::size_t c) const {
+    double sum = 0.0;
+    for (const Reach& r : reach_[c]) {
+      const double t = signs_[c] * static_cast<double>(r.w);
+      sum += weight_[r.sample] * 4.0 * t * (t - field_[r.sample]);
+    }
+    return sum;
+  }
+
+  void flip(std::size_t c) {
+    for (const Reach& r : reach_[c]) {
+      field_[r.sample] -= 2.0 * signs_[c] * static_cast<double>(r.w);
+    }
+    signs_[c] = -signs_[c];
+  }
+
+  double squaresAround(std::size_t c) const {
+    double sum = 0.0;
+    for (const Reach& r : reach_[c]) {
+      sum += weight_[r.sample] * field_[r.sample] * field_[r.sample];
+    }
+    return sum;
+  }
+
+  // Mean square at the points of c itself, as it is or if it were turned over.
+  double ownResidual(std::size_t c, bool turned) const {
+    const double share = turned ? 2.0 * signs_[c] : 0.0;
+    double squares = 0.0;
+    double weights = 0.0;
+    for (const Reach& r : reach_[c]) {
+      if (owner_[r.sample] != c) continue;
+      const double f = field_[r.sample] - share * static_cast<double>(r.w);
+      squares += weight_[r.sample] * f * f;
+      weights += weight_[r.sample];
+    }
+    return weights > 0.0 ? squares / weights : std::numeric_limits<double>::infinity();
+  }
+
+  // By what share flipping a part would lower the sum of squares around it.
+  double gain(std::size_t c) const {
+    const double share = -change(c) / (squaresAround(c) + 1e-12);
+    return std::isfinite(share) ? share : 0.0;
+  }
+
+  bool gainsEnough(std::size_t c, const TurnRule& rule) const {
+    const double share = gain(c);
+    const double turned = ownResidual(c, true);
+    if (share > rule.gain && turned <= rule.residual) return true;
+    // Where other parts around are turned wrongly as well, and still are, less of the sum is
+    // gained.
+    constexpr double kSome = 0.1;
+    constexpr double kFits = 0.08;    // as a closed surface does with noise of half a spacing
+    constexpr double kMisfits = 0.3;  // w is more than 1/2 off
+    return share > kSome && turned <= std::min(kFits, rule.residual) &&
+           ownResidual(c, false) > kMisfits;
+  }
+
+  void flipWhileBetter() {
+    for (int round = 0; round < kRounds; ++round) {
+      bool moved = false;
+      for (std::size_t c = 0; c < rows_.size(); ++c) {
+        if (change(c) >= -1e-6) continue;
+        flip(c);
+        moved = true;
+      }
+      if (!moved) break;
+    }
+  }
+
+  std::vector<ComponentWinding> results() const {
+    std::vector<ComponentWinding> out(rows_.size());
+    std::vector<double> squares(rows_.size(), 0.0);
+    std::vector<double> weights(rows_.size(), 0.0);
+    for (std::size_t k = 0; k < samples_.size(); ++k) {
+      squares[owner_[k]] += weight_[k] * field_[k] * field_[k];
+      weights[owner_[k]] += weight_[k];
+    }
+    for (std::size_t c = 0; c < out.size(); ++c) {
+      out[c].sign = static_cast<std::int8_t>(signs_[c]);
+      if (weights[c] <= 0.0) continue;
+      out[c].residual = static_cast<float>(squares[c] / weights[c]);
+      const double d = change(c);
+      const double now = squaresAround(c);
+      out[c].evidence = static_cast<float>(std::max(0.0, d / (2.0 * now + d + 1e-12)));
+    }
+    return out;
+  }
+
+  const PointView& points_;
+  const std::vector<float>& dipoles_;
+  const std::vector<float>& spacing_;
+  int threads_;
+  std::vector<std::vector<std::uint32_t>> rows_;
+  std::vector<Box> boxes_;
+  std::vector<std::vector<Reach>> reach_;
+  std::vector<std::uint32_t> samples_;
+  SampleGrid grid_;
+  std::vector<std::uint32_t> owner_;
+  std::vector<double> weight_;  // points that a sample stands for
+  std::vector<double> field_;   // w - 1/2 at the samples
+  std::vector<int> signs_;
+};
+
+}  // namespace
+
+std::vector<std::int8_t> turnParts(const PointView& points, const std::vector<float>& dipoles,
+                                   const std::vector<float>& spacing,
+                                   const std::vector<std::int32_t>& parts, std::size_t count,
+                                   std::size_t fixed, const TurnRule& rule, int threads) {
+  if (count == 0) return {};
+  return Solver(points, dipoles, spacing, parts, count, threads).turnParts(fixed, rule);
+}
+
+std::vector<float> riseIfTurned(const PointView& points, const std::vector<float>& dipoles,
+                                const std::vector<float>& spacing,
+                                const std::vector<std::int32_t>& parts, std::size_t count,
+                                std::size_t fixed, int threads) {
+  if (count == 0) return {};
+  return Solver(points, dipoles, spacing, parts, count, threads).riseIfTurned(fixed);
+}
+
+std::vector<ComponentWinding> solveComponents(const PointView& points,
+                                              const std::vector<float>& dipoles,
+                                              const std::vector<float>& spacing,
+                                              const std::vector<std::int32_t>& components,
+                                              std::size_t count, int threads) {
+  if (count == 0) return {};
+  return Solver(points, dipoles, spacing, components, count, threads).solve();
+}
+
+}  // namespace segorient

@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the segorient authors
+#include <array>
+#include <cmath>
+
+#include "common/instruction_set.h"
+#include "orientation/winding/winding_number.h"
+
+namespace segorient {
+namespace {
+
+constexpr std::size_t kLanes = 8;
+
+struct Dipoles {
+  const float* x;
+  const float* y;
+  const float* z;
+  const float* mx;
+  const float* my;
+  const float* mz;
+  std::size_t count;
+};
+
+// Sums by lane, so that compilers can use vectors without changing the order of any sum.
+struct Sums {
+  alignas(32) std::array<float, kLanes> x;
+  alignas(32) std::array<float, kLanes> y;
+  alignas(32) std::array<float, kLanes> z;
+};
+
+__attribute__((always_inline)) inline void addDipole(const Dipoles& from, std::size_t i,
+                                                     const float* at, float r2, std::size_t lane,
+                                                     Sums& sums) {
+  const float dx = from.x[i] - at[0];
+  const float dy = from.y[i] - at[1];
+  const float dz = from.z[i] - at[2];
+  const float s = dx * dx + dy * dy + dz * dz + r2;
+  const float weight = 1.F / (s * std::sqrt(s));
+  const float along = 3.F * (from.mx[i] * dx + from.my[i] * dy + from.mz[i] * dz) / s;
+  sums.x[lane] += weight * (from.mx[i] - along * dx);
+  sums.y[lane] += weight * (from.my[i] - along * dy);
+  sums.z[lane] += weight * (from.mz[i] - along * dz);
+}
+
+__attribute__((always_inline)) inline void addLanes(const Dipoles& from, const float* at, float r2,
+                                                    Sums& sums) {
+  std::size_t i = 0;
+  for (; i + kLanes <= from.count; i += kLanes) {
+    for (std::size_t l = 0; l < kLanes; ++l) addDipole(from, i + l, at, r2, l, sums);
+  }
+  for (std::size_t l = 0; i < from.count; ++i, ++l) addDipole(from, i, at, r2, l, sums);
+}
+
+using AddDipoles = void (*)(const Dipoles&, const float*, float, Sums&);
+
+void addPortably(const Dipoles& from, const float* at, float r2, Sums& sums) {
+  addLanes(from, at, r2, sums);
+}
+#if defined(__x86_64__)
+__attribute__((target("avx2"))) void addByAvx2(const Dipoles& from, const float* at, float r2,
+                                               Sums& sums) {
+  addLanes(from, at, r2, sums);
+}
+#endif
+
+AddDipoles chooseAddDipoles() {
+#if defined(__x86_64__)
+  if (instructionSet() >= InstructionSet::Avx2) return &addByAvx2;
+#endif
+  return &addPortably;
+}
+
+}  // namespace
+
+void DipoleList::clear() {
+  for (std::vector<float>* v : {&x, &y, &z, &mx, &my, &mz}) v->clear();
+}
+
+void DipoleList::add(const float* place, const float* moment) {
+  x.push_back(place[0]);
+  y.push_back(place[1]);
+  z.push_back(place[2]);
+  mx.push_back(moment[0]);
+  my.push_back(moment[1]);
+  mz.push_back(moment[2]);
+}
+
+void steepestDescent(const DipoleList& dipoles, const float* x, float radius, float* descent) {
+  constexpr float kOneOver4Pi = 0.07957747F;
+  const Dipoles from{dipoles.x.data(),  dipoles.y.data(),  dipoles.z.data(), dipoles.mx.data(),
+                     dipoles.my.data(), dipoles.mz.data(), dipoles.size()};
+  static const AddDipoles addDipoles = chooseAddDipoles();
+  Sums sums{};
+  addDipoles(from, x, radius * radius, sums);
+  for (std::size_t a = 0; a < 3; ++a) {
+    float total = 0.F;
+    for (const float v : a == 0 ? sums.x : (a == 1 ? sums.y : sums.z)) total += v;
+    descent[a] = kOneOver4Pi * total;
+  }
+}
+
+}  // namespace segorient

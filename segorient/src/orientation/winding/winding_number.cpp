@@ -1,0 +1,143 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the segorient authors
+#include "orientation/winding/winding_number.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace segorient {
+namespace {
+
+constexpr std::uint32_t kLeaf = 16;
+// A node counts as one dipole beyond this many of its radii (half diagonals of its box, about):
+// errors of some hundredths of the sum of absolute terms.
+constexpr float kFar = 4.F;
+constexpr float kOneOver4Pi = 0.07957747F;
+
+}  // namespace
+
+void WindingNumber::build(const PointView& points, const std::vector<float>& dipoles,
+                          const std::vector<std::uint32_t>& rows) {
+  points_ = points;
+  dipoles_ = dipoles.data();
+  rows_ = rows.empty() ? nullptr : rows.data();
+  const std::size_t count = rows.empty() ? points.size : rows.size();
+  nodes_.clear();
+  if (count == 0) return;
+  nodes_.reserve(count / 4 + 2);
+  buildNode(0, static_cast<std::uint32_t>(count));
+}
+
+// Sums of the points themselves.
+WindingNumber::Extent WindingNumber::sumLeaf(Node& node) const {
+  double center[3] = {0, 0, 0};
+  double dipole[3] = {0, 0, 0};
+  Extent extent;
+  for (std::uint32_t i = node.first; i < node.first + node.size; ++i) {
+    const float* p = points_[row(i)];
+    const float* d = dipoles_ + 4 * row(i);
+    const double a = static_cast<double>(d[3]) + 1e-30;
+    extent.area += a;
+    for (int k = 0; k < 3; ++k) {
+      extent.low[k] = std::min(extent.low[k], p[k]);
+      extent.high[k] = std::max(extent.high[k], p[k]);
+      center[k] += a * static_cast<double>(p[k]);
+      dipole[k] += static_cast<double>(d[k]);
+    }
+  }
+  for (int k = 0; k < 3; ++k) {
+    node.center[k] = static_cast<float>(center[k] / extent.area);
+    node.dipole[k] = static_cast<float>(dipole[k]);
+  }
+  return extent;
+}
+
+WindingNumber::Extent WindingNumber::sumHalves(const Node& a, const Extent& in_a, const Node& b,
+                                               const Extent& in_b, Node& node) {
+  Extent extent;
+  extent.area = in_a.area + in_b.area;
+  const auto share = static_cast<float>(in_b.area / extent.area);
+  for (int k = 0; k < 3; ++k) {
+    node.center[k] = a.center[k] + share * (b.center[k] - a.center[k]);
+    node.dipole[k] = a.dipole[k] + b.dipole[k];
+    extent.low[k] = std::min(in_a.low[k], in_b.low[k]);
+    extent.high[k] = std::max(in_a.high[k], in_b.high[k]);
+  }
+  return extent;
+}
+
+WindingNumber::Extent WindingNumber::buildNode(std::uint32_t first, std::uint32_t last) {
+  const std::size_t index = nodes_.size();
+  nodes_.emplace_back();
+  Node node{};
+  node.first = first;
+  Extent extent;
+  if (last - first <= kLeaf) {
+    node.size = last - first;
+    extent = sumLeaf(node);
+  } else {
+    const std::uint32_t middle = first + (last - first) / 2;
+    const std::size_t left = nodes_.size();
+    const Extent in_left = buildNode(first, middle);
+    const std::size_t right = nodes_.size();
+    const Extent in_right = buildNode(middle, last);
+    extent = sumHalves(nodes_[left], in_left, nodes_[right], in_right, node);
+  }
+  float r2 = 0.F;  // to the farthest corner of the box
+  for (int k = 0; k < 3; ++k) {
+    const float reach = std::max(extent.high[k] - node.center[k], node.center[k] - extent.low[k]);
+    r2 += reach * reach;
+  }
+  node.radius = std::sqrt(r2);
+  node.skip = static_cast<std::uint32_t>(nodes_.size());
+  nodes_[index] = node;
+  return extent;
+}
+
+float WindingNumber::evaluate(const float* x, float radius) const {
+  const float r2 = radius * radius;
+  double sum = 0.0;
+  for (std::uint32_t i = 0; i < nodes_.size();) {
+    const Node& node = nodes_[i];
+    const float d[3] = {node.center[0] - x[0], node.center[1] - x[1], node.center[2] - x[2]};
+    const float s = d[0] * d[0] + d[1] * d[1] + d[2] * d[2];
+    if (s > kFar * kFar * node.radius * node.radius && s > 4.F * r2) {
+      sum += static_cast<double>(
+          (node.dipole[0] * d[0] + node.dipole[1] * d[1] + node.dipole[2] * d[2]) /
+          (s * std::sqrt(s)));
+      i = node.skip;
+      continue;
+    }
+    for (std::uint32_t j = 0; j < node.size; ++j) {
+      const float* q = points_[row(node.first + j)];
+      const float* m = dipoles_ + 4 * row(node.first + j);
+      const float e[3] = {q[0] - x[0], q[1] - x[1], q[2] - x[2]};
+      const float t = std::max(e[0] * e[0] + e[1] * e[1] + e[2] * e[2], r2);
+      sum += static_cast<double>((m[0] * e[0] + m[1] * e[1] + m[2] * e[2]) / (t * std::sqrt(t)));
+    }
+    ++i;
+  }
+  return static_cast<float>(sum) * kOneOver4Pi;
+}
+
+void WindingNumber::listDipoles(const float* center, float reach, DipoleList& out) const {
+  // Of dipoles this far away the field changes little, and its gradient less.
+  constexpr float kFarFromBall = 2.F;
+  for (std::uint32_t i = 0; i < nodes_.size();) {
+    const Node& node = nodes_[i];
+    const float d[3] = {node.center[0] - center[0], node.center[1] - center[1],
+                        node.center[2] - center[2]};
+    const float far = kFarFromBall * node.radius + reach;
+    if (d[0] * d[0] + d[1] * d[1] + d[2] * d[2] > far * far) {
+      out.add(node.center, node.dipole);
+      i = node.skip;
+      continue;
+    }
+    for (std::uint32_t j = node.first; j < node.first + node.size; ++j) {
+      out.add(points_[row(j)], dipoles_ + 4 * row(j));
+    }
+    ++i;
+  }
+}
+
+}  // namespace segorient

@@ -1,0 +1,120 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the segorient authors
+#include "segmentation/segmentation_rows.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <numeric>
+
+namespace segorient::segmentation {
+namespace {
+
+std::size_t at(std::int32_t i) {
+  return static_cast<std::size_t>(i);
+}
+
+// New label of each old one: by descending number of rows; where no point is repeated, nothing
+// changes.
+std::vector<std::int32_t> rankBySize(const std::vector<Segment>& segments) {
+  std::vector<std::int32_t> order(segments.size());
+  std::iota(order.begin(), order.end(), 0);
+  std::stable_sort(order.begin(), order.end(), [&](std::int32_t a, std::int32_t b) {
+    return segments[at(a)].size > segments[at(b)].size;
+  });
+  std::vector<std::int32_t> rank(segments.size());
+  for (std::size_t r = 0; r < order.size(); ++r) rank[at(order[r])] = static_cast<std::int32_t>(r);
+  return rank;
+}
+
+void restoreUnit(float unit, Segment& segment) {
+  for (float& v : segment.centroid) v *= unit;
+  segment.area *= unit * unit;
+  segment.rms *= unit;
+}
+
+}  // namespace
+
+void collectMembers(Segmentation& segmentation) {
+  std::vector<Segment>& segments = segmentation.segments;
+  for (Segment& segment : segments) segment.size = 0;
+  for (const std::int32_t label : segmentation.labels) {
+    if (label >= 0) ++segments[at(label)].size;
+  }
+  std::uint32_t first = 0;
+  for (Segment& segment : segments) {
+    segment.first = first;
+    first += segment.size;
+  }
+  segmentation.members.resize(first);
+  std::vector<std::uint32_t> next;
+  next.reserve(segments.size());
+  for (const Segment& segment : segments) next.push_back(segment.first);
+  for (std::size_t i = 0; i < segmentation.labels.size(); ++i) {
+    const std::int32_t label = segmentation.labels[i];
+    if (label < 0) continue;
+    segmentation.members[next[at(label)]++] = static_cast<pcl::index_t>(i);
+  }
+}
+
+std::vector<float> gatherNormals(const PreparedCloud& cloud, const NormalView& row_normals) {
+  std::vector<float> out(4 * cloud.size());
+  for (std::size_t i = 0; i < cloud.size(); ++i) {
+    const float* normal = row_normals[cloud.rowOf(i)];
+    std::copy_n(normal, 3, &out[4 * i]);
+    out[4 * i + 3] = normal[row_normals.curvature];
+  }
+  return out;
+}
+
+Segmentation gather(const PreparedCloud& cloud, const std::vector<float>& normals,
+                    const Segmentation& of_rows) {
+  Segmentation out;
+  out.segments = of_rows.segments;
+  out.labels.resize(cloud.size());
+  out.signs.resize(cloud.size());
+  for (std::size_t i = 0; i < cloud.size(); ++i) {
+    const std::size_t row = cloud.rowOf(i);
+    out.labels[i] = std::isfinite(normals[4 * i]) ? std::max(of_rows.labels[row], -1) : -1;
+    out.signs[i] = of_rows.signs[row] < 0 ? std::int8_t{-1} : std::int8_t{1};
+  }
+  collectMembers(out);
+  return out;
+}
+
+bool isTurned(const PreparedCloud& cloud, const PointView& row_normals, std::size_t row) {
+  const pcl::index_t point = cloud.pointOf(row);
+  if (point < 0) return false;
+  const float* first = row_normals[cloud.rowOf(static_cast<std::size_t>(point))];
+  const float* own = row_normals[row];
+  return first[0] * own[0] + first[1] * own[1] + first[2] * own[2] < 0.F;
+}
+
+Segmentation scatter(const PreparedCloud& cloud, const Segmentation& of_points,
+                     const PointView* row_normals, std::vector<std::int32_t>* rank) {
+  Segmentation out;
+  out.labels = cloud.scatter(of_points.labels, 1, std::int32_t{-1});
+  out.signs = cloud.scatter(of_points.signs, 1, std::int8_t{0});
+  if (row_normals != nullptr) {
+    for (std::size_t row = 0; row < cloud.rows(); ++row) {
+      if (isTurned(cloud, *row_normals, row))
+        out.signs[row] = static_cast<std::int8_t>(-out.signs[row]);
+    }
+  }
+  out.segments = of_points.segments;
+  collectMembers(out);
+  const std::vector<std::int32_t> label = rankBySize(out.segments);
+  if (rank != nullptr) *rank = label;
+  if (!std::is_sorted(label.begin(), label.end())) {
+    for (std::size_t s = 0; s < label.size(); ++s)
+      out.segments[at(label[s])] = of_points.segments[s];
+    for (std::int32_t& l : out.labels) {
+      if (l >= 0) l = label[at(l)];
+    }
+    collectMembers(out);
+  }
+  for (Segment& segment : out.segments) restoreUnit(cloud.unit(), segment);
+  return out;
+}
+
+}  // namespace segorient::segmentation

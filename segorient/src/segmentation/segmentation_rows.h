@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the segorient authors
+#pragma once
+
+#include <segorient/common/point_view.h>
+#include <segorient/segmentation/segmentation.h>
+
+#include <cstddef>
+#include <cstdint>
+#include <utility>
+#include <vector>
+
+#include "search/prepared_cloud.h"
+
+namespace segorient::segmentation {
+
+/// Fills in members, and each segment's place and size among them, from the labels.
+void collectMembers(Segmentation& segmentation);
+
+/// Normals and curvatures of a cloud's points from those of its rows, 4 floats a point.
+std::vector<float> gatherNormals(const PreparedCloud& cloud, const NormalView& row_normals);
+
+/// Segments of a cloud's rows as segments of its points. \param normals 4 floats a point; without
+/// one a point has label -1
+Segmentation gather(const PreparedCloud& cloud, const std::vector<float>& normals,
+                    const Segmentation& of_rows);
+
+/// Whether a row's normal points the other way than that of the row that stands for its point.
+bool isTurned(const PreparedCloud& cloud, const PointView& row_normals, std::size_t row);
+
+/// Segments of a cloud's points as segments of its rows, lengths in the input's unit. Rows that
+/// repeat a point are in its segment, so sizes are in rows; labels stay by descending size.
+/// \param row_normals where rows have normals of their own: those that repeat a point may have the
+///        opposite one; null where they have that of the point
+/// \param rank where not null: the label here of each label there
+Segmentation scatter(const PreparedCloud& cloud, const Segmentation& of_points,
+                     const PointView* row_normals = nullptr,
+                     std::vector<std::int32_t>* rank = nullptr);
+
+/// Brings one entry a label in the order that `rank` says; an empty rank changes nothing.
+template <typename T>
+void reorder(const std::vector<std::int32_t>& rank, std::vector<T>& by_label) {
+  std::vector<T> out(by_label);
+  for (std::size_t s = 0; s < rank.size(); ++s) {
+    out[static_cast<std::size_t>(rank[s])] = by_label[s];
+  }
+  by_label = std::move(out);
+}
+
+}  // namespace segorient::segmentation
