@@ -5,7 +5,8 @@
 // accuracy, CGAL's where it is installed.
 //   normals_benchmark [FILE...]    PCD or PLY files with true normals; without any, a torus and a
 //   cube normals_benchmark --time [N]   one thread, ratios to our own all-points search; 1,000,000
-//   points#include <pcl/features/normal_3d_omp.h>
+//   points
+#include <pcl/features/normal_3d_omp.h>
 #include <pcl/io/pcd_io.h>
 #include <pcl/io/ply_io.h>
 #include <pcl/point_types.h>

@@ -10,7 +10,8 @@
 //     million points on 14,400 small faces.
 //   orientation_stage_benchmark invariance CLOUD.ply|.pcd ...
 //     Points whose normal changes when the rows are shuffled, and when other numbers of threads are
-//     used, by method; the whole pipeline, compared bit by bit.#include <pcl/io/pcd_io.h>
+//     used, by method; the whole pipeline, compared bit by bit.
+#include <pcl/io/pcd_io.h>
 #include <pcl/io/ply_io.h>
 #include <pcl/point_cloud.h>
 #include <pcl/point_types.h>

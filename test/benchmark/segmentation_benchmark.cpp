@@ -10,8 +10,8 @@
 //   segmentation_benchmark plate [POINTS]       both sides of thin plates
 //   segmentation_benchmark surface [POINTS...]  triangulated area, holes and boundaries of solids
 //   segmentation_benchmark growth               time and memory of one segment's triangulation
-//   segmentation_benchmark FILE...              coverage and triangulation of clouds (pcd,
-//   ply)#include <pcl/console/print.h>
+//   segmentation_benchmark FILE...              coverage and triangulation of clouds (pcd, ply)
+#include <pcl/console/print.h>
 #include <pcl/io/pcd_io.h>
 #include <pcl/io/ply_io.h>
 #include <pcl/search/kdtree.h>

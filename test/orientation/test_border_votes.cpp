@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026, the segorient authors
-// Votes across borders at all dihedral angles, and the contraction of what they say.#include
-// <gtest/gtest.h>
+// Votes across borders at all dihedral angles, and the contraction of what they say.
+#include <gtest/gtest.h>
 #include <random>
 
 #include "orientation/automatic/border_votes.h"

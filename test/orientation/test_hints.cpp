@@ -10,6 +10,7 @@
 #include <memory>
 #include <random>
 
+#include "orientation/sensors/point_hints.h"
 #include "sheet_fixture.h"
 
 namespace segorient::test {
@@ -52,14 +53,14 @@ double up(const OrientedCloud& cloud, std::size_t first, std::size_t last) {
 
 TEST(ResolveHints, RowsOfThePointsThatAreLeft) {
   const std::vector<float> xyz{kNaN, 0, 0, 0, 2, 0, 0, 0, 0, 0, 0, 0, 2, 0, 0, 0};
-  const CompactCloud cloud = compactCloud(viewOf(xyz));
+  PreparedCloud cloud(viewOf(xyz), nullptr, 0);
   ASSERT_EQ(cloud.size(), 2U);
   OrientationHints hints;
   hints.normals = {1, 0, 0, 0, 0, 3, 0, 5, 0, 0, 0, kNaN};
   const PointHints points = resolveHints(hints, cloud);
   ASSERT_EQ(points.directions.size(), 6U);
-  const auto second = static_cast<std::size_t>(cloud.row_of[1]);
-  const auto third = static_cast<std::size_t>(cloud.row_of[2]);
+  const auto second = static_cast<std::size_t>(cloud.pointOf(1));
+  const auto third = static_cast<std::size_t>(cloud.pointOf(2));
   EXPECT_EQ(points.directions[3 * second + 2], 1.F) << "unit length; NaN of the repeated point no";
   EXPECT_EQ(points.directions[3 * third + 1], 1.F);
 }
@@ -67,44 +68,43 @@ TEST(ResolveHints, RowsOfThePointsThatAreLeft) {
 TEST(ResolveHints, IndicesChooseInputRows) {
   const std::vector<float> xyz{0, 0, 0, 0, 1, 0, 0, 0, 2, 0, 0, 0};
   const std::vector<pcl::index_t> indices{2, 0};
-  const CompactCloud cloud = compactCloud(viewOf(xyz), &indices);
+  PreparedCloud cloud(viewOf(xyz), &indices, 0);
   OrientationHints hints;
   hints.viewpoints = {0, 0, 1, 1, 1, 0, 2, 4, 0};
-  const PointHints points = resolveHints(hints, cloud, &indices);
-  EXPECT_EQ(points.directions[3 * static_cast<std::size_t>(cloud.row_of[0]) + 1], 1.F);
-  EXPECT_EQ(points.directions[3 * static_cast<std::size_t>(cloud.row_of[1]) + 2], 1.F);
+  const PointHints points = resolveHints(hints, cloud);
+  ASSERT_EQ(cloud.size(), 2U);
+  EXPECT_EQ(points.directions[3 * static_cast<std::size_t>(cloud.pointOf(2)) + 1], 1.F);
+  EXPECT_EQ(points.directions[3 * static_cast<std::size_t>(cloud.pointOf(0)) + 2], 1.F);
 }
 
 TEST(ResolveHints, RowsWithoutAHintHaveNone) {
   const std::vector<float> xyz{0, 0, 0, 0, 1, 0, 0, 0};
-  const CompactCloud cloud = compactCloud(viewOf(xyz));
+  PreparedCloud cloud(viewOf(xyz), nullptr, 0);
   OrientationHints hints;
   hints.normals = {0, 0, 1};
   const PointHints points = resolveHints(hints, cloud);
-  const auto last = static_cast<std::size_t>(cloud.row_of[1]);
+  const auto last = static_cast<std::size_t>(cloud.pointOf(1));
   for (std::size_t a = 0; a < 3; ++a) EXPECT_EQ(points.directions[3 * last + a], 0.F);
 }
 
 TEST(ResolveHints, LengthsAreInTheCloudsUnit) {
   std::vector<float> xyz{0, 0, 0, 0, 1000, 0, 0, 0, 0, 1000, 0, 0};
-  CompactCloud cloud = compactCloud(viewOf(xyz));
-  normalizeUnit(cloud);
+  PreparedCloud cloud(viewOf(xyz), nullptr, 0);
   OrientationHints hints = seenFrom(0, 0, 5000);
   hints.seeds = {{{990.F, 3.F, 0.F}, {0.F, 0.F, -2.F}},
                  {{kNaN, 0.F, 0.F}, {1.F, 0.F, 0.F}},
                  {{0.F, 0.F, 0.F}, {0.F, 0.F, 0.F}}};
   const PointHints points = resolveHints(hints, cloud);
   EXPECT_TRUE(points.has_viewpoint);
-  EXPECT_FLOAT_EQ(points.viewpoint[2] * cloud.unit, 5000.F);
+  EXPECT_FLOAT_EQ(points.viewpoint[2] * cloud.unit(), 5000.F);
   ASSERT_EQ(points.seeds.size(), 1U) << "those that are no place, or no direction, are left out";
-  EXPECT_EQ(points.seeds[0].point, static_cast<std::size_t>(cloud.row_of[1]));
+  EXPECT_EQ(points.seeds[0].point, static_cast<std::size_t>(cloud.pointOf(1)));
   EXPECT_EQ(points.seeds[0].normal[2], -1.F);
 }
 
 TEST(ResolveHints, ViewpointsFarAwayKeepTheirDirection) {
   const std::vector<float> xyz{0, 0, 0, 0, 1e-9F, 0, 0, 0};
-  CompactCloud cloud = compactCloud(viewOf(xyz));
-  normalizeUnit(cloud);
+  PreparedCloud cloud(viewOf(xyz), nullptr, 0);
   constexpr float kMost = std::numeric_limits<float>::max();
   const PointHints points = resolveHints(seenFrom(0.F, -kMost, kMost / 2), cloud);
   EXPECT_TRUE(points.has_viewpoint);

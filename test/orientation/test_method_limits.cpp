@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026, the segorient authors
-// Where the paper says that its methods fail: what each of them does there, and what it
-// reports.#include <gtest/gtest.h>
+// Where the paper says that its methods fail: what each of them does there, and what it reports.
+#include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>

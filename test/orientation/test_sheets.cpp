@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026, the segorient authors
-// Sheets: normals, denoising, segments and the final filter on thin walls, edges and noise.#include
-// <gtest/gtest.h>
+// Sheets: normals, denoising, segments and the final filter on thin walls, edges and noise.
+#include <gtest/gtest.h>
 #include <array>
 #include <random>
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026, the segorient authors
-// The final filter where two faces meet at a narrow angle.#include <gtest/gtest.h>
+// The final filter where two faces meet at a narrow angle.
+#include <gtest/gtest.h>
 
 #include <array>
 #include <cstdlib>

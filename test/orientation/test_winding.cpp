@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026, the segorient authors
-// Winding numbers of spheres, components inside one another, and the sensor's place.#include
-// <gtest/gtest.h>
+// Winding numbers of spheres, components inside one another, and the sensor's place.
+#include <gtest/gtest.h>
 #include <algorithm>
 #include <limits>
 #include <numeric>

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026, the segorient authors
-// Normals from the winding-number field: against its definition, and where it is to help.#include
-// <gtest/gtest.h>#include <segorient/orientation/pipeline.h>
+// Normals from the winding-number field: against its definition, and where it is to help.
+#include <gtest/gtest.h>
+#include <segorient/orientation/pipeline.h>
 
 #include <algorithm>
 #include <cmath>

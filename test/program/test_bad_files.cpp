@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026, the segorient authors
 // Files that are not whole: an error that names the file, never a crash, never memory that the
-// file's size cannot account for.#include <gtest/gtest.h>
+// file's size cannot account for.
+#include <gtest/gtest.h>
 #include <sys/resource.h>
 
 #include <unistd.h>

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026, the segorient authors
 // Clouds that have nothing to go by, through every command: status 1 and one line, or a defined
-// result.#include <gtest/gtest.h>
+// result.
+#include <gtest/gtest.h>
 #include <sys/resource.h>
 
 #include <cmath>

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026, the segorient authors
-// triangulate, knn, compare and view on the shipped Fandisk.#include
-// <boost/property_tree/json_parser.hpp>#include <boost/property_tree/ptree.hpp>
+// triangulate, knn, compare and view on the shipped Fandisk.
 #include <gtest/gtest.h>
+#include <boost/property_tree/json_parser.hpp>#include <boost/property_tree/ptree.hpp>
 
 #include <cmath>
 #include <cstdlib>

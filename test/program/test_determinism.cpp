@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026, the segorient authors
 // The same bytes from run to run and for any number of threads, and the same orientation of each
-// point whatever their order.#include <gtest/gtest.h>
+// point whatever their order.
+#include <gtest/gtest.h>
 
 #include <algorithm>
 #include <numeric>

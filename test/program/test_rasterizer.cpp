@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026, the segorient authors
-// Pictures must show a wrong patch, and must not show one where there is none.#include
-// <gtest/gtest.h>
+// Pictures must show a wrong patch, and must not show one where there is none.
+#include <gtest/gtest.h>
 #include <cmath>
 #include <random>
 #include <sstream>

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026, the segorient authors
-// What our readers make of good files, against PCL, which wrote them.#include <gtest/gtest.h>
+// What our readers make of good files, against PCL, which wrote them.
+#include <gtest/gtest.h>
 #include <pcl/conversions.h>
 #include <pcl/point_cloud.h>
 #include <pcl/point_types.h>
