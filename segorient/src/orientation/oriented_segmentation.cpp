@@ -106,11 +106,8 @@ OrientedSegmentation orientSegmentation(const PointView& points, const NormalVie
   out.orientation = scatter(
       cloud, normals,
       orientSegments(cloud.points(), normal_view, neighborhoods, of_points, graph, options, hints));
-  std::vector<std::int32_t> rank;
-  out.segmentation = segmentation != nullptr
-                         ? *segmentation
-                         : segmentation::scatter(cloud, of_points, &normals, &rank);
-  segmentation::reorder(rank, out.orientation.segments);
+  out.segmentation =
+      segmentation != nullptr ? *segmentation : segmentation::scatter(cloud, of_points, &normals);
   invertTurned(out.orientation.segments, out.segmentation);
   return out;
 }

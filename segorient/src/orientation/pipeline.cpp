@@ -125,14 +125,12 @@ void runAutomatic(const PipelineOptions& options, detail::StageClock& clock, Wor
 }
 
 // From points to input rows, lengths back to the input's unit.
-void scatter(Working& work, OrientedCloud& out) {
+void scatter(const Working& work, OrientedCloud& out) {
   const PreparedCloud& cloud = work.surface.cloud;
   out.normals = cloud.scatter(work.surface.normals, 4, kNaN);
   out.confidences = cloud.scatter(work.orientation.point_confidences, 1, 0.F);
   out.components = cloud.scatter(work.orientation.point_components, 1, std::int32_t{-1});
-  std::vector<std::int32_t> rank;
-  out.segmentation = segmentation::scatter(cloud, work.surface.segmentation, nullptr, &rank);
-  segmentation::reorder(rank, work.orientation.segments);
+  out.segmentation = segmentation::scatter(cloud, work.surface.segmentation);
   out.segments = work.orientation.segments;
   out.report.spacing *= cloud.unit();
   for (Contradiction& c : out.report.contradictions) {

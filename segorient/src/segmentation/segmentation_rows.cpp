@@ -5,26 +5,13 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <numeric>
+#include <cstdint>
 
 namespace segorient::segmentation {
 namespace {
 
 std::size_t at(std::int32_t i) {
   return static_cast<std::size_t>(i);
-}
-
-// New label of each old one: by descending number of rows; where no point is repeated, nothing
-// changes.
-std::vector<std::int32_t> rankBySize(const std::vector<Segment>& segments) {
-  std::vector<std::int32_t> order(segments.size());
-  std::iota(order.begin(), order.end(), 0);
-  std::stable_sort(order.begin(), order.end(), [&](std::int32_t a, std::int32_t b) {
-    return segments[at(a)].size > segments[at(b)].size;
-  });
-  std::vector<std::int32_t> rank(segments.size());
-  for (std::size_t r = 0; r < order.size(); ++r) rank[at(order[r])] = static_cast<std::int32_t>(r);
-  return rank;
 }
 
 void restoreUnit(float unit, Segment& segment) {
@@ -91,7 +78,7 @@ bool isTurned(const PreparedCloud& cloud, const PointView& row_normals, std::siz
 }
 
 Segmentation scatter(const PreparedCloud& cloud, const Segmentation& of_points,
-                     const PointView* row_normals, std::vector<std::int32_t>* rank) {
+                     const PointView* row_normals) {
   Segmentation out;
   out.labels = cloud.scatter(of_points.labels, 1, std::int32_t{-1});
   out.signs = cloud.scatter(of_points.signs, 1, std::int8_t{0});
@@ -103,16 +90,6 @@ Segmentation scatter(const PreparedCloud& cloud, const Segmentation& of_points,
   }
   out.segments = of_points.segments;
   collectMembers(out);
-  const std::vector<std::int32_t> label = rankBySize(out.segments);
-  if (rank != nullptr) *rank = label;
-  if (!std::is_sorted(label.begin(), label.end())) {
-    for (std::size_t s = 0; s < label.size(); ++s)
-      out.segments[at(label[s])] = of_points.segments[s];
-    for (std::int32_t& l : out.labels) {
-      if (l >= 0) l = label[at(l)];
-    }
-    collectMembers(out);
-  }
   for (Segment& segment : out.segments) restoreUnit(cloud.unit(), segment);
   return out;
 }

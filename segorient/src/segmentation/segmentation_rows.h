@@ -6,8 +6,6 @@
 #include <segorient/segmentation/segmentation.h>
 
 #include <cstddef>
-#include <cstdint>
-#include <utility>
 #include <vector>
 
 #include "search/prepared_cloud.h"
@@ -29,22 +27,11 @@ Segmentation gather(const PreparedCloud& cloud, const std::vector<float>& normal
 bool isTurned(const PreparedCloud& cloud, const PointView& row_normals, std::size_t row);
 
 /// Segments of a cloud's points as segments of its rows, lengths in the input's unit. Rows that
-/// repeat a point are in its segment, so sizes are in rows; labels stay by descending size.
+/// repeat a point are in its segment: sizes are in rows, while labels stay as the points have them,
+/// by descending size without repetition.
 /// \param row_normals where rows have normals of their own: those that repeat a point may have the
 ///        opposite one; null where they have that of the point
-/// \param rank where not null: the label here of each label there
 Segmentation scatter(const PreparedCloud& cloud, const Segmentation& of_points,
-                     const PointView* row_normals = nullptr,
-                     std::vector<std::int32_t>* rank = nullptr);
-
-/// Brings one entry a label in the order that `rank` says; an empty rank changes nothing.
-template <typename T>
-void reorder(const std::vector<std::int32_t>& rank, std::vector<T>& by_label) {
-  std::vector<T> out(by_label);
-  for (std::size_t s = 0; s < rank.size(); ++s) {
-    out[static_cast<std::size_t>(rank[s])] = by_label[s];
-  }
-  by_label = std::move(out);
-}
+                     const PointView* row_normals = nullptr);
 
 }  // namespace segorient::segmentation
