@@ -7,13 +7,9 @@
 
 #include <vector>
 
-namespace segorient {
+#include "orientation/filtered_normals.h"
 
-struct FilteredNormals {
-  std::vector<float> normals;  ///< 4 floats a point: oriented unit normal, residual as given; NaN
-                               ///< only where no neighbour has a normal either
-  std::vector<float> confidences;  ///< 0 to 1: how far the oriented normals around agree
-};
+namespace segorient {
 
 /// Final normals from the oriented normals around each point, that of the point itself being one of
 /// them.

@@ -7,7 +7,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "orientation/automatic/sheet_filter.h"
+#include "orientation/filtered_normals.h"
 
 namespace segorient {
 
