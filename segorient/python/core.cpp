@@ -239,6 +239,22 @@ py::dict reportOf(const OrientedCloud& cloud) {
     contradictions.append(contradiction);
   }
   out["contradictions"] = contradictions;
+  py::list sensors;
+  for (const SensorReport& s : report.sensors) {
+    py::dict sensor;
+    sensor["x"] = s.position[0];
+    sensor["y"] = s.position[1];
+    sensor["z"] = s.position[2];
+    sensor["points"] = s.points;
+    sensor["seen"] = s.seen;
+    sensor["used"] = s.used;
+    sensor["moving"] = s.moving;
+    sensor["hidden"] = s.hidden;
+    sensor["contrary"] = s.contrary;
+    sensor["density"] = s.density;
+    sensors.append(sensor);
+  }
+  out["sensors"] = sensors;
   addSegments(cloud, out);
   return out;
 }

@@ -53,9 +53,37 @@ void printSummary(const PipelineReport& report, const StageMemory& memory,
         report.contradictions.size(), origin[0] + static_cast<double>(where[0]),
         origin[1] + static_cast<double>(where[1]), origin[2] + static_cast<double>(where[2]));
   }
+  for (const SensorReport& s : report.sensors) {
+    if (s.used) continue;
+    std::printf(
+        "not followed    the sensor at (%g, %g, %g) contradicts the surface of its %zu points\n",
+        origin[0] + static_cast<double>(s.position[0]),
+        origin[1] + static_cast<double>(s.position[1]),
+        origin[2] + static_cast<double>(s.position[2]), s.points);
+  }
   std::printf("seconds         %.2f: %s\n", report.seconds, timesText(report.stages).c_str());
   std::printf("peak memory     %.0f MB\n", static_cast<double>(memory.most()) / 1048576.0);
   std::printf("written         %s\n", out.c_str());
+}
+
+void addSensors(const PipelineReport& report, const std::array<double, 3>& origin,
+                JsonWriter& json) {
+  json.beginArray("sensors");
+  for (const SensorReport& s : report.sensors) {
+    json.beginItem();
+    json.field("x", origin[0] + static_cast<double>(s.position[0]));
+    json.field("y", origin[1] + static_cast<double>(s.position[1]));
+    json.field("z", origin[2] + static_cast<double>(s.position[2]));
+    json.field("points", s.points);
+    json.field("seen", s.seen);
+    json.field("used", s.used);
+    json.field("moving", s.moving);
+    json.field("hidden", s.hidden);
+    json.field("contrary", s.contrary);
+    json.field("density", s.density);
+    json.endObject();
+  }
+  json.endArray();
 }
 
 void addSegments(const OrientedCloud& cloud, JsonWriter& json) {
@@ -141,6 +169,7 @@ std::string reportText(const OrientedCloud& cloud, const StageMemory& memory,
     json.endObject();
   }
   json.endArray();
+  addSensors(report, origin, json);
   addSegments(cloud, json);
   return json.finish();
 }

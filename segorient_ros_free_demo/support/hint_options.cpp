@@ -47,10 +47,10 @@ void addSeeds(const std::string& path, const std::array<double, 3>& origin,
 
 void HintOptions::add(CommandLine& line) {
   line.options()("viewpoint", po::value(&viewpoint_text_),
-                 "=X,Y,Z: where an open surface was seen from, else as the file says; closed ones "
-                 "know their outside")("closed", po::bool_switch(&closed_),
-                                       "each part has an inside, whatever a viewpoint says")(
-      "open", po::bool_switch(&open_), "a viewpoint decides, whatever looks like an inside")(
+                 "=X,Y,Z: where all was seen from, else as the file says; what could be seen from "
+                 "there faces it")("closed", po::bool_switch(&closed_),
+                                   "each part has an inside, whatever one viewpoint says")(
+      "open", po::bool_switch(&open_), "one viewpoint decides, whatever looks like an inside")(
       "seeds", po::value(&seeds_), "a cloud of points whose normals are known")(
       "keep-orientation", po::bool_switch(&keep_),
       "take the signs of the normals that IN has as evidence");

@@ -73,8 +73,11 @@ TEST(ResolveHints, IndicesChooseInputRows) {
   hints.viewpoints = {0, 0, 1, 1, 1, 0, 2, 4, 0};
   const PointHints points = resolveHints(hints, cloud);
   ASSERT_EQ(cloud.size(), 2U);
-  EXPECT_EQ(points.directions[3 * static_cast<std::size_t>(cloud.pointOf(2)) + 1], 1.F);
-  EXPECT_EQ(points.directions[3 * static_cast<std::size_t>(cloud.pointOf(0)) + 2], 1.F);
+  const auto place = [&](std::size_t row, std::size_t axis) {
+    return points.sensors[3 * static_cast<std::size_t>(cloud.pointOf(row)) + axis] * cloud.unit();
+  };
+  EXPECT_FLOAT_EQ(place(2, 1), 4.F);
+  EXPECT_FLOAT_EQ(place(0, 2), 1.F);
 }
 
 TEST(ResolveHints, RowsWithoutAHintHaveNone) {

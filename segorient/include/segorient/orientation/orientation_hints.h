@@ -12,14 +12,21 @@ namespace segorient {
 /// What kind of surface a cloud is said to be.
 enum class SurfaceKind : std::uint8_t {
   UNKNOWN,  ///< told from the cloud itself
-  CLOSED,   ///< each part has an inside; a viewpoint does not overrule it
-  OPEN      ///< a viewpoint decides, whatever looks like an inside
+  CLOSED,   ///< each part has an inside; one viewpoint for all does not overrule it
+  OPEN      ///< one viewpoint for all decides, whatever looks like an inside
 };
 
-/// What is known about the orientation of a cloud beforehand: evidence for OrientationMethod::AUTO,
-/// not truth. Seeds weigh most, then what is said of each point, then the viewpoint, which only
-/// open surfaces listen to: nothing closed is seen whole from one place. Each turns over connected
-/// components, and clusters of segments that borders do not hold firmly.
+/// What is known about the orientation of a cloud beforehand, for OrientationMethod::AUTO.
+///
+/// Where a point was seen from is a fact: its normal faces that place, and the surface around it
+/// decides only where the view is so grazing that the normal's own error could turn it, and where
+/// nothing is known. Points that contradict their sensor, as a wrong pose makes them, are left to
+/// the surface and reported (SensorReport). One viewpoint for all points counts for those that it
+/// could have seen, and not for what closes in itself, unless the density of the points shows that
+/// they were seen from there, or `surface` is OPEN.
+///
+/// Seeds and normals are evidence: seeds weigh most. Each turns over connected components, and
+/// clusters of segments that borders do not hold firmly.
 struct OrientationHints {
   /// A point and the normal that its surface has there, of any length.
   struct Seed {

@@ -8,6 +8,7 @@
 #include "common/median.h"
 #include "features/sheet_normals.h"
 #include "orientation/automatic/sheet_filter.h"
+#include "orientation/sensors/sensor_signs.h"
 #include "orientation/winding/winding_normals.h"
 #include "segmentation/sheet_segmentation.h"
 
@@ -47,6 +48,9 @@ AutoNormals orientPoints(const PointView& points, const Neighborhoods& neighborh
                             settings.filter_rounds, settings.filter_wedges, threads);
   if (settings.winding_normals && settings.filter_rounds > 0) {
     refineByWinding(points, sheets.spacing, sheets.residual, threads, filtered);
+  }
+  if (!out.orientation.toward.empty()) {
+    detail::faceSensors(out.orientation.toward, filtered);
   }
   out.normals = std::move(filtered.normals);
   for (std::size_t i = 0; i < points.size; ++i) {

@@ -11,6 +11,7 @@
 #include "orientation/automatic/loose_parts.h"
 #include "orientation/automatic/segment_clusters.h"
 #include "orientation/sensors/hint_votes.h"
+#include "orientation/sensors/sensor_signs.h"
 #include "orientation/sensors/viewpoint_fit.h"
 #include "orientation/winding/winding_components.h"
 
@@ -50,6 +51,7 @@ class Orienter {
         options_(options),
         hints_(hints),
         threads_(threads),
+        sensors_(detail::findKnownSensors(points, nb, field.spacing, hints, threads)),
         votes_(borderVotes(points, nb, field, segmentation, threads)),
         clusters_(segmentation, votes_,
                   {options.contract_certain, options.flip_clusters, points.size}) {}
@@ -58,8 +60,13 @@ class Orienter {
     numberComponents();
     turnComponentsOut();
     followHints();
-    if (options_.infer_viewpoint) followViewpoint();
+    if (!sensors_.none()) {
+      followSensors();
+    } else if (options_.infer_viewpoint) {
+      followViewpoint();
+    }
     judge();
+    believeSensors();
     return std::move(out_);
   }
 
@@ -77,6 +84,9 @@ class Orienter {
   void keepWhatWindsRight(const std::vector<std::int32_t>& part_of,
                           std::vector<bool>& chosen) const;
   void followHints();
+  void followSensors();
+  void keepClosedFromSensors(const std::vector<detail::Ballot>& ballots);
+  void believeSensors();
   void followViewpoint();
   std::vector<Ballot> facingOf(const Viewpoint& from) const;
   void turnSegmentsTo(const ViewpointFit& fit);
@@ -98,6 +108,8 @@ class Orienter {
   const AutomaticOptions& options_;
   const PointHints& hints_;
   const int threads_;
+  detail::KnownSensors sensors_;
+  std::vector<float> facing_;  // of each point's sensor, see detail::facingOf()
   std::vector<BorderVote> votes_;
   detail::SegmentClusters clusters_;
   std::vector<std::int8_t> signs_;         // of each segment
@@ -350,6 +362,68 @@ void Orienter::followHints() {
   }
   turnClusters(outvoted(known, kFirmBorders));
   turnClusters(outvoted(seen, kSureBorders));
+}
+
+// One place for all points may be wrong as a whole, inside a solid, or have seen one side of it
+// only. Unless its density says that all was seen from there, what closes in itself knows better:
+// it keeps its outside if that faces the place, and if its points are spread as evenly as no sensor
+// spreads them.
+void Orienter::keepClosedFromSensors(const std::vector<Ballot>& ballots) {
+  const bool told_closed = hints_.surface == SurfaceKind::CLOSED;
+  if (!sensors_.common || hints_.surface == SurfaceKind::OPEN) return;
+  if (sensors_.scans[0].density < detail::kConfirmed && !told_closed) return;
+  std::vector<Ballot> by_component(winding_.size());
+  for (std::size_t s = 0; s < signs_.size(); ++s) {
+    by_component[at(component_[s])].add(ballots[s], signs_[s]);
+  }
+  std::vector<bool> own(winding_.size(), false);
+  std::size_t believed = 0;
+  for (std::size_t c = 0; c < own.size(); ++c) {
+    const bool contrary = by_component[c].share() < -kClearly;
+    const bool keeps = told_closed || !contrary || sensors_.even;
+    own[c] = keeps && isClosed(c, kOpenResidual);
+    if (!own[c] || !contrary) believed += out_.result.components[c].points;
+  }
+  for (std::size_t i = 0; i < points_.size; ++i) {
+    const std::int32_t s = segmentation_.labels[i];
+    if (s < 0 || !own[at(component_[at(s)])]) continue;
+    facing_[i] = 0.F;
+    std::fill_n(&sensors_.toward[3 * i], 3, 0.F);
+  }
+  SensorReport& report = sensors_.scans[0];
+  report.used = 2 * believed > points_.size;
+  if (!report.used) report.seen = 0;
+}
+
+// What a sensor saw faces it: whole segments, whatever their borders say, and the segments around
+// them as borders say.
+void Orienter::followSensors() {
+  facing_ = detail::facingOf(field_, points_.size, sensors_);
+  keepClosedFromSensors(detail::facingBySegment(facing_, segmentation_));
+  const std::vector<Ballot> ballots = detail::facingBySegment(facing_, segmentation_);
+  const std::vector<bool> decided =
+      detail::turnToSensors(ballots, votes_, segmentation_, clusterOf(), component_, signs_);
+  std::vector<Ballot> seen(winding_.size());
+  for (std::size_t s = 0; s < signs_.size(); ++s) {
+    if (decided[s]) seen[at(component_[s])].add(ballots[s], signs_[s]);
+  }
+  for (std::size_t c = 0; c < seen.size(); ++c) {
+    if (!(seen[c].total > 0.F)) continue;
+    out_.result.components[c].by = DecidedBy::HINTS;
+    out_.result.components[c].confidence = std::fabs(seen[c].share());
+  }
+}
+
+// Of segments that mix what was seen from two sides, each point as its sensor says.
+void Orienter::believeSensors() {
+  if (sensors_.none()) return;
+  for (std::size_t i = 0; i < points_.size; ++i) {
+    if (!detail::isClear(facing_[i])) continue;
+    out_.result.point_signs[i] = facing_[i] < 0.F ? std::int8_t{-1} : std::int8_t{1};
+    out_.result.point_confidences[i] = 1.F;
+  }
+  out_.sensors = std::move(sensors_.scans);
+  out_.toward = std::move(sensors_.toward);
 }
 
 // If all that the largest cluster knows was seen from one place, so was the rest: other clusters

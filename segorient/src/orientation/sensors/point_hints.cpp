@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace segorient {
 namespace {
@@ -42,7 +43,7 @@ std::size_t rowsOf(const std::vector<float>& values) {
 
 void addDirections(const OrientationHints& hints, const PreparedCloud& cloud,
                    std::vector<float>& directions) {
-  if (hints.normals.empty() && hints.viewpoints.empty()) return;
+  if (hints.normals.empty()) return;
   directions.assign(3 * cloud.size(), 0.F);
   for (std::size_t row = 0; row < cloud.rows(); ++row) {
     if (cloud.pointOf(row) < 0) continue;
@@ -55,13 +56,22 @@ void addDirections(const OrientationHints& hints, const PreparedCloud& cloud,
                            static_cast<double>(n[2])};
       if (normalize(v, unit_vector)) add(unit_vector, out);
     }
-    if (row < rowsOf(hints.viewpoints)) {
-      double v[3];
-      for (std::size_t a = 0; a < 3; ++a) {
-        v[a] = static_cast<double>(hints.viewpoints[3 * row + a]) -
-               static_cast<double>(cloud.unit()) * static_cast<double>(cloud.points()[i][a]);
-      }
-      if (normalize(v, unit_vector)) add(unit_vector, out);
+  }
+}
+
+// Of rows that repeat a point, the place that comes first in order, whatever the order of the rows.
+void addSensors(const OrientationHints& hints, const PreparedCloud& cloud,
+                std::vector<float>& sensors) {
+  if (hints.viewpoints.empty()) return;
+  sensors.assign(3 * cloud.size(), std::numeric_limits<float>::quiet_NaN());
+  for (std::size_t row = 0; row < std::min(cloud.rows(), rowsOf(hints.viewpoints)); ++row) {
+    if (cloud.pointOf(row) < 0) continue;
+    const float* given = &hints.viewpoints[3 * row];
+    const Vector place = scaled({given[0], given[1], given[2]}, cloud.unit());
+    float* out = &sensors[3 * static_cast<std::size_t>(cloud.pointOf(row))];
+    if (!isFinite(place.data())) continue;
+    if (!isFinite(out) || std::lexicographical_compare(place.begin(), place.end(), out, out + 3)) {
+      std::copy(place.begin(), place.end(), out);
     }
   }
 }
@@ -92,6 +102,7 @@ PointHints resolveHints(const OrientationHints& hints, PreparedCloud& cloud) {
   out.viewpoint = scaled(hints.viewpoint, cloud.unit());
   out.has_viewpoint = hints.has_viewpoint && isFinite(out.viewpoint.data());
   addDirections(hints, cloud, out.directions);
+  addSensors(hints, cloud, out.sensors);
   addSeeds(hints, cloud, out.seeds);
   return out;
 }

@@ -1,0 +1,255 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the segorient authors
+#include "orientation/sensors/known_sensors.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <numeric>
+
+#include "orientation/sensors/scan_checks.h"
+
+namespace segorient::detail {
+namespace {
+
+using Place = std::array<float, 3>;
+
+// Fewer points say too little about their sensor; they are looked at together.
+constexpr std::uint32_t kLeastPoints = 200;
+
+// What is known of a place by its points, measured on the scans of 39 virtual and real clouds at
+// their true places: .09 hidden, .01 contrary, and a density ratio of .03 to .65, up to 1.6 from
+// the air and of photographs. Elsewhere most of them have more than .1 hidden or .05 contrary, and
+// the ratio is 1.2 to 5.
+constexpr float kMostHidden = 0.1F;
+constexpr float kMostContrary = 0.01F;
+// A density that varies, as thinning would not leave it, and far from as the sensor would have it:
+// then fewer hidden points are enough.
+constexpr float kDenied = 1.3F;
+constexpr float kVaries = 0.3F;
+constexpr float kFewHidden = 0.02F;
+
+bool isKnown(const float* place) {
+  return std::isfinite(place[0]) && std::isfinite(place[1]) && std::isfinite(place[2]);
+}
+
+// The places in ascending order, and which of them each point has.
+std::vector<Place> numberPlaces(const std::vector<float>& sensors, std::vector<std::int32_t>& of) {
+  std::vector<std::uint32_t> order;
+  for (std::size_t i = 0; i < of.size(); ++i) {
+    if (isKnown(&sensors[3 * i])) order.push_back(static_cast<std::uint32_t>(i));
+  }
+  const auto place = [&](std::uint32_t i) {
+    return Place{sensors[3 * i], sensors[3 * i + 1], sensors[3 * i + 2]};
+  };
+  std::sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {
+    const Place pa = place(a);
+    const Place pb = place(b);
+    return pa != pb ? pa < pb : a < b;
+  });
+  std::vector<Place> places;
+  for (const std::uint32_t i : order) {
+    if (places.empty() || places.back() != place(i)) places.push_back(place(i));
+    of[i] = static_cast<std::int32_t>(places.size() - 1);
+  }
+  return places;
+}
+
+class Finder {
+ public:
+  Finder(const PointView& points, const Neighborhoods& nb, const float* spacing, int threads)
+      : points_(points), nb_(nb), spacing_(spacing), threads_(threads) {}
+
+  KnownSensors run(const PointHints& hints) {
+    std::vector<float> sensors = hints.sensors;
+    if (hints.has_viewpoint) fillIn(hints.viewpoint, sensors);
+    if (sensors.empty()) return {};
+    out_.common = hints.has_viewpoint && hints.sensors.empty();
+    listScans(sensors);
+    if (out_.scans.empty()) return {};
+    point(sensors);
+    for (std::size_t s = 0; s < out_.scans.size(); ++s) look(s);
+    if (out_.scans.size() > 1 || !out_.common) compare();
+    countSeen();
+    return std::move(out_);
+  }
+
+ private:
+  void fillIn(const Place& place, std::vector<float>& sensors) const {
+    sensors.resize(3 * points_.size, std::numeric_limits<float>::quiet_NaN());
+    for (std::size_t i = 0; i < points_.size; ++i) {
+      if (!isKnown(&sensors[3 * i])) std::copy(place.begin(), place.end(), &sensors[3 * i]);
+    }
+  }
+
+  void listScans(const std::vector<float>& sensors) {
+    std::vector<std::int32_t> place_of(points_.size, -1);
+    const std::vector<Place> places = numberPlaces(sensors, place_of);
+    std::vector<std::uint32_t> size(places.size(), 0);
+    for (const std::int32_t p : place_of) {
+      if (p >= 0) ++size[static_cast<std::size_t>(p)];
+    }
+    std::vector<std::int32_t> number(places.size(), -1);
+    std::array<double, 3> sum{0.0, 0.0, 0.0};
+    SensorReport moving;
+    moving.moving = true;
+    for (std::size_t p = 0; p < places.size(); ++p) {
+      if (size[p] < kLeastPoints && places.size() > 1) {
+        moving.points += size[p];
+        for (std::size_t a = 0; a < 3; ++a) {
+          sum[a] += static_cast<double>(places[p][a]) * static_cast<double>(size[p]);
+        }
+        continue;
+      }
+      number[p] = static_cast<std::int32_t>(out_.scans.size());
+      SensorReport scan;
+      scan.position = places[p];
+      scan.points = size[p];
+      out_.scans.push_back(scan);
+    }
+    const auto together = static_cast<std::int32_t>(out_.scans.size());
+    if (moving.points > 0) {
+      for (std::size_t a = 0; a < 3; ++a) {
+        moving.position[a] = static_cast<float>(sum[a] / static_cast<double>(moving.points));
+      }
+      out_.scans.push_back(moving);
+    }
+    out_.scan.assign(points_.size, -1);
+    for (std::size_t i = 0; i < points_.size; ++i) {
+      if (place_of[i] < 0) continue;
+      const std::int32_t n = number[static_cast<std::size_t>(place_of[i])];
+      out_.scan[i] = n < 0 ? together : n;
+    }
+  }
+
+  void point(const std::vector<float>& sensors) {
+    out_.toward.assign(3 * points_.size, 0.F);
+    for (std::size_t i = 0; i < points_.size; ++i) {
+      if (out_.scan[i] < 0) continue;
+      double v[3];
+      double square = 0.0;
+      for (std::size_t a = 0; a < 3; ++a) {
+        v[a] = static_cast<double>(sensors[3 * i + a]) - static_cast<double>(points_[i][a]);
+        square += v[a] * v[a];
+      }
+      const double length = std::sqrt(square);
+      if (!(length > 0.0)) continue;
+      for (std::size_t a = 0; a < 3; ++a)
+        out_.toward[3 * i + a] = static_cast<float>(v[a] / length);
+    }
+  }
+
+  // What the points of one scan say about its sensor.
+  void look(std::size_t s) {
+    SensorReport& report = out_.scans[s];
+    if (report.moving || report.points < kLeastPoints) return;
+    std::vector<std::uint32_t> rows;
+    for (std::size_t i = 0; i < points_.size; ++i) {
+      if (out_.scan[i] == static_cast<std::int32_t>(s))
+        rows.push_back(static_cast<std::uint32_t>(i));
+    }
+    const Scan scan(points_, rows, report.position, threads_);
+    const Scan::Density density = scan.density();
+    report.density = density.ratio;
+    std::vector<std::uint8_t> hidden = scan.hidden(false);
+    const auto share = [](const std::vector<std::uint8_t>& flags) {
+      const auto count = std::accumulate(flags.begin(), flags.end(), std::size_t{0});
+      return static_cast<float>(count) / static_cast<float>(flags.size());
+    };
+    report.hidden = share(hidden);
+    if (report.density < kConfirmed) return;
+    const bool denied = report.density > kDenied && density.constant > kVaries &&
+                        std::isfinite(report.density) && report.hidden > kFewHidden;
+    if (out_.common) {
+      out_.even = density.constant < kVaries;
+      if (report.hidden > kMostHidden) keepVisible(rows, scan.hidden(true));
+    } else if (report.hidden > kMostHidden || denied) {
+      report.used = false;
+    }
+  }
+
+  // Gaps between the points of what hides others let some through: only what lies among visible
+  // points is left.
+  void keepVisible(const std::vector<std::uint32_t>& rows,
+                   const std::vector<std::uint8_t>& hidden) {
+    constexpr int kAround = 16;
+    std::vector<std::uint8_t> behind(points_.size, 1);
+    for (std::size_t k = 0; k < rows.size(); ++k) behind[rows[k]] = hidden[k];
+    for (const std::uint32_t i : rows) {
+      bool visible = true;
+      const int count = std::min(nb_.count(i), kAround + 1);
+      for (int j = 0; j < count; ++j) {
+        visible = visible && behind[static_cast<std::size_t>(nb_.indices(i)[j])] == 0;
+      }
+      if (!visible) std::fill_n(&out_.toward[3 * std::size_t{i}], 3, 0.F);
+    }
+  }
+
+  // Scans against each other, and against themselves: the worst one is in the wrong, which may
+  // clear the others.
+  void compare() {
+    const std::size_t n = out_.scans.size();
+    const ContraryPairs pairs =
+        findContraryPairs(points_, nb_, spacing_, out_.toward, out_.scan, n, threads_);
+    // Those whose density confirms them are believed first.
+    const auto shareOf = [&](std::size_t s) {
+      double all = 0.0;
+      double contrary = 0.0;
+      for (std::size_t t = 0; t < n; ++t) {
+        if (!out_.scans[t].used && t != s) continue;
+        all += pairs.pairs[s * n + t];
+        contrary += pairs.contrary[s * n + t];
+      }
+      return all > 0.0 ? static_cast<float>(contrary / all) : 0.F;
+    };
+    for (;;) {
+      std::size_t worst = n;
+      float most = kMostContrary;
+      for (std::size_t s = 0; s < n; ++s) {
+        const float share = shareOf(s);
+        out_.scans[s].contrary = share;
+        if (!out_.scans[s].used || out_.scans[s].density < kConfirmed || !(share > most)) continue;
+        most = share;
+        worst = s;
+      }
+      if (worst == n) break;
+      out_.scans[worst].used = false;
+    }
+    for (std::size_t s = 0; s < n; ++s) {
+      if (!out_.scans[s].used) out_.drop(s);
+    }
+  }
+
+  void countSeen() {
+    for (std::size_t i = 0; i < points_.size; ++i) {
+      const float* v = out_.of(i);
+      if (v[0] != 0.F || v[1] != 0.F || v[2] != 0.F)
+        ++out_.scans[static_cast<std::size_t>(out_.scan[i])].seen;
+    }
+  }
+
+  const PointView& points_;
+  const Neighborhoods& nb_;
+  const float* spacing_;
+  int threads_;
+  KnownSensors out_;
+};
+
+}  // namespace
+
+void KnownSensors::drop(std::size_t scan_number) {
+  scans[scan_number].used = false;
+  scans[scan_number].seen = 0;
+  for (std::size_t i = 0; i < scan.size(); ++i) {
+    if (scan[i] == static_cast<std::int32_t>(scan_number)) std::fill_n(&toward[3 * i], 3, 0.F);
+  }
+}
+
+KnownSensors findKnownSensors(const PointView& points, const Neighborhoods& neighborhoods,
+                              const float* spacing, const PointHints& hints, int threads) {
+  if (hints.sensors.empty() && !hints.has_viewpoint) return {};
+  return Finder(points, neighborhoods, spacing, threads).run(hints);
+}
+
+}  // namespace segorient::detail

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the segorient authors
+#pragma once
+
+#include <segorient/common/neighborhoods.h>
+#include <segorient/common/point_view.h>
+#include <segorient/orientation/sensor_report.h>
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "orientation/sensors/point_hints.h"
+
+namespace segorient::detail {
+
+/// Up to this SensorReport::density the sensor was there: elsewhere it is .7 and more.
+constexpr float kConfirmed = 0.7F;
+
+/// Where each point was seen from, as far as that is known and not contradicted.
+struct KnownSensors {
+  std::vector<float> toward;        ///< 3 a point: unit vector to its sensor; 0 = unknown
+  std::vector<std::int32_t> scan;   ///< into `scans`, -1 = none
+  std::vector<SensorReport> scans;  ///< positions in the cloud's unit, by position
+  /// The one place for all points, which a closed surface may contradict as a whole; else every
+  /// point has been told its own.
+  bool common = false;
+  /// Of the common place: points are spread evenly, as no sensor spreads them.
+  bool even = false;
+
+  bool none() const { return toward.empty(); }
+  const float* of(std::size_t point) const { return &toward[3 * point]; }
+  /// Takes back what a scan says of its points.
+  void drop(std::size_t scan_number);
+};
+
+/// Who saw what, checked.
+///
+/// Scans are points with one sensor. A scan is not followed if its points contradict its sensor
+/// (some lie behind others, or a smooth sheet would have to face both ways), unless their density
+/// confirms that it was there. Of the one viewpoint of a cloud that it cannot have seen whole, only
+/// what is surely visible is left.
+/// \param spacing one a point: mean distance to the 6 nearest
+KnownSensors findKnownSensors(const PointView& points, const Neighborhoods& neighborhoods,
+                              const float* spacing, const PointHints& hints, int threads);
+
+}  // namespace segorient::detail

@@ -1,0 +1,229 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the segorient authors
+#include "orientation/sensors/scan_checks.h"
+
+#include <segorient/common/threads.h>
+#include <segorient/search/median_hash_index.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "common/median.h"
+#include "features/sheet_fit.h"
+
+namespace segorient::detail {
+namespace {
+
+// Enough for shares of a hundredth.
+constexpr std::size_t kSamples = 3000;
+// Neighbours of the plane that density and incidence are measured in: as many as an edge leaves
+// flat and noise of half a spacing does not tilt.
+constexpr int kPlane = 24;
+
+float dot(const float* a, const float* b) {
+  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+Plane planeOf(const PointView& points, const Neighborhoods& nb, std::size_t i, int k) {
+  Moments m;
+  m.addOrigin();
+  const pcl::index_t* row = nb.indices(i);
+  const int count = std::min(nb.count(i), k + 1);
+  const float* p = points[i];
+  const float h = meanDistance(points, nb, i, 6);
+  const float scale = h > 0.F ? 1.F / h : 0.F;
+  for (int j = 1; j < count; ++j) {
+    const float* q = points[static_cast<std::size_t>(row[j])];
+    m.add((q[0] - p[0]) * scale, (q[1] - p[1]) * scale, (q[2] - p[2]) * scale);
+  }
+  return fitPlane(m);
+}
+
+std::size_t strideOf(std::size_t points, std::size_t samples) {
+  return std::max<std::size_t>(1, points / samples);
+}
+
+float scatterOf(std::vector<float> r) {
+  constexpr float kMost = 1.5F;  // a factor of four and more: another surface, or an outlier
+  const float middle = median(r);
+  double sum = 0.0;
+  for (const float v : r) sum += static_cast<double>(std::min(std::fabs(v - middle), kMost));
+  return r.empty() ? 0.F : static_cast<float>(sum / static_cast<double>(r.size()));
+}
+
+}  // namespace
+
+Scan::Scan(const PointView& points, const std::vector<std::uint32_t>& rows,
+           const std::array<float, 3>& sensor, int threads)
+    : xyz_(4 * rows.size(), 0.F),
+      direction_(4 * rows.size(), 0.F),
+      distance_(rows.size()),
+      spacing_(rows.size()),
+      threads_(threads) {
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    double v[3];
+    double square = 0.0;
+    for (std::size_t a = 0; a < 3; ++a) {
+      v[a] = static_cast<double>(points[rows[i]][a]) - static_cast<double>(sensor[a]);
+      xyz_[4 * i + a] = static_cast<float>(v[a]);
+      square += v[a] * v[a];
+    }
+    const double d = std::sqrt(square);
+    distance_[i] = static_cast<float>(d);
+    for (std::size_t a = 0; a < 3 && d > 0.0; ++a) {
+      direction_[4 * i + a] = static_cast<float>(v[a] / d);
+    }
+  }
+  search::MedianHashIndex index;
+  search::MedianHashIndex::Options options;
+  options.threads = threads;
+  index.build(view(), nullptr, options);
+  index.nearestKAll(kPlane + 1, near_, false);
+  for (std::size_t i = 0; i < rows.size(); ++i) spacing_[i] = meanDistance(view(), near_, i, 6);
+}
+
+std::vector<std::uint8_t> Scan::hidden(bool all) const {
+  constexpr int kAround = 24;      // in angle: of a nearer surface, and of the point's own
+  constexpr int kTwo = 2;          // a single point that floats before the others hides nothing
+  constexpr float kLeast = 0.15F;  // a surface that is seen at less rises by many spacings
+  const std::size_t step = all ? 1 : strideOf(size(), kSamples);
+  const std::size_t n = (size() + step - 1) / step;
+  search::MedianHashIndex index;
+  search::MedianHashIndex::Options options;
+  options.threads = threads_;
+  index.build({direction_.data(), 4, size()}, nullptr, options);
+  std::vector<std::uint8_t> out(n, 0);
+#pragma omp parallel for num_threads(resolveThreads(threads_)) schedule(dynamic, 64)
+  for (std::size_t s = 0; s < n; ++s) {
+    const std::size_t i = s * step;
+    const Plane plane = planeOf(view(), near_, i, kPlane);
+    const float incidence =
+        plane.valid ? std::fabs(dot(plane.normal.data(), &direction_[4 * i])) : 1.F;
+    // Four spacings before it, along the surface, and a thirtieth of its distance: steps of depth.
+    const float d = distance_[i];
+    const float margin = std::max(4.F * spacing_[i] / std::max(incidence, kLeast), 0.03F * d);
+    std::array<pcl::index_t, kAround> around;
+    std::array<float, kAround> squares;
+    const int found = index.nearestK(&direction_[4 * i], kAround, around.data(), squares.data());
+    int before = 0;
+    for (int j = 0; j < found; ++j) {
+      const auto at = static_cast<std::size_t>(j);
+      const auto q = static_cast<std::size_t>(around[at]);
+      if (distance_[q] >= d - margin) continue;
+      const float reach = spacing_[q] / distance_[q];
+      before += squares[at] < reach * reach ? 1 : 0;
+    }
+    out[s] = before >= kTwo ? 1 : 0;
+  }
+  return out;
+}
+
+Scan::Density Scan::density() const {
+  // Patches that are flat and span two directions: others have no density on a surface.
+  constexpr float kFlat = 0.05F;
+  constexpr float kWide = 0.08F;
+  constexpr std::size_t kFewest = 50;
+  constexpr float kGrazing = 0.03F;
+  // Equal angles crowd at the poles of the sensor's axis: no nearer than 6 degrees.
+  constexpr float kPole = 0.1F;
+  constexpr std::size_t kLaws = 5;  // no axis, three axes, an image
+  const std::size_t step = strideOf(size(), kSamples);
+  std::array<double, 3> mean{0.0, 0.0, 0.0};
+  for (std::size_t i = 0; i < size(); ++i) {
+    for (std::size_t a = 0; a < 3; ++a) mean[a] += static_cast<double>(direction_[4 * i + a]);
+  }
+  const double length = std::sqrt(mean[0] * mean[0] + mean[1] * mean[1] + mean[2] * mean[2]);
+  float gaze[3] = {0.F, 0.F, 0.F};
+  for (std::size_t a = 0; a < 3 && length > 0.0; ++a) {
+    gaze[a] = static_cast<float>(mean[a] / length);
+  }
+  std::vector<float> constant;
+  std::array<std::vector<float>, kLaws> laws;
+  for (std::size_t i = 0; i < size(); i += step) {
+    const Plane plane = planeOf(view(), near_, i, kPlane);
+    const Eigen::Vector3f& l = plane.lambda;
+    if (!plane.valid || !(l[0] < kFlat * l[1]) || !(l[1] > kWide * l[2])) continue;
+    if (!(distance_[i] > 0.F) || !(spacing_[i] > 0.F)) continue;
+    const float* u = &direction_[4 * i];
+    const float log_density = -0.5F * std::log(l[1] * l[2]) - 2.F * std::log(spacing_[i]);
+    const float incidence = std::max(std::fabs(dot(plane.normal.data(), u)), kGrazing);
+    const float plain = log_density - std::log(incidence) + 2.F * std::log(distance_[i]);
+    constant.push_back(log_density);
+    laws[0].push_back(plain);
+    for (std::size_t a = 0; a < 3; ++a) {
+      const float from_axis = std::sqrt(std::max(1.F - u[a] * u[a], kPole * kPole));
+      laws[1 + a].push_back(plain + std::log(from_axis));
+    }
+    laws[4].push_back(plain + 3.F * std::log(std::max(dot(gaze, u), kPole)));
+  }
+  Density out;
+  if (constant.size() < kFewest) return out;
+  out.constant = scatterOf(constant);
+  if (!(out.constant > 0.F)) return out;
+  for (const std::vector<float>& law : laws) {
+    out.ratio = std::min(out.ratio, scatterOf(law) / out.constant);
+  }
+  return out;
+}
+
+ContraryPairs findContraryPairs(const PointView& points, const Neighborhoods& nb,
+                                const float* spacing, const std::vector<float>& toward,
+                                const std::vector<std::int32_t>& scan, std::size_t scans,
+                                int threads) {
+  constexpr std::size_t kPairSamples = 40000;
+  constexpr int kAround = 8;
+  constexpr float kClear = 0.3F;     // 17 degrees above grazing
+  constexpr float kParallel = 0.9F;  // and no edge between them
+  constexpr float kOffset = 0.7F;    // spacings: less than what walls are apart
+  ContraryPairs out;
+  out.pairs.assign(scans * scans, 0.0);
+  out.contrary.assign(scans * scans, 0.0);
+  const std::size_t step = strideOf(points.size, kPairSamples);
+  const std::size_t n = (points.size + step - 1) / step;
+  struct Pairs {
+    std::array<std::int32_t, kAround> scan;
+    std::array<std::int8_t, kAround> agree;  // 0 where nothing is said
+  };
+  std::vector<Pairs> found(n);
+#pragma omp parallel for num_threads(resolveThreads(threads)) schedule(dynamic, 256)
+  for (std::size_t s = 0; s < n; ++s) {
+    found[s].agree.fill(0);
+    const std::size_t i = s * step;
+    if (scan[i] < 0) continue;
+    const Plane mine = planeOf(points, nb, i, kSheetNeighbors);
+    const float view = mine.valid ? dot(mine.normal.data(), &toward[3 * i]) : 0.F;
+    if (std::fabs(view) < kClear) continue;
+    const int count = std::min(nb.count(i) - 1, kAround);
+    for (int j = 0; j < count; ++j) {
+      const auto q = static_cast<std::size_t>(nb.indices(i)[j + 1]);
+      if (scan[q] < 0) continue;
+      const Plane other = planeOf(points, nb, q, kSheetNeighbors);
+      if (!other.valid) continue;
+      const float seen = dot(other.normal.data(), &toward[3 * q]);
+      const float parallel = mine.normal.dot(other.normal);
+      float offset = 0.F;
+      for (std::size_t a = 0; a < 3; ++a) {
+        offset += (points[q][a] - points[i][a]) * mine.normal[static_cast<Eigen::Index>(a)];
+      }
+      if (std::fabs(seen) < kClear || std::fabs(parallel) < kParallel) continue;
+      if (std::fabs(offset) > kOffset * spacing[i]) continue;
+      const auto at = static_cast<std::size_t>(j);
+      found[s].scan[at] = scan[q];
+      found[s].agree[at] = view * seen * parallel > 0.F ? 1 : -1;
+    }
+  }
+  for (std::size_t s = 0; s < n; ++s) {
+    for (std::size_t j = 0; j < kAround; ++j) {
+      if (found[s].agree[j] == 0) continue;
+      const auto a = static_cast<std::size_t>(scan[s * step]);
+      const auto b = static_cast<std::size_t>(found[s].scan[j]);
+      for (const std::size_t pair : {a * scans + b, b * scans + a}) {
+        out.pairs[pair] += 1.0;
+        if (found[s].agree[j] < 0) out.contrary[pair] += 1.0;
+      }
+    }
+  }
+  return out;
+}
+
+}  // namespace segorient::detail

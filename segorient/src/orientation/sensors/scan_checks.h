@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the segorient authors
+#pragma once
+
+#include <segorient/common/neighborhoods.h>
+#include <segorient/common/point_view.h>
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <vector>
+
+namespace segorient::detail {
+
+/// Points that one sensor is said to have seen, and their neighbours among themselves.
+class Scan {
+ public:
+  /// \param rows of the points
+  Scan(const PointView& points, const std::vector<std::uint32_t>& rows,
+       const std::array<float, 3>& sensor, int threads);
+
+  std::size_t size() const { return distance_.size(); }
+
+  /// Which of some thousand points, or of all, lie behind others: the point's ray passes two of
+  /// them within their own spacing, well before it arrives.
+  /// \return one a point that was looked at
+  std::vector<std::uint8_t> hidden(bool all) const;
+
+  struct Density {
+    /// Scatter of log density about that of a sensor here, over that about a constant.
+    float ratio = std::numeric_limits<float>::infinity();
+    float constant = 0.F;  ///< the latter: a robust mean deviation
+  };
+  /// Of equal angles about an axis, or of an image's pixels, density falls with the square of the
+  /// distance and with incidence; whichever law fits best.
+  Density density() const;
+
+ private:
+  PointView view() const { return {xyz_.data(), 4, distance_.size()}; }
+
+  std::vector<float> xyz_;        ///< 4 floats: relative to the sensor
+  std::vector<float> direction_;  ///< 4 floats: of length 1
+  std::vector<float> distance_;
+  std::vector<float> spacing_;  ///< among its own
+  Neighborhoods near_;          ///< among its own
+  int threads_;
+};
+
+/// Pairs of neighbours on one smooth sheet, both seen far from grazing, by the scans of their ends.
+struct ContraryPairs {
+  std::vector<double> pairs;     ///< scans squared
+  std::vector<double> contrary;  ///< of these, those whose ends would face apart
+};
+/// \param toward 3 a point, as KnownSensors has them
+/// \param scan one a point, below `scans`, -1 = none
+ContraryPairs findContraryPairs(const PointView& points, const Neighborhoods& neighborhoods,
+                                const float* spacing, const std::vector<float>& toward,
+                                const std::vector<std::int32_t>& scan, std::size_t scans,
+                                int threads);
+
+}  // namespace segorient::detail

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the segorient authors
+#pragma once
+
+#include <segorient/common/point_view.h>
+#include <segorient/segmentation/segmentation.h>
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "orientation/automatic/border_votes.h"
+#include "orientation/automatic/sheet_filter.h"
+#include "orientation/sensors/hint_votes.h"
+#include "orientation/sensors/known_sensors.h"
+#include "segmentation/sheet_segmentation.h"
+
+namespace segorient::detail {
+
+/// What the sensors say of one point's normal as it is: in standard errors of its angle, above 0
+/// where it faces its sensor. 0 where that is unknown.
+std::vector<float> facingOf(const SheetField& field, std::size_t points,
+                            const KnownSensors& sensors);
+
+/// Sums of that by segment, for the sign that its points share; no point counts for more than the
+/// sensor alone would decide.
+std::vector<Ballot> facingBySegment(const std::vector<float>& facing,
+                                    const Segmentation& segmentation);
+
+/// The signs of segments of which sensors saw enough, and then of those that borders tie to them.
+/// \param signs of the segments, as the surface has them; changed
+/// \param cluster_of, component_of by segment: what has no border to a decided one is turned with
+///        most of its cluster, or of its component
+/// \return which segments sensors decided
+std::vector<bool> turnToSensors(const std::vector<Ballot>& ballots,
+                                const std::vector<BorderVote>& votes,
+                                const Segmentation& segmentation,
+                                const std::vector<std::int32_t>& cluster_of,
+                                const std::vector<std::int32_t>& component_of,
+                                std::vector<std::int8_t>& signs);
+
+/// Whether that many standard errors leave no doubt, so that the point need not ask its surface.
+bool isClear(float facing);
+
+/// Final normals turn to their sensors wherever their own error leaves no doubt.
+/// \param toward see AutoOrientation
+void faceSensors(const std::vector<float>& toward, FilteredNormals& filtered);
+
+}  // namespace segorient::detail
