@@ -21,7 +21,7 @@ struct Command {
 };
 
 constexpr std::array kCommands{
-    Command{"orient", "IN OUT        one oriented normal a point: the main job", runOrient},
+    Command{"orient", "IN... OUT     one oriented normal a point: the main job", runOrient},
     Command{"normals", "IN OUT        unoriented normals", runNormals},
     Command{"segment", "IN OUT        segments: labels, colours, kinds", runSegment},
     Command{"triangulate", "IN OUT        the segments' triangulations as one mesh",
@@ -41,7 +41,9 @@ void printHelp(std::ostream& out) {
     out << "  " << c.name << std::string(13 - std::string(c.name).size(), ' ') << c.summary << "\n";
   }
   out << "\nsegorient COMMAND --help tells the options of a command.\n"
-         "Input: PCD, PLY, OBJ, text (x y z a line). Output: PCD or PLY, by its ending.\n";
+         "Input: PCD, PLY, LAS, OBJ, PTX, PTS, text (x y z a line). Output: PCD, PLY or LAS, by "
+         "its "
+         "ending.\n";
 }
 
 int run(const std::vector<std::string>& words) {

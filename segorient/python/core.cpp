@@ -9,6 +9,7 @@
 #include <pybind11/stl.h>
 #include <segorient/orientation/first_stages.h>
 #include <segorient/orientation/pipeline.h>
+#include <segorient/orientation/trajectory.h>
 #include <segorient/search/median_hash_index.h>
 
 #include <array>
@@ -132,6 +133,19 @@ std::shared_ptr<const OrientationHints> hintsFrom(const py::dict& given) {
     std::copy_n(v.begin(), 3, hints->viewpoint.begin());
   }
   if (given.contains("viewpoints")) hints->viewpoints = rowsOf(given["viewpoints"]);
+  if (given.contains("direction")) {
+    hints->has_direction = true;
+    const std::vector<float> v = rowsOf(given["direction"]);
+    std::copy_n(v.begin(), 3, hints->direction.begin());
+  }
+  if (given.contains("scans")) {
+    const auto scans = given["scans"].cast<py::array_t<std::int32_t, py::array::c_style>>();
+    hints->scans.assign(scans.data(), scans.data() + scans.size());
+  }
+  if (given.contains("grid")) {
+    const auto shape = given["grid"].cast<std::array<std::size_t, 2>>();
+    hints->grids.push_back({0, shape[1], shape[0]});
+  }
   if (given.contains("keep")) hints->normals = rowsOf(given["keep"]);
   if (given.contains("seeds")) {
     const std::vector<float> v = rowsOf(given["seeds"]);
@@ -312,6 +326,24 @@ py::tuple segment(const FloatArray& points, const py::dict& given, const py::obj
                         normals[0], normals[1]);
 }
 
+// (viewpoints: (n, 3) in double, points joined, points outside, why there are none)
+py::tuple trajectoryViewpoints(
+    const py::array_t<double, py::array::c_style | py::array::forcecast>& rows,
+    const py::array_t<double, py::array::c_style | py::array::forcecast>& at) {
+  std::vector<Trajectory::Pose> poses;
+  for (py::ssize_t i = 0; i < rows.shape(0); ++i) {
+    poses.push_back({rows.at(i, 0), {rows.at(i, 1), rows.at(i, 2), rows.at(i, 3)}});
+  }
+  const Trajectory trajectory(std::move(poses));
+  TrajectoryJoin join =
+      joinTrajectory(trajectory, std::vector<double>(at.data(), at.data() + at.size()));
+  const std::string reason = join.joined == 0 ? explainNoOverlap(trajectory, join) : std::string();
+  auto owner = std::make_shared<std::vector<double>>(std::move(join.viewpoints));
+  constexpr py::ssize_t kDouble = sizeof(double);
+  return py::make_tuple(view({at.size(), 3}, {3 * kDouble, kDouble}, owner->data(), owner),
+                        join.joined, join.outside, reason);
+}
+
 // Distances in place of squared ones; what a row lacks is -1 and infinitely far.
 void finishTable(Neighborhoods& table) {
   for (std::size_t row = 0; row < table.size(); ++row) {
@@ -373,5 +405,6 @@ PYBIND11_MODULE(_core, module) {
   module.def("orient", &segorient::orient);
   module.def("normals", &segorient::normals);
   module.def("segment", &segorient::segment);
+  module.def("join_trajectory", &segorient::trajectoryViewpoints);
   module.def("knn", &segorient::knn);
 }

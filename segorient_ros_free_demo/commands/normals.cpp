@@ -43,7 +43,7 @@ int runNormals(const std::vector<std::string>& words) {
   PipelineOptions options;
   stage_options.apply(line, common, options);
   stage_options.warnOfUnused(line, common, options);
-  requireEnding(line.argument("OUT"), {".pcd", ".ply"});
+  requireEnding(line.argument("OUT"), {".pcd", ".ply", ".las"});
 
   OutputFile file(line.argument("OUT"));
   const CloudTable table = readUsableCloud(line.argument("IN"));

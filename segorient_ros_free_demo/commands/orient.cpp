@@ -178,17 +178,19 @@ std::string reportText(const OrientedCloud& cloud, const StageMemory& memory,
 
 int runOrient(const std::vector<std::string>& words) {
   CommandLine line(
-      "orient IN OUT [options]",
+      "orient IN... OUT [options]",
       "Gives every point of IN a normal; the normals point outward where there is an\n"
-      "outside, and agree with each other where there is none. OUT (.pcd or .ply) has\n"
-      "the points of IN in the same order, with normals, curvature, segment labels and\n"
-      "colours, and all other fields of IN. Defaults need no tuning.",
+      "outside, and agree with each other where there is none. OUT (.pcd, .ply or .las)\n"
+      "has the points of IN in the same order, with normals, curvature, segment labels\n"
+      "and colours, and all other fields of IN. Defaults need no tuning.\n"
+      "Several IN, each with its own sensor, become one OUT, one after another, with\n"
+      "fields scan (0, 1, ...) and vp_x vp_y vp_z (where the sensor was).",
       "segorient orient scan.ply oriented.pcd --report report.json");
   CommonOptions common;
   StageOptions stages;
   HintOptions hints;
   std::string report_path;
-  line.arguments({"IN", "OUT"});
+  line.argumentsMany("IN", "OUT");
   stages.add(line, true);
   hints.add(line);
   line.options()("report", po::value(&report_path), "what was done, as JSON");
@@ -199,7 +201,7 @@ int runOrient(const std::vector<std::string>& words) {
   stages.apply(line, common, options);
   hints.check(line, common, options);
   stages.warnOfUnused(line, common, options);
-  requireEnding(line.argument("OUT"), {".pcd", ".ply"});
+  requireEnding(line.argument("OUT"), {".pcd", ".ply", ".las"});
 
   if (report_path == line.argument("OUT")) throw UsageError("--report and OUT are the same file");
 
@@ -208,14 +210,15 @@ int runOrient(const std::vector<std::string>& words) {
   if (!report_path.empty()) report.emplace(report_path);
   StageMemory memory(!common.quiet || report);
   memory.begin("reading");
-  const CloudTable table = readUsableCloud(line.argument("IN"));
-  requireMemory(line.argument("IN"), expectedMemory(table.size, options), availableMemory());
+  const std::string& first = line.inputs()[0];
+  const CloudTable table = hints.read(line.inputs(), common.quiet);
+  requireMemory(first, expectedMemory(table.size, options), availableMemory());
   OrientedCloud cloud;
   std::array<double, 3> origin{0, 0, 0};
   {
     const LocalPoints points(table);
     origin = points.origin();
-    hints.apply(table, line.argument("IN"), points, options);
+    hints.apply(table, first, points, options);
     ProgressBar bar(!common.quiet, table.size);
     cloud = orientCloud(points.view(), nullptr, options, memory.watch(bar.callback()));
   }

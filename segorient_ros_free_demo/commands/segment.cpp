@@ -109,7 +109,7 @@ int runSegment(const std::vector<std::string>& words) {
   PipelineOptions options;
   stage_options.apply(line, common, options);
   stage_options.warnOfUnused(line, common, options);
-  requireEnding(line.argument("OUT"), {".pcd", ".ply"});
+  requireEnding(line.argument("OUT"), {".pcd", ".ply", ".las"});
 
   if (report_path == line.argument("OUT")) throw UsageError("--report and OUT are the same file");
 

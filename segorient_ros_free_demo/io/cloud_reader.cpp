@@ -54,17 +54,24 @@ CloudTable readCloud(const std::string& path) {
     table = readPly(file);
   } else if (ending == ".obj") {
     table = readObj(file);
-  } else if (ending == ".xyz" || ending == ".txt" || ending == ".asc" || ending == ".csv" ||
-             ending == ".pts") {
+  } else if (ending == ".xyz" || ending == ".txt" || ending == ".asc" || ending == ".csv") {
     table = readText(file);
+  } else if (ending == ".pts") {
+    table = readPts(file);
+  } else if (ending == ".ptx") {
+    table = readPtx(file);
+  } else if (ending == ".las" || ending == ".laz") {
+    table = readLas(file);
   } else {
     file.fail(
-        "is of a kind not known by its ending (known: .pcd .ply .obj .xyz .txt .asc .csv .pts)");
+        "is of a kind not known by its ending (known: .pcd .ply .las .obj .ptx .pts .xyz .txt .asc "
+        ".csv)");
   }
   checkCoordinates(file, table);
   for (const std::string& name : table.dropped) {
     warn(path + ": the lists '" + name + "' of its points are left out");
   }
+  for (const std::string& note : table.notes) warn(path + ": " + note);
   if (table.size == 0) file.fail("has no points");
   return table;
 }

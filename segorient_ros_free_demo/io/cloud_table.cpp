@@ -73,6 +73,39 @@ bool CloudTable::hasNormals() const {
   return std::all_of(n.begin(), n.end(), [](const Field* f) { return f != nullptr; });
 }
 
+bool CloudTable::hasViewpoints() const {
+  const auto v = viewpoints();
+  return std::all_of(v.begin(), v.end(), [](const Field* f) { return f != nullptr; });
+}
+
+void CloudTable::setReal(const Field& field, std::size_t row, double value) {
+  const auto single = static_cast<float>(value);
+  std::memcpy(at(field, row), field.size == 8 ? static_cast<const void*>(&value) : &single,
+              field.size);
+}
+
+void CloudTable::appendFields(const std::vector<Field>& added) {
+  CloudTable wider;
+  for (const Field& f : fields) {
+    const bool replaced = std::any_of(added.begin(), added.end(),
+                                      [&](const Field& other) { return other.name == f.name; });
+    if (!replaced) wider.addField(f.name, f.type, f.size, f.count);
+  }
+  const std::size_t kept = wider.fields.size();
+  for (const Field& f : added) wider.addField(f.name, f.type, f.size, f.count);
+  wider.rows.resize(size * wider.row_bytes);
+  for (std::size_t c = 0; c < kept; ++c) {
+    const Field& to = wider.fields[c];
+    const Field& from = *find(to.name);
+    for (std::size_t i = 0; i < size; ++i) {
+      std::memcpy(wider.rows.data() + i * wider.row_bytes + to.offset, at(from, i), to.bytes());
+    }
+  }
+  fields = std::move(wider.fields);
+  row_bytes = wider.row_bytes;
+  rows = std::move(wider.rows);
+}
+
 void CloudTable::makeReal(const std::vector<std::string>& names) {
   constexpr double kExactInFloat = 16777216.0;  // 2^24
   CloudTable real;
@@ -96,10 +129,9 @@ void CloudTable::makeReal(const std::vector<std::string>& names) {
         continue;
       }
       for (std::uint32_t e = 0; e < from.count; ++e) {
-        const double v = value(from, i, e);
-        const auto single = static_cast<float>(v);
-        std::memcpy(real.at(to, i) + std::size_t{e} * to.size,
-                    to.size == 8 ? static_cast<const void*>(&v) : &single, to.size);
+        Field element = to;
+        element.offset += std::size_t{e} * to.size;
+        real.setReal(element, i, value(from, i, e));
       }
     }
   }

@@ -3,14 +3,18 @@
 #pragma once
 
 #include <segorient/common/point_view.h>
+#include <segorient/orientation/orientation_hints.h>
 
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <string>
 #include <vector>
 
 namespace segorient::program {
+
+struct LasOrigin;
 
 /// One named column of a cloud, as in a PCD header.
 struct Field {
@@ -39,9 +43,16 @@ struct CloudTable {
   std::vector<std::uint8_t> rows;
   std::vector<Triangle> triangles;   ///< faces of a PLY, where it has any
   std::vector<std::string> dropped;  ///< properties of the file that a table has no place for
+  std::vector<std::string> notes;    ///< what else of the file a user should know, a line each
+  /// Where several clouds were joined: the range images among them.
+  std::vector<OrganizedGrid> grids;
+  std::shared_ptr<const LasOrigin> las;  ///< of a LAS file: what it says beyond its points
 
   /// Appends a field behind the others; only before rows are stored.
   void addField(std::string name, char type, std::uint32_t field_size, std::uint32_t count = 1);
+  /// Appends fields to a table that has rows already; those of the new fields are zero. A field
+  /// whose name is there already takes its place.
+  void appendFields(const std::vector<Field>& added);
   /// The field of this name, or null.
   const Field* find(const std::string& name) const;
   const std::uint8_t* at(const Field& field, std::size_t row) const {
@@ -62,6 +73,13 @@ struct CloudTable {
     return {find("normal_x"), find("normal_y"), find("normal_z")};
   }
   bool hasNormals() const;
+  /// The fields vp_x, vp_y, vp_z: where each point was seen from; null where the cloud has none.
+  std::array<const Field*, 3> viewpoints() const {
+    return {find("vp_x"), find("vp_y"), find("vp_z")};
+  }
+  bool hasViewpoints() const;
+  /// Stores a number in a field of floating point, in its own precision.
+  void setReal(const Field& field, std::size_t row, double value);
 
   /// Makes fields of whole numbers floating point ones: of 4 bytes where that loses nothing, else
   /// of 8.

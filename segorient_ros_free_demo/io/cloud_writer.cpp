@@ -104,7 +104,11 @@ std::uint8_t* putBigEndian(T value, std::uint8_t* to) {
 }  // namespace
 
 OutputCloud::OutputCloud(const CloudTable& table)
-    : size(table.size), width(table.width), height(table.height), viewpoint(table.viewpoint) {
+    : size(table.size),
+      width(table.width),
+      height(table.height),
+      viewpoint(table.viewpoint),
+      las(table.las) {
   for (const Field* f : table.xyz()) add(table, *f);
 }
 
@@ -225,9 +229,38 @@ void writeVtk(const OutputCloud& cloud, OutputFile& file) {
   });
 }
 
+namespace {
+
+// Where the sensor was as columns of one value for all points, in the type of the coordinates.
+class ConstantViewpoint {
+ public:
+  explicit ConstantViewpoint(const OutputCloud& cloud) : wide_(cloud.viewpoint) {
+    for (std::size_t a = 0; a < 3; ++a) single_[a] = static_cast<float>(wide_[a]);
+  }
+  OutputCloud addedTo(OutputCloud cloud) const {
+    const bool known = wide_[0] != 0.0 || wide_[1] != 0.0 || wide_[2] != 0.0;
+    if (!known || cloud.has("vp_x") || cloud.has("vp_y") || cloud.has("vp_z")) return cloud;
+    const std::uint32_t size = cloud.find("x")->field.size;
+    const char* const names[] = {"vp_x", "vp_y", "vp_z"};
+    for (std::size_t a = 0; a < 3; ++a) {
+      const void* value = size == 8 ? static_cast<const void*>(&wide_[a]) : &single_[a];
+      cloud.columns.push_back(
+          {{names[a], 'F', size, 1, 0}, static_cast<const std::uint8_t*>(value), 0});
+    }
+    return cloud;
+  }
+
+ private:
+  std::array<double, 7> wide_;
+  std::array<float, 3> single_{};
+};
+
+}  // namespace
+
 void writeCloud(const OutputCloud& cloud, OutputFile& file) {
   const std::string ending = fileEnding(file.path());
-  if (ending == ".ply") return writePly(cloud, file);
+  if (ending == ".ply") return writePly(ConstantViewpoint(cloud).addedTo(cloud), file);
+  if (ending == ".las") return writeLas(ConstantViewpoint(cloud).addedTo(cloud), file);
   if (ending == ".vtk") return writeVtk(cloud, file);
   writePcd(cloud, file);
 }

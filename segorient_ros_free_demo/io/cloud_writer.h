@@ -27,6 +27,7 @@ struct OutputCloud {
   std::array<double, 7> viewpoint{0, 0, 0, 1, 0, 0, 0};
   std::vector<Column> columns;
   const std::vector<Triangle>* triangles = nullptr;  ///< of a mesh; not kept in a PCD
+  std::shared_ptr<const LasOrigin> las;              ///< of the table, for LAS
 
   /// As many points as `table`, and its fields x, y, z.
   explicit OutputCloud(const CloudTable& table);
@@ -53,7 +54,14 @@ void writePly(const OutputCloud& cloud, OutputFile& file);
 /// colours.
 void writeVtk(const OutputCloud& cloud, OutputFile& file);
 
-/// By the file's ending, .pcd, .ply or .vtk; does not commit.
+/// LAS: as the input's if that was one (version, records about the coordinate system, scale and
+/// offset), else 1.2 with the finest steps that hold the cloud, or 1.4 where what it has asks for
+/// it. Fields that LAS knows are those; all others, the normals first, become extra bytes, with the
+/// record that describes them. Points without finite coordinates are left out, with a warning.
+void writeLas(const OutputCloud& cloud, OutputFile& file);
+
+/// By the file's ending, .pcd, .ply, .las or .vtk; does not commit. What a PCD says by its
+/// VIEWPOINT becomes fields vp_x, vp_y, vp_z in PLY and LAS.
 void writeCloud(const OutputCloud& cloud, OutputFile& file);
 
 }  // namespace segorient::program

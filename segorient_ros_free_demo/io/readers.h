@@ -5,6 +5,8 @@
 #include "io/cloud_table.h"
 #include "io/input_file.h"
 
+#include <segorient/orientation/trajectory.h>
+
 #include <string>
 
 namespace segorient::program {
@@ -24,9 +26,25 @@ CloudTable readObj(InputFile& file);
 /// Text: a point a line, x y z first; a line of column names and comments (#, //) may come before.
 CloudTable readText(InputFile& file);
 
-/// A cloud by the file's ending (.pcd, .ply, .obj, .xyz, .txt, .asc, .csv, .pts), checked to have
-/// coordinates; whole numbers among them become floating point ones. Says on standard error what of
-/// the file is left out.
+/// PTX: one or more scans, each with its grid and pose; the points in the coordinates that the
+/// poses lead to, with intensity, colours where there are some, `vp_x vp_y vp_z` (the scanner's
+/// place) and, where there are several scans, `scan` (0, 1, ...). What a scanner did not see is 0 0
+/// 0 in the file: NaN in a single scan, which stays a grid (width: along a column of the scan, as
+/// the file has it); left out where there are several, as no cloud holds two grids.
+CloudTable readPtx(InputFile& file);
+/// PTS: number of points, then x y z, intensity and colours; several scans one after another get a
+/// field `scan`. Without that number, it is text as readText() takes it.
+CloudTable readPts(InputFile& file);
+/// LAS 1.0 to 1.4, point formats 0 to 10: coordinates in double, and all that a point has but for
+/// its waveform. LAZ: throws, and names programs that unpack it.
+CloudTable readLas(InputFile& file);
+/// A trajectory: text, time x y z a line (what follows is not used), comments (#, //, %); a line of
+/// column names may come before.
+Trajectory readTrajectory(const std::string& path);
+
+/// A cloud by the file's ending (.pcd, .ply, .las, .obj, .ptx, .pts, .xyz, .txt, .asc, .csv),
+/// checked to have coordinates; whole numbers among them become floating point ones. Says on
+/// standard error what of the file is left out.
 CloudTable readCloud(const std::string& path);
 
 /// The same, and at least one point has finite coordinates.

@@ -75,6 +75,17 @@ bool parseNumber(std::string_view word, std::uint64_t& out) {
   return parse(word, out);
 }
 
+bool parseNumbers(std::string_view line, std::vector<double>& out) {
+  out.clear();
+  for (auto word = nextWord(line, kTextSeparators); !word.empty();
+       word = nextWord(line, kTextSeparators)) {
+    double v = 0.0;
+    if (!parseNumber(word, v)) return false;
+    out.push_back(v);
+  }
+  return true;
+}
+
 bool storeNumber(std::string_view word, char type, std::uint32_t size, std::uint8_t* out) {
   if (type == 'F') {
     double value = 0.0;

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <string_view>
+#include <vector>
 
 namespace segorient::program {
 
@@ -13,6 +14,12 @@ std::string_view nextWord(std::string_view& line, std::string_view separators = 
 /// The whole word as a number ("nan" and "inf" are numbers); false if it is none.
 bool parseNumber(std::string_view word, double& out);
 bool parseNumber(std::string_view word, std::uint64_t& out);
+
+/// What parts numbers in text files that are not of one format.
+constexpr std::string_view kTextSeparators = " \t\v\f\r,;";
+
+/// All words of a line as numbers; false if one is none.
+bool parseNumbers(std::string_view line, std::vector<double>& out);
 
 /// The whole word as an element of the given type (see Field), written to `out`; false if it is no
 /// number or does not fit.

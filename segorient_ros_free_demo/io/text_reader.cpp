@@ -11,8 +11,6 @@
 namespace segorient::program {
 namespace {
 
-constexpr std::string_view kSeparators = " \t\v\f\r,;";
-
 // Numbers of a text file, row by row.
 struct Numbers {
   std::size_t columns = 0;
@@ -101,7 +99,8 @@ std::vector<std::string> columnNames(const Numbers& numbers,
 std::vector<std::string> parseNames(std::string_view line) {
   std::vector<std::string> names;
   bool known = false;
-  for (auto word = nextWord(line, kSeparators); !word.empty(); word = nextWord(line, kSeparators)) {
+  for (auto word = nextWord(line, kTextSeparators); !word.empty();
+       word = nextWord(line, kTextSeparators)) {
     std::string name;
     for (const char c : word) {
       if (c != '"' && c != '#' && c != '/') name += c;
@@ -119,17 +118,6 @@ bool isComment(std::string_view line) {
   return first == std::string_view::npos || line[first] == '#' || line.compare(first, 2, "//") == 0;
 }
 
-// False if some word is no number.
-bool parseRow(std::string_view line, std::vector<double>& row) {
-  row.clear();
-  for (auto word = nextWord(line, kSeparators); !word.empty(); word = nextWord(line, kSeparators)) {
-    double v = 0.0;
-    if (!parseNumber(word, v)) return false;
-    row.push_back(v);
-  }
-  return true;
-}
-
 }  // namespace
 
 CloudTable readText(InputFile& file) {
@@ -142,7 +130,7 @@ CloudTable readText(InputFile& file) {
       if (numbers.columns == 0 && header.empty()) header = parseNames(line);
       continue;
     }
-    const bool is_row = parseRow(line, row);
+    const bool is_row = parseNumbers(line, row);
     if (numbers.columns == 0) {
       // Before the points there may be one line of names, or of their number.
       if (!is_row && header.empty()) {
@@ -169,7 +157,7 @@ CloudTable readObj(InputFile& file) {
   std::string_view line;
   while (file.line(line)) {
     if (nextWord(line) != "v") continue;
-    if (!parseRow(line, row) || row.size() < 3) file.failLine("is no vertex");
+    if (!parseNumbers(line, row) || row.size() < 3) file.failLine("is no vertex");
     numbers.values.insert(numbers.values.end(), row.begin(), row.begin() + 3);
   }
   if (numbers.values.empty()) file.fail("has no vertices");

@@ -20,6 +20,11 @@ void CommandLine::arguments(std::vector<std::string> names, std::size_t optional
   optional_ = optional;
 }
 
+void CommandLine::argumentsMany(const std::string& inputs, const std::string& output) {
+  many_ = inputs;
+  arguments_ = {output};
+}
+
 bool CommandLine::parse(const std::vector<std::string>& words) {
   if (std::any_of(words.begin(), words.end(),
                   [](const std::string& w) { return w == "--help" || w == "-h"; })) {
@@ -31,7 +36,12 @@ bool CommandLine::parse(const std::vector<std::string>& words) {
   po::options_description all = options_;
   all.add(unlisted_);
   po::positional_options_description positions;
+  if (!many_.empty()) {
+    all.add_options()(many_.c_str(), po::value<std::vector<std::string>>());
+    positions.add(many_.c_str(), -1);
+  }
   for (const std::string& name : arguments_) {
+    if (!many_.empty()) break;
     all.add_options()(name.c_str(), po::value<std::string>());
     positions.add(name.c_str(), 1);
   }
@@ -44,6 +54,14 @@ bool CommandLine::parse(const std::vector<std::string>& words) {
   } catch (const po::error& e) {
     throw UsageError(e.what());
   }
+  if (!many_.empty()) {
+    if (has(many_)) inputs_ = get<std::vector<std::string>>(many_);
+    require(!inputs_.empty(), many_ + " is missing: segorient " + usage_);
+    output_ = inputs_.back();
+    inputs_.pop_back();
+    require(!inputs_.empty(), arguments_[0] + " is missing: segorient " + usage_);
+    return true;
+  }
   for (std::size_t i = 0; i + optional_ < arguments_.size(); ++i) {
     require(has(arguments_[i]), arguments_[i] + " is missing: segorient " + usage_);
   }
@@ -51,6 +69,7 @@ bool CommandLine::parse(const std::vector<std::string>& words) {
 }
 
 std::string CommandLine::argument(const std::string& name) const {
+  if (!many_.empty()) return output_;
   return has(name) ? get<std::string>(name) : std::string();
 }
 

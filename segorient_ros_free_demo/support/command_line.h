@@ -28,6 +28,9 @@ class CommandLine {
   /// missing.
   void arguments(std::vector<std::string> names, std::size_t optional = 0);
 
+  /// One or more inputs, and an output behind them.
+  void argumentsMany(const std::string& inputs, const std::string& output);
+
   /// False if help was asked for, which is then printed. Throws UsageError.
   bool parse(const std::vector<std::string>& words);
 
@@ -40,6 +43,8 @@ class CommandLine {
   }
   /// The argument of this name, empty if it is missing.
   std::string argument(const std::string& name) const;
+  /// The inputs of argumentsMany().
+  const std::vector<std::string>& inputs() const { return inputs_; }
 
  private:
   std::string usage_;
@@ -49,6 +54,9 @@ class CommandLine {
   boost::program_options::options_description unlisted_;
   std::vector<std::string> arguments_;
   std::size_t optional_ = 0;
+  std::string many_;  // name of the inputs if there may be several
+  std::vector<std::string> inputs_;
+  std::string output_;
   boost::program_options::variables_map values_;
 };
 

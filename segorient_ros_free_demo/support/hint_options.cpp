@@ -8,6 +8,7 @@
 #include <cstdio>
 #include <memory>
 
+#include "io/join_clouds.h"
 #include "io/readers.h"
 
 namespace segorient::program {
@@ -43,13 +44,83 @@ void addSeeds(const std::string& path, const std::array<double, 3>& origin,
   }
 }
 
+std::vector<std::int32_t> scansOf(const CloudTable& table, const Field& field) {
+  std::vector<std::int32_t> out(table.size, -1);
+  for (std::size_t i = 0; i < table.size; ++i) {
+    const double v = table.value(field, i);
+    if (v >= 0.0 && v < 2147483648.0) out[i] = static_cast<std::int32_t>(v);
+  }
+  return out;
+}
+
+// When each point was measured.
+std::vector<double> timesOf(const CloudTable& table, const std::string& path) {
+  for (const char* name : {"time", "gps_time", "t", "timestamp", "GPSTime"}) {
+    const Field* field = table.find(name);
+    if (field == nullptr) continue;
+    std::vector<double> out;
+    out.reserve(table.size);
+    for (std::size_t i = 0; i < table.size; ++i) out.push_back(table.value(*field, i));
+    return out;
+  }
+  throw FileError(path,
+                  "has no field time, gps_time, t, timestamp or GPSTime to join a trajectory to");
+}
+
+// What the trajectory says comes before what the cloud says.
+void addTrajectory(const Trajectory& trajectory, const std::string& path, bool quiet,
+                   CloudTable& table) {
+  const TrajectoryJoin join = joinTrajectory(trajectory, timesOf(table, path));
+  if (join.joined == 0) throw FileError(path, explainNoOverlap(trajectory, join));
+  const std::array<const Field*, 3> known = table.viewpoints();
+  const bool had = table.hasViewpoints();
+  std::vector<double> before;
+  for (std::size_t i = 0; had && i < table.size; ++i) {
+    for (const double v : table.triple(known, i)) before.push_back(v);
+  }
+  const std::uint32_t size = table.find("x")->size;
+  table.appendFields(
+      {{"vp_x", 'F', size, 1, 0}, {"vp_y", 'F', size, 1, 0}, {"vp_z", 'F', size, 1, 0}});
+  const std::array<const Field*, 3> to = table.viewpoints();
+  for (std::size_t i = 0; i < table.size; ++i) {
+    const bool joined = std::isfinite(join.viewpoints[3 * i]);
+    for (std::size_t a = 0; a < 3; ++a) {
+      table.setReal(*to[a], i, had && !joined ? before[3 * i + a] : join.viewpoints[3 * i + a]);
+    }
+  }
+  const std::size_t without = join.outside + join.without_time;
+  if (without > 0) {
+    warn(path + ": " + std::to_string(without) +
+         " points were not measured within the trajectory's time; it says no sensor for them");
+  }
+  if (!quiet) std::printf("trajectory      %zu points have a place of the sensor\n", join.joined);
+}
+
 }  // namespace
+
+CloudTable HintOptions::read(const std::vector<std::string>& paths, bool quiet) const {
+  std::vector<CloudTable> clouds;
+  for (const std::string& path : paths) clouds.push_back(readUsableCloud(path));
+  const std::string name = paths.size() == 1 ? paths[0] : paths[0] + " and others";
+  CloudTable table = paths.size() == 1
+                         ? std::move(clouds[0])
+                         : joinClouds(std::move(clouds), paths, viewpoint_text_.empty() && !up_);
+  if (paths.size() > 1) {
+    for (const std::string& note : table.notes) warn(note);
+  }
+  if (!trajectory_.empty()) addTrajectory(readTrajectory(trajectory_), name, quiet, table);
+  return table;
+}
 
 void HintOptions::add(CommandLine& line) {
   line.options()("viewpoint", po::value(&viewpoint_text_),
                  "=X,Y,Z: where all was seen from, else as the file says; what could be seen from "
-                 "there faces it")("closed", po::bool_switch(&closed_),
-                                   "each part has an inside, whatever one viewpoint says")(
+                 "there faces it")(
+      "trajectory", po::value(&trajectory_),
+      "text, time x y z a line: where a moving sensor was; joined to the points' time (field time, "
+      "gps_time, t, timestamp or GPSTime)")("up", po::bool_switch(&up_),
+                                            "the sensor was far above (+z), as on an aircraft")(
+      "closed", po::bool_switch(&closed_), "each part has an inside, whatever one viewpoint says")(
       "open", po::bool_switch(&open_), "one viewpoint decides, whatever looks like an inside")(
       "seeds", po::value(&seeds_), "a cloud of points whose normals are known")(
       "keep-orientation", po::bool_switch(&keep_),
@@ -59,6 +130,7 @@ void HintOptions::add(CommandLine& line) {
 void HintOptions::check(const CommandLine& line, const CommonOptions& common,
                         const PipelineOptions& options) {
   require(!(closed_ && open_), "--closed and --open exclude each other");
+  require(!up_ || viewpoint_text_.empty(), "--up and --viewpoint exclude each other");
   char end = 0;
   const bool three = std::sscanf(viewpoint_text_.c_str(), "%lf,%lf,%lf%c", &viewpoint_[0],
                                  &viewpoint_[1], &viewpoint_[2], &end) == 3;
@@ -67,7 +139,8 @@ void HintOptions::check(const CommandLine& line, const CommonOptions& common,
   require(viewpoint_text_.empty() || (three && finite),
           "--viewpoint takes three numbers, as in --viewpoint=1.5,0,-2");
   if (options.orientation.method == OrientationMethod::AUTO || common.quiet) return;
-  for (const char* name : {"viewpoint", "closed", "open", "seeds", "keep-orientation"}) {
+  for (const char* name :
+       {"viewpoint", "trajectory", "up", "closed", "open", "seeds", "keep-orientation"}) {
     if (line.given(name)) warn("--" + std::string(name) + " changes nothing without method auto");
   }
 }
@@ -79,15 +152,17 @@ void HintOptions::apply(const CloudTable& table, const std::string& path, const 
   if (closed_) hints->surface = SurfaceKind::CLOSED;
   if (open_) hints->surface = SurfaceKind::OPEN;
   const std::array<double, 3> sensor{table.viewpoint[0], table.viewpoint[1], table.viewpoint[2]};
-  if (!viewpoint_text_.empty() || sensor != std::array<double, 3>{0.0, 0.0, 0.0}) {
+  const bool has_sensor = sensor != std::array<double, 3>{0.0, 0.0, 0.0};
+  if (up_) {
+    hints->has_direction = true;
+  } else if (!viewpoint_text_.empty() || has_sensor) {
     hints->has_viewpoint = true;
     hints->viewpoint = moved(viewpoint_text_.empty() ? sensor : viewpoint_, origin);
   }
-  const std::array<const Field*, 3> from{table.find("vp_x"), table.find("vp_y"),
-                                         table.find("vp_z")};
-  if (std::find(from.begin(), from.end(), nullptr) == from.end()) {
-    hints->viewpoints = columns(table, from, origin);
-  }
+  if (table.hasViewpoints()) hints->viewpoints = columns(table, table.viewpoints(), origin);
+  if (const Field* scan = table.find("scan")) hints->scans = scansOf(table, *scan);
+  hints->grids = table.grids;
+  if (table.height > 1) hints->grids = {{0, table.width, table.height}};
   if (!seeds_.empty()) addSeeds(seeds_, origin, *hints);
   if (keep_) {
     if (!table.hasNormals()) throw FileError(path, "has no normals whose orientation to keep");

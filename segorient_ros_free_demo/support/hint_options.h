@@ -5,6 +5,7 @@
 #include <segorient/orientation/pipeline.h>
 
 #include <string>
+#include <vector>
 
 #include "io/cloud_table.h"
 #include "support/command_line.h"
@@ -12,13 +13,19 @@
 namespace segorient::program {
 
 /// What a user knows about the orientation beforehand, as options of the commands that orient; and
-/// what the file says itself: the place of its sensor, and fields vp_x, vp_y, vp_z.
+/// what the files say themselves: the place of a sensor, fields vp_x, vp_y, vp_z and scan, and
+/// grids.
 class HintOptions {
  public:
   void add(CommandLine& line);
 
   /// Before anything is read: throws UsageError where values make no sense.
   void check(const CommandLine& line, const CommonOptions& common, const PipelineOptions& options);
+
+  /// Reads one cloud as it is, several as joinClouds() does. With a trajectory, each point gets its
+  /// place at the point's time as vp_x, vp_y, vp_z; how many did is said on standard output unless
+  /// `quiet`.
+  CloudTable read(const std::vector<std::string>& paths, bool quiet) const;
 
   /// \param path names `table` in messages
   /// \param points of `table`; hints are moved as they are
@@ -29,6 +36,8 @@ class HintOptions {
   std::string viewpoint_text_;
   std::array<double, 3> viewpoint_{0, 0, 0};
   std::string seeds_;
+  std::string trajectory_;
+  bool up_ = false;
   bool closed_ = false;
   bool open_ = false;
   bool keep_ = false;

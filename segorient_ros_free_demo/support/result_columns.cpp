@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "io/file_endings.h"
 #include "support/colors.h"
 
 namespace segorient::program {
@@ -48,7 +49,9 @@ void writeResults(const CloudTable& table, const Results& results, OutputFile& f
   const SegmentColumns segments(results.segmentation != nullptr ? *results.segmentation
                                                                 : Segmentation{});
   if (results.segmentation != nullptr) {
-    if (!results.keep_colors || table.find("rgb") == nullptr) {
+    // LAS keeps room for a camera's colours only in some of its point formats; labels do there.
+    const bool las = fileEnding(file.path()) == ".las";
+    if (!las && (!results.keep_colors || table.find("rgb") == nullptr)) {
       // The bits of an integer under the type of a float: that is how PCL stores colours.
       out.columns.push_back({{"rgb", 'F', 4, 1, 0},
                              reinterpret_cast<const std::uint8_t*>(segments.colors.data()),

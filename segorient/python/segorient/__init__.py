@@ -18,6 +18,7 @@ that own their memory; the interpreter's lock is released while the library work
 threads go on. Ctrl-C ends the work at the next stage.
 """
 
+import warnings
 from typing import Any, Callable, Dict, NamedTuple, Optional, Sequence, Tuple, Union
 
 import numpy as np
@@ -173,6 +174,92 @@ def _options(
     return {name: value for name, value in options.items() if value is not None}
 
 
+def _rows_of(name: str, value: npt.ArrayLike, size: int) -> npt.NDArray[Any]:
+    """Checks that this is an array of a row for each point."""
+    rows = _rows(name, value)
+    if len(rows) != size:
+        raise ValueError(f"{name} must have a row for each of the {size} points, not {len(rows)}")
+    return rows
+
+
+def _one_each(name: str, value: npt.ArrayLike, size: int, kinds: str) -> npt.NDArray[Any]:
+    """Checks that this is an array of one number for each point, of one of these kinds."""
+    array = np.asarray(value)
+    if array.dtype.kind not in kinds:
+        raise TypeError(f"{name} must be {'whole' if kinds == 'iu' else 'real'} numbers, not {array.dtype}")
+    if array.shape != (size,):
+        raise ValueError(f"{name} must have one number for each of the {size} points, not shape {array.shape}")
+    return array
+
+
+def _joined(
+    trajectory: npt.ArrayLike, times: npt.ArrayLike, viewpoints: Optional[npt.NDArray[Any]], size: int
+) -> npt.NDArray[Any]:
+    """Viewpoints from a trajectory, under those that are known already."""
+    poses = np.asarray(trajectory)
+    if poses.dtype.kind not in "fiu":
+        raise TypeError(f"trajectory must be real numbers, not {poses.dtype}")
+    if poses.ndim != 2 or poses.shape[1] != 4:
+        raise ValueError(f"trajectory must be an (m, 4) array of time x y z, not one of shape {poses.shape}")
+    seen, joined, outside, reason = _core.join_trajectory(poses, _one_each("times", times, size, "fiu"))
+    if size > 0 and joined == 0:
+        raise ValueError(reason)
+    if outside > 0:
+        warnings.warn(f"{outside} points were measured outside of the trajectory's time: no sensor is known", stacklevel=4)
+    if viewpoints is None:
+        return np.asarray(seen)
+    return np.where(np.isfinite(viewpoints).all(axis=1)[:, None], viewpoints, seen)
+
+
+def _sensors(
+    size: int,
+    origin: _Origin,
+    viewpoint: Optional[Union[Sequence[float], npt.NDArray[Any]]],
+    viewpoints: Optional[npt.ArrayLike],
+    trajectory: Optional[npt.ArrayLike],
+    times: Optional[npt.ArrayLike],
+    up: bool,
+    scans: Optional[npt.ArrayLike],
+    organized: Optional[Tuple[int, int]],
+) -> Dict[str, Any]:
+    """What is said of the sensors, checked, near `origin`."""
+    options: Dict[str, Any] = {}
+    if viewpoint is not None:
+        place = np.asarray(viewpoint)
+        if place.dtype.kind not in "fiu":
+            raise TypeError(f"viewpoint must be three numbers, not {viewpoint!r}")
+        if place.shape != (3,):
+            raise ValueError(f"viewpoint must be three numbers, not an array of shape {place.shape}")
+        options["viewpoint"] = _moved(place, origin)
+    seen = None if viewpoints is None else _rows_of("viewpoints", viewpoints, size)
+    if (trajectory is None) != (times is None):
+        raise TypeError("trajectory and times belong together")
+    if trajectory is not None and times is not None:
+        seen = _joined(trajectory, times, seen, size)
+    if seen is not None:
+        options["viewpoints"] = _moved(seen, origin)
+    if not isinstance(up, (bool, np.bool_)):
+        raise TypeError(f"up must be True or False, not {up!r}")
+    if up and viewpoint is not None:
+        raise ValueError("up and viewpoint exclude each other: both say where all points were seen from")
+    if up:
+        options["direction"] = np.array([0.0, 0.0, 1.0], np.float32)
+    if scans is not None:
+        numbers = _one_each("scans", scans, size, "iu")
+        if size > 0 and numbers.max() > np.iinfo(np.int32).max:
+            raise ValueError("scans must fit into 32 bits")
+        options["scans"] = np.maximum(numbers, -1).astype(np.int32)
+    if organized is not None:
+        shape = np.asarray(organized)
+        if shape.dtype.kind not in "iu" or shape.shape != (2,):
+            raise TypeError(f"organized must be (height, width), not {organized!r}")
+        if (shape < 1).any() or int(shape[0]) * int(shape[1]) != size:
+            raise ValueError(f"organized must be height and width of {size} points, not {organized!r}")
+        if shape[0] > 1:
+            options["grid"] = [int(shape[0]), int(shape[1])]
+    return options
+
+
 def orient(
     points: npt.ArrayLike,
     *,
@@ -187,6 +274,11 @@ def orient(
     recompute: int = 0,
     viewpoint: Optional[Union[Sequence[float], npt.NDArray[Any]]] = None,
     viewpoints: Optional[npt.ArrayLike] = None,
+    trajectory: Optional[npt.ArrayLike] = None,
+    times: Optional[npt.ArrayLike] = None,
+    up: bool = False,
+    scans: Optional[npt.ArrayLike] = None,
+    organized: Optional[Tuple[int, int]] = None,
     closed: Optional[bool] = None,
     keep: Optional[npt.ArrayLike] = None,
     seeds: Optional[Tuple[npt.ArrayLike, npt.ArrayLike]] = None,
@@ -212,6 +304,15 @@ def orient(
     :param recompute: rounds of finding normals at sharp edges again (the paper's methods)
     :param viewpoint: where an open surface was seen from; closed ones know their outside
     :param viewpoints: (n, 3), where each point was seen from; NaN: unknown
+    :param trajectory: (m, 4), time x y z of a moving sensor, for `times`: each point was seen from
+        where the sensor then was, between two rows in proportion; before the first and after the last
+        row that is not known. Rows of `viewpoints` that are known come first
+    :param times: (n,), when each point was measured, in the time base of `trajectory`
+    :param up: True: the sensor was far above (+z), as on an aircraft; for points without a place of
+        their own in `viewpoints` or `trajectory`
+    :param scans: (n,) whole numbers, which scan each point is of; below 0: unknown
+    :param organized: (height, width) where the points are a range image, row by row, NaN where
+        nothing was seen
     :param closed: True: each part has an inside; False: a viewpoint decides; None: as it looks
     :param keep: (n, 3) normals whose signs say something; NaN or 0: none
     :param seeds: points and their normals, (m, 3) each, that are known
@@ -224,20 +325,9 @@ def orient(
     if gamma is not None:
         options["gamma"] = _angle("gamma", gamma)
     array, origin = _local(points)
-    if viewpoint is not None:
-        place = np.asarray(viewpoint)
-        if place.dtype.kind not in "fiu":
-            raise TypeError(f"viewpoint must be three numbers, not {viewpoint!r}")
-        if place.shape != (3,):
-            raise ValueError(f"viewpoint must be three numbers, not an array of shape {place.shape}")
-        options["viewpoint"] = _moved(place, origin)
-    for name, value, zero in (("viewpoints", viewpoints, origin), ("keep", keep, np.zeros(3))):
-        if value is None:
-            continue
-        rows = _rows(name, value)
-        if len(rows) != len(array):
-            raise ValueError(f"{name} must have a row for each of the {len(array)} points, not {len(rows)}")
-        options[name] = _moved(rows, zero)
+    options.update(_sensors(len(array), origin, viewpoint, viewpoints, trajectory, times, up, scans, organized))
+    if keep is not None:
+        options["keep"] = _moved(_rows_of("keep", keep, len(array)), np.zeros(3))
     if closed is not None:
         if not isinstance(closed, (bool, np.bool_)):
             raise TypeError(f"closed must be True, False or None, not {closed!r}")

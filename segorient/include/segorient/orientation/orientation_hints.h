@@ -16,6 +16,14 @@ enum class SurfaceKind : std::uint8_t {
   OPEN      ///< one viewpoint for all decides, whatever looks like an inside
 };
 
+/// A range image in a cloud: so many consecutive rows, row by row of the image. Points that the
+/// sensor did not see are rows of NaN.
+struct OrganizedGrid {
+  std::size_t first = 0;  ///< input row of the first pixel
+  std::size_t width = 0;
+  std::size_t height = 0;
+};
+
 /// What is known about the orientation of a cloud beforehand, for OrientationMethod::AUTO.
 ///
 /// Where a point was seen from is a fact: its normal faces that place, and the surface around it
@@ -40,6 +48,18 @@ struct OrientationHints {
   /// Where each point was seen from: 3 floats an input row, NaN = unknown. Rows beyond the end of
   /// the vector are unknown.
   std::vector<float> viewpoints;
+  /// Whether `direction` is given: a sensor so far away that all of its rays are parallel, such as
+  /// an aircraft. Points whose own place in `viewpoints` is known keep that; a `viewpoint` that is
+  /// given as well comes second to it.
+  bool has_direction = false;
+  std::array<float, 3> direction{0.F, 0.F, 1.F};  ///< towards that sensor, of any length but 0
+  /// Which scan (one standpoint, one sweep, one file) each input row is of; below 0, and beyond the
+  /// end of the vector: unknown. It says nothing about sides by itself; it tells which points one
+  /// wrong pose would spoil together.
+  std::vector<std::int32_t> scans;
+  /// The range images among the rows, in order, not overlapping. A grid is seen from one place, and
+  /// its neighbours are neighbours in the sensor's view.
+  std::vector<OrganizedGrid> grids;
   /// Normals whose signs say something: 3 floats an input row, NaN or 0 = none; as `viewpoints`.
   std::vector<float> normals;
   std::vector<Seed> seeds;  ///< each counts for the point nearest to it; NaN or zero: none

@@ -5,6 +5,8 @@
 #include <pcl/features/normal_3d.h>
 #include <segorient/orientation/pipeline.h>
 
+#include <array>
+#include <cstdint>
 #include <vector>
 
 namespace segorient {
@@ -25,7 +27,8 @@ namespace segorient {
 ///
 /// The viewpoint (setViewPoint(), or the cloud's sensor origin where that is not 0) is evidence for
 /// AUTO, and only where the surface is open; see OrientationHints. Points that have fields vp_x,
-/// vp_y and vp_z say themselves where they were seen from.
+/// vp_y and vp_z say themselves where they were seen from. An organized cloud is taken for the
+/// range image that it is.
 ///
 /// A point without a normal (NaN coordinates, or fewer than three distinct points around) gets NaN,
 /// and is_dense is cleared. No cloud, an empty one, or a negative k: PCL_ERROR and an empty output.
@@ -84,6 +87,21 @@ class OrientedNormalEstimation : public pcl::NormalEstimation<PointInT, PointOut
   /// Whether the surface is closed or open; default UNKNOWN: told from the cloud.
   void setSurfaceKind(SurfaceKind kind) { surface_kind_ = kind; }
   SurfaceKind getSurfaceKind() const { return surface_kind_; }
+
+  /// The sensor is so far away that all of its rays are parallel: the direction towards it, of any
+  /// length; setUp() for aircraft. 0 0 0 (default) = there is no such sensor. Points that have
+  /// vp_x, vp_y and vp_z keep theirs.
+  void setViewDirection(float x, float y, float z) {
+    direction_ = {x, y, z};
+    has_direction_ = x != 0.F || y != 0.F || z != 0.F;
+  }
+  /// The sensor is far above, +z.
+  void setUp() { setViewDirection(0.F, 0.F, 1.F); }
+  const std::array<float, 3>& getViewDirection() const { return direction_; }
+
+  /// Which scan each point is of (of the search surface, if one is set), see OrientationHints.
+  void setScans(const std::vector<std::int32_t>& scans) { scans_ = scans; }
+  const std::vector<std::int32_t>& getScans() const { return scans_; }
 
   /// Whether the signs of normals that the input points have say something; default false.
   void setKeepOrientation(bool value) { keep_orientation_ = value; }
@@ -148,6 +166,9 @@ class OrientedNormalEstimation : public pcl::NormalEstimation<PointInT, PointOut
   PipelineProgress progress_;
   SurfaceKind surface_kind_ = SurfaceKind::UNKNOWN;
   bool keep_orientation_ = false;
+  bool has_direction_ = false;
+  std::array<float, 3> direction_{0.F, 0.F, 0.F};
+  std::vector<std::int32_t> scans_;
   pcl::PointCloud<pcl::PointNormal>::ConstPtr seeds_;
   OrientedCloud result_;
 

@@ -11,6 +11,10 @@ namespace {
 
 using Vector = std::array<float, 3>;
 
+// In the cloud's unit, where its extent is about 1: so far that all points see it in one direction,
+// and its square is still a number.
+constexpr double kFar = 1e15;
+
 // In double: viewpoints may be far away.
 bool normalize(const double* v, Vector& out) {
   const double length = std::sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
@@ -21,7 +25,6 @@ bool normalize(const double* v, Vector& out) {
 
 // In the unit of a PreparedCloud; what is farther than floats can square is brought nearer.
 Vector scaled(const Vector& v, float unit) {
-  constexpr double kFar = 1e15;
   double largest = 0.0;
   for (const float c : v) {
     largest = std::max(largest, std::fabs(static_cast<double>(c)) / static_cast<double>(unit));
@@ -41,35 +44,52 @@ std::size_t rowsOf(const std::vector<float>& values) {
   return values.size() / 3;
 }
 
+std::array<double, 3> inDouble(const float* v) {
+  return {static_cast<double>(v[0]), static_cast<double>(v[1]), static_cast<double>(v[2])};
+}
+
 void addDirections(const OrientationHints& hints, const PreparedCloud& cloud,
                    std::vector<float>& directions) {
   if (hints.normals.empty()) return;
   directions.assign(3 * cloud.size(), 0.F);
-  for (std::size_t row = 0; row < cloud.rows(); ++row) {
+  for (std::size_t row = 0; row < std::min(cloud.rows(), rowsOf(hints.normals)); ++row) {
     if (cloud.pointOf(row) < 0) continue;
-    const auto i = static_cast<std::size_t>(cloud.pointOf(row));
-    float* out = &directions[3 * i];
     Vector unit_vector{};
-    if (row < rowsOf(hints.normals)) {
-      const float* n = &hints.normals[3 * row];
-      const double v[3] = {static_cast<double>(n[0]), static_cast<double>(n[1]),
-                           static_cast<double>(n[2])};
-      if (normalize(v, unit_vector)) add(unit_vector, out);
+    if (normalize(inDouble(&hints.normals[3 * row]).data(), unit_vector)) {
+      add(unit_vector, &directions[3 * static_cast<std::size_t>(cloud.pointOf(row))]);
     }
   }
+}
+
+// What was seen along one direction was seen from so far away that no point tells the difference.
+bool farPlace(const OrientationHints& hints, Vector& out) {
+  if (!hints.has_direction || !normalize(inDouble(hints.direction.data()).data(), out))
+    return false;
+  for (float& v : out) v *= static_cast<float>(kFar);
+  return true;
 }
 
 // Of rows that repeat a point, the place that comes first in order, whatever the order of the rows.
 void addSensors(const OrientationHints& hints, const PreparedCloud& cloud,
                 std::vector<float>& sensors) {
-  if (hints.viewpoints.empty()) return;
+  Vector far{};
+  const bool has_far = farPlace(hints, far);
+  if (hints.viewpoints.empty() && !has_far) return;
   sensors.assign(3 * cloud.size(), std::numeric_limits<float>::quiet_NaN());
-  for (std::size_t row = 0; row < std::min(cloud.rows(), rowsOf(hints.viewpoints)); ++row) {
+  for (std::size_t row = 0; row < cloud.rows(); ++row) {
     if (cloud.pointOf(row) < 0) continue;
-    const float* given = &hints.viewpoints[3 * row];
-    const Vector place = scaled({given[0], given[1], given[2]}, cloud.unit());
+    Vector place = far;
+    bool known = has_far;
+    if (row < rowsOf(hints.viewpoints)) {
+      const float* given = &hints.viewpoints[3 * row];
+      const Vector own = scaled({given[0], given[1], given[2]}, cloud.unit());
+      if (isFinite(own.data())) {
+        place = own;
+        known = true;
+      }
+    }
+    if (!known) continue;
     float* out = &sensors[3 * static_cast<std::size_t>(cloud.pointOf(row))];
-    if (!isFinite(place.data())) continue;
     if (!isFinite(out) || std::lexicographical_compare(place.begin(), place.end(), out, out + 3)) {
       std::copy(place.begin(), place.end(), out);
     }
@@ -82,10 +102,9 @@ void addSeeds(const OrientationHints& hints, PreparedCloud& cloud,
   const search::MedianHashIndex& index = cloud.index();
   for (const OrientationHints::Seed& given : hints.seeds) {
     PointHints::Seed seed;
-    const double n[3] = {static_cast<double>(given.normal[0]), static_cast<double>(given.normal[1]),
-                         static_cast<double>(given.normal[2])};
     const Vector position = scaled(given.position, cloud.unit());
-    if (!normalize(n, seed.normal) || !isFinite(position.data())) continue;
+    if (!normalize(inDouble(given.normal.data()).data(), seed.normal) || !isFinite(position.data()))
+      continue;
     pcl::index_t nearest = 0;
     float distance = 0.F;
     if (index.nearestK(position.data(), 1, &nearest, &distance) < 1) continue;

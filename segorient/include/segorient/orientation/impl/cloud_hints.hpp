@@ -22,6 +22,12 @@ void addViewpoints(const pcl::PointCloud<PointT>& cloud, OrientationHints& hints
   }
 }
 
+/// The range image that an organized cloud is.
+template <typename PointT>
+void addGrid(const pcl::PointCloud<PointT>& cloud, OrientationHints& hints) {
+  if (cloud.isOrganized()) hints.grids.push_back({0, cloud.width, cloud.height});
+}
+
 /// The normals that the points have, if their type has any.
 template <typename PointT>
 void addNormals(const pcl::PointCloud<PointT>& cloud, OrientationHints& hints) {

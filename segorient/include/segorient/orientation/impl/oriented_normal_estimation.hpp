@@ -60,7 +60,12 @@ OrientationHints OrientedNormalEstimation<PointInT, PointOutT>::gatherHints(
   // The base class takes the sensor origin, 0 where it is not known, until it is told otherwise.
   hints.has_viewpoint = !use_sensor_origin_ || vpx_ != 0.F || vpy_ != 0.F || vpz_ != 0.F;
   hints.viewpoint = {vpx_, vpy_, vpz_};
+  hints.has_direction = has_direction_;
+  hints.direction = direction_;
+  hints.scans = scans_;
   detail::addViewpoints(cloud, hints);
+  // Where a surface and the input are joined, or the caller has put points together, there is none.
+  if (&cloud == input_.get()) detail::addGrid(cloud, hints);
   if (keep_orientation_) detail::addNormals(cloud, hints);
   if (seeds_) detail::addSeeds(*seeds_, hints);
   return hints;
