@@ -27,6 +27,7 @@ constexpr std::array kCommands{
     Command{"triangulate", "IN OUT        the segments' triangulations as one mesh",
             runTriangulate},
     Command{"knn", "IN [OUT.csv]  nearest neighbours of all points, and how fast", runKnn},
+    Command{"check", "IN [OUT]      which of IN's normals contradict sensors or surface", runCheck},
     Command{"compare", "IN            beside PCL's normal estimation", runCompare},
     Command{"evaluate", "TRUTH RESULT  how many points are oriented as the truth", runEvaluate},
     Command{"render", "IN OUT.png    a picture", runRender},

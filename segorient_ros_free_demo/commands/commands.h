@@ -15,6 +15,7 @@ int runSegment(const std::vector<std::string>& words);
 int runTriangulate(const std::vector<std::string>& words);
 int runKnn(const std::vector<std::string>& words);
 int runCompare(const std::vector<std::string>& words);
+int runCheck(const std::vector<std::string>& words);
 int runEvaluate(const std::vector<std::string>& words);
 int runRender(const std::vector<std::string>& words);
 int runView(const std::vector<std::string>& words);

@@ -187,7 +187,7 @@ int runCompare(const std::vector<std::string>& words) {
     picture.emplace(picture_path);
   }
 
-  const CloudTable table = readUsableCloud(line.argument("IN"));
+  const CloudTable table = hints.read({line.argument("IN")}, common.quiet);
   const LocalPoints points(table);
   requirePclRange(points, line.argument("IN"));
   hints.apply(table, line.argument("IN"), points, options);

@@ -28,11 +28,12 @@ void printSummary(const FirstStages& stages, const std::vector<float>& normals,
 }  // namespace
 
 int runNormals(const std::vector<std::string>& words) {
-  CommandLine line("normals IN OUT [options]",
-                   "Estimates a normal at every point of IN. Their signs are arbitrary: see\n"
-                   "segorient orient. OUT (.pcd or .ply) has the points of IN in the same order,\n"
-                   "with normals and curvature, and all other fields of IN.",
-                   "segorient normals scan.ply normals.pcd --normals ldt");
+  CommandLine line(
+      "normals IN OUT [options]",
+      "Estimates a normal at every point of IN. Their signs are arbitrary: see\n"
+      "segorient orient. OUT (.pcd, .ply, .las) has the points of IN in the same order,\n"
+      "with normals and curvature, and all other fields of IN.",
+      "segorient normals scan.ply normals.pcd --normals ldt");
   CommonOptions common;
   StageOptions stage_options;
   line.arguments({"IN", "OUT"});

@@ -89,7 +89,7 @@ int runSegment(const std::vector<std::string>& words) {
   CommandLine line(
       "segment IN OUT [options]",
       "Cuts IN into faces: segments of similar normals, those united whose common border\n"
-      "is smooth unless --split is given. OUT (.pcd or .ply) has the points of\n"
+      "is smooth unless --split is given. OUT (.pcd, .ply, .las) has the points of\n"
       "IN in the same order, with normals that agree within each segment, curvature,\n"
       "colours, labels (largest segment first; 4294967295: in none) and segment_kind\n"
       "(0 regular, 1 connected, 2 isolated), and all other fields of IN but its rgb.",

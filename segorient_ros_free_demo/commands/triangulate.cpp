@@ -64,7 +64,7 @@ int runTriangulate(const std::vector<std::string>& words) {
   requireEnding(line.argument("OUT"), {".ply", ".vtk"});
 
   OutputFile file(line.argument("OUT"));
-  const CloudTable table = readUsableCloud(line.argument("IN"));
+  const CloudTable table = hints.read({line.argument("IN")}, common.quiet);
   const LocalPoints points(table);
   hints.apply(table, line.argument("IN"), points, options);
   OrientedCloud cloud;

@@ -243,6 +243,7 @@ void Orienter::turnComponentsOut() {
     result.by = DecidedBy::GLOBAL;
     result.evidence = winding_[c].evidence;
     result.confidence = winding_[c].evidence;
+    if (options_.wind_components) result.residual = winding_[c].residual;
     turn[c] = winding_[c].sign;
     // Nothing to tell in from out: a plane, or an isolated point.
     constexpr float kNoEvidence = 0.01F;

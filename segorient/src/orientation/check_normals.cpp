@@ -1,0 +1,389 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the segorient authors
+#include <segorient/common/compact_cloud.h>
+#include <segorient/orientation/check_normals.h>
+#include <segorient/search/median_hash_index.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <numeric>
+
+namespace segorient {
+namespace {
+
+// A line 60 degrees off is another surface's, at an edge or behind a thin wall.
+constexpr float kSameLine = 0.5F;
+// Normals of noisy scans are wrong by some degrees, rarely by 15: seen at less than that from edge
+// on, either side may be the right one.
+constexpr float kClearlySeen = 0.2588190F;
+// Neighbours to be asked: those within about 1.6 spacings.
+constexpr int kNeighbors = 8;
+// Three votes of four; see SegmentOrientationResult.
+constexpr float kConfident = 0.5F;
+// Surfaces within 45 degrees of each other are one piece, on which a change of side can be seen.
+constexpr float kSmooth = 0.70710678F;
+// Along the border of a patch that is turned over, the surface goes on smoothly but for some
+// strays.
+constexpr double kMostlySmooth = 2.0 / 3.0;
+// Residual of the winding number: closed surfaces stay below it even with noise.
+constexpr float kClosedResidual = 0.1F;
+
+std::size_t at(std::int32_t i) {
+  return static_cast<std::size_t>(i);
+}
+
+float dot(const float* a, const float* b) {
+  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+// To unit length, in double as lengths may be anything; false where there is no direction.
+bool normalize(const std::array<double, 3>& v, float* out) {
+  const double largest = std::max({std::fabs(v[0]), std::fabs(v[1]), std::fabs(v[2])});
+  if (!(largest > 0.0) || !std::isfinite(v[0] + v[1] + v[2])) return false;
+  double sum = 0.0;
+  for (const double c : v) sum += (c / largest) * (c / largest);
+  const double length = largest * std::sqrt(sum);
+  for (std::size_t a = 0; a < 3; ++a) out[a] = static_cast<float>(v[a] / length);
+  return true;
+}
+
+std::array<double, 3> inDouble(const float* v) {
+  return {static_cast<double>(v[0]), static_cast<double>(v[1]), static_cast<double>(v[2])};
+}
+
+// Sets of points that hang together.
+class UnionFind {
+ public:
+  explicit UnionFind(std::size_t size) : parent_(size) {
+    std::iota(parent_.begin(), parent_.end(), std::size_t{0});
+  }
+  std::size_t find(std::size_t i) {
+    while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
+    return i;
+  }
+  void unite(std::size_t a, std::size_t b) {
+    a = find(a);
+    b = find(b);
+    parent_[std::max(a, b)] = std::min(a, b);
+  }
+
+ private:
+  std::vector<std::size_t> parent_;
+};
+
+// What is known of each distinct point.
+struct Judgement {
+  std::int8_t sign = 0;    // +1 along our normal, -1 against it, 0 not judged
+  std::int8_t facing = 0;  // +1 its sensor sees the normal's front, -1 its back, 0 not known
+  NormalFault fault = NormalFault::NONE;
+};
+
+class Check {
+ public:
+  Check(const PointView& points, const std::vector<float>& normals, const OrientedCloud& ours,
+        const OrientationHints& hints, int threads)
+      : points_(points),
+        normals_(normals),
+        ours_(ours),
+        hints_(hints),
+        cloud_(compactCloud(points, nullptr, threads)),
+        judgements_(cloud_.size()) {
+    normalizeUnit(cloud_);
+    search::MedianHashIndex index;
+    search::MedianHashIndex::Options options;
+    options.threads = threads;
+    index.build(cloud_.view(), nullptr, options);
+    index.nearestKAll(kNeighbors + 1, neighbors_, false);
+  }
+
+  NormalCheck run() {
+    judge();
+    findFaults();
+    gatherPlaces();
+    return report();
+  }
+
+ private:
+  std::size_t row(std::size_t i) const { return at(cloud_.source[i]); }
+  const float* ourNormal(std::size_t i) const { return &ours_.normals[4 * row(i)]; }
+  std::int32_t component(std::size_t i) const { return ours_.components[row(i)]; }
+
+  bool isClosed(std::size_t component) const;
+  bool knowsOutside(std::size_t component) const;
+  bool toSensor(std::size_t i, float* direction) const;
+  void judge();
+  std::vector<std::int8_t> referenceSigns(std::vector<bool>& inside_out) const;
+  void findFaults();
+  bool isCore(std::size_t i) const;
+  bool isAtFault(std::size_t i) const { return judgements_[i].fault != NormalFault::NONE; }
+  void gatherPlaces();
+  NormalCheck report();
+
+  const PointView& points_;
+  const std::vector<float>& normals_;
+  const OrientedCloud& ours_;
+  const OrientationHints& hints_;
+  CompactCloud cloud_;
+  Neighborhoods neighbors_;
+  std::vector<Judgement> judgements_;
+  std::vector<std::int32_t> place_of_;
+  NormalCheck out_;
+};
+
+bool Check::isClosed(std::size_t component) const {
+  if (hints_.surface != SurfaceKind::UNKNOWN) return hints_.surface == SurfaceKind::CLOSED;
+  return ours_.report.components[component].residual <= kClosedResidual;
+}
+
+// Whether our sign of the whole component is more than a convention.
+bool Check::knowsOutside(std::size_t component) const {
+  const ComponentOrientationResult& c = ours_.report.components[component];
+  if (c.confidence < kConfident) return false;
+  return c.by == DecidedBy::HINTS || (c.by == DecidedBy::GLOBAL && isClosed(component));
+}
+
+// One viewpoint for all points says nothing of closed parts: nothing closed is seen whole from
+// there.
+bool Check::toSensor(std::size_t i, float* direction) const {
+  const std::size_t r = row(i);
+  const std::array<double, 3> p = inDouble(points_[r]);
+  const auto towards = [&](const float* place) {
+    return normalize({static_cast<double>(place[0]) - p[0], static_cast<double>(place[1]) - p[1],
+                      static_cast<double>(place[2]) - p[2]},
+                     direction);
+  };
+  if (3 * r + 2 < hints_.viewpoints.size() && towards(&hints_.viewpoints[3 * r])) return true;
+  if (hints_.has_direction) return normalize(inDouble(hints_.direction.data()), direction);
+  return hints_.has_viewpoint && component(i) >= 0 && !isClosed(at(component(i))) &&
+         towards(hints_.viewpoint.data());
+}
+
+void Check::judge() {
+  for (std::size_t i = 0; i < cloud_.size(); ++i) {
+    float normal[3];
+    if (!normalize(inDouble(&normals_[3 * row(i)]), normal)) continue;
+    const float agree = dot(normal, ourNormal(i));
+    if (!(std::fabs(agree) >= kSameLine)) continue;
+    judgements_[i].sign = agree > 0.F ? 1 : -1;
+    float sensor[3];
+    if (!toSensor(i, sensor)) continue;
+    const float seen = dot(normal, sensor);
+    if (std::fabs(seen) > kClearlySeen) judgements_[i].facing = seen > 0.F ? 1 : -1;
+  }
+}
+
+// By component, the sign that its normals are expected to have; most of them have it where our own
+// sign means nothing.
+std::vector<std::int8_t> Check::referenceSigns(std::vector<bool>& inside_out) const {
+  const std::size_t count = ours_.report.components.size();
+  std::vector<std::int64_t> balance(count, 0);
+  for (std::size_t i = 0; i < cloud_.size(); ++i) {
+    if (component(i) >= 0) balance[at(component(i))] += judgements_[i].sign;
+  }
+  std::vector<std::int8_t> reference(count, 1);
+  inside_out.assign(count, false);
+  for (std::size_t c = 0; c < count; ++c) {
+    if (balance[c] >= 0) continue;
+    if (knowsOutside(c)) {
+      inside_out[c] = isClosed(c);
+    } else {
+      reference[c] = -1;
+    }
+  }
+  return reference;
+}
+
+void Check::findFaults() {
+  std::vector<bool> inside_out;
+  const std::vector<std::int8_t> reference = referenceSigns(inside_out);
+  for (std::size_t i = 0; i < cloud_.size(); ++i) {
+    Judgement& j = judgements_[i];
+    if (j.sign == 0 || component(i) < 0) continue;
+    const std::size_t c = at(component(i));
+    if (j.facing < 0) {
+      j.fault = NormalFault::SENSOR;
+    } else if (j.facing == 0 && j.sign != reference[c]) {  // what was seen from the front is right
+      j.fault = inside_out[c] ? NormalFault::INSIDE_OUT : NormalFault::SURFACE;
+    }
+  }
+}
+
+// Whether all neighbours that can be judged are at fault, too, and most can.
+bool Check::isCore(std::size_t i) const {
+  int judged = 0;
+  for (int j = 1; j < neighbors_.count(i); ++j) {
+    const std::size_t other = at(neighbors_.indices(i)[j]);
+    if (judgements_[other].sign == 0) continue;
+    if (!isAtFault(other)) return false;
+    ++judged;
+  }
+  return 2 * judged > kNeighbors;
+}
+
+// Patches, without those that prove nothing.
+void Check::gatherPlaces() {
+  struct Patch {
+    std::array<std::size_t, 4> faults{};
+    std::size_t points = 0;
+    double confidence = 0.0;
+    bool core = false;
+    std::size_t border = 0;
+    std::size_t smooth = 0;  // pairs across the border whose own sides agree in our orientation
+  };
+  UnionFind sets(cloud_.size());
+  for (std::size_t i = 0; i < cloud_.size(); ++i) {
+    for (int j = 1; isAtFault(i) && j < neighbors_.count(i); ++j) {
+      const std::size_t other = at(neighbors_.indices(i)[j]);
+      if (isAtFault(other)) sets.unite(i, other);
+    }
+  }
+  std::map<std::size_t, Patch> patches;
+  for (std::size_t i = 0; i < cloud_.size(); ++i) {
+    if (!isAtFault(i)) continue;
+    Patch& patch = patches[sets.find(i)];
+    ++patch.faults[static_cast<std::size_t>(judgements_[i].fault)];
+    ++patch.points;
+    patch.confidence += static_cast<double>(ours_.confidences[row(i)]);
+    patch.core = patch.core || isCore(i);
+    for (int j = 1; j < neighbors_.count(i); ++j) {
+      const std::size_t other = at(neighbors_.indices(i)[j]);
+      if (isAtFault(other) || judgements_[other].sign == 0) continue;
+      const float along = dot(ourNormal(i), ourNormal(other));
+      if (std::fabs(along) < kSmooth) continue;
+      ++patch.border;
+      if (along > 0.F) ++patch.smooth;
+    }
+  }
+  std::map<std::size_t, std::int32_t> number;
+  for (const auto& [root, patch] : patches) {
+    const double points = static_cast<double>(patch.points);
+    const std::size_t sensor = patch.faults[static_cast<std::size_t>(NormalFault::SENSOR)];
+    const std::size_t inside = patch.faults[static_cast<std::size_t>(NormalFault::INSIDE_OUT)];
+    const bool by_sensor = 2 * sensor >= patch.points;
+    const bool surface_turns =
+        static_cast<double>(patch.smooth) < kMostlySmooth * static_cast<double>(patch.border);
+    const bool sure = by_sensor || (patch.confidence >= static_cast<double>(kConfident) * points &&
+                                    !surface_turns);
+    if (!patch.core || !sure) continue;
+    FaultyPlace place;
+    place.fault = by_sensor                    ? NormalFault::SENSOR
+                  : 2 * inside >= patch.points ? NormalFault::INSIDE_OUT
+                                               : NormalFault::SURFACE;
+    place.confidence = static_cast<float>(patch.confidence / points);
+    number[root] = static_cast<std::int32_t>(out_.places.size());
+    out_.places.push_back(place);
+  }
+  place_of_.assign(cloud_.size(), -1);
+  for (std::size_t i = 0; i < cloud_.size(); ++i) {
+    if (!isAtFault(i)) continue;
+    const auto known = number.find(sets.find(i));
+    if (known != number.end()) place_of_[i] = known->second;
+  }
+}
+
+// From distinct points to rows. A row that repeats another's place has a normal of its own.
+NormalCheck Check::report() {
+  const std::size_t rows = cloud_.row_of.size();
+  out_.faults.assign(rows, NormalFault::NONE);
+  out_.place_of.assign(rows, -1);
+  std::map<std::int32_t, ScanCheck> scans;
+  struct Box {
+    std::array<double, 3> sum{0.0, 0.0, 0.0};
+    std::array<float, 3> low;
+    std::array<float, 3> high;
+    std::map<std::int32_t, std::size_t> scans;
+  };
+  std::vector<Box> boxes(out_.places.size());
+  for (Box& b : boxes) {
+    b.low.fill(std::numeric_limits<float>::max());
+    b.high.fill(std::numeric_limits<float>::lowest());
+  }
+  for (std::size_t r = 0; r < rows; ++r) {
+    float normal[3];
+    if (cloud_.row_of[r] < 0 || !normalize(inDouble(&normals_[3 * r]), normal)) {
+      ++out_.without_normal;
+      continue;
+    }
+    const std::size_t i = at(cloud_.row_of[r]);
+    const Judgement& j = judgements_[i];
+    const float agree = dot(normal, ourNormal(i));
+    if (!(std::fabs(agree) >= kSameLine) || j.sign == 0) {
+      ++out_.unlike;
+      continue;
+    }
+    ++out_.judged;
+    const bool same = (agree > 0.F ? 1 : -1) == j.sign;
+    const std::int32_t scan = r < hints_.scans.size() ? hints_.scans[r] : -1;
+    if (j.facing != 0 && scan >= 0) {
+      ScanCheck& s = scans[scan];
+      s.scan = scan;
+      ++s.judged;
+      if (same == (j.facing < 0)) ++s.against_sensor;
+    }
+    if (place_of_[i] < 0 || !same) continue;
+    out_.faults[r] = j.fault;
+    out_.place_of[r] = place_of_[i];
+    ++out_.at_fault;
+    ++out_.places[at(place_of_[i])].points;
+    Box& box = boxes[at(place_of_[i])];
+    for (std::size_t a = 0; a < 3; ++a) {
+      box.sum[a] += static_cast<double>(points_[r][a]);
+      box.low[a] = std::min(box.low[a], points_[r][a]);
+      box.high[a] = std::max(box.high[a], points_[r][a]);
+    }
+    if (scan >= 0) ++box.scans[scan];
+  }
+  for (const auto& [number, scan] : scans) out_.scans.push_back(scan);
+  for (std::size_t p = 0; p < out_.places.size(); ++p) {
+    FaultyPlace& place = out_.places[p];
+    for (std::size_t a = 0; a < 3; ++a) {
+      place.center[a] = static_cast<float>(boxes[p].sum[a] / static_cast<double>(place.points));
+      place.size = std::max(place.size, boxes[p].high[a] - boxes[p].low[a]);
+    }
+    for (const auto& [scan, count] : boxes[p].scans) {
+      if (2 * count > place.points) place.scan = scan;
+    }
+  }
+  std::vector<std::int32_t> order(out_.places.size());
+  std::iota(order.begin(), order.end(), 0);
+  std::stable_sort(order.begin(), order.end(), [this](std::int32_t a, std::int32_t b) {
+    return out_.places[at(a)].points > out_.places[at(b)].points;
+  });
+  std::vector<std::int32_t> rank(order.size());
+  std::vector<FaultyPlace> sorted;
+  for (const std::int32_t p : order) {
+    rank[at(p)] = static_cast<std::int32_t>(sorted.size());
+    sorted.push_back(out_.places[at(p)]);
+  }
+  out_.places = std::move(sorted);
+  for (std::int32_t& p : out_.place_of) p = p < 0 ? -1 : rank[at(p)];
+  return std::move(out_);
+}
+
+}  // namespace
+
+const char* toString(NormalFault fault) {
+  switch (fault) {
+    case NormalFault::SENSOR:
+      return "sensor";
+    case NormalFault::SURFACE:
+      return "surface";
+    case NormalFault::INSIDE_OUT:
+      return "inside_out";
+    default:
+      return "none";
+  }
+}
+
+NormalCheck checkNormals(const PointView& points, const std::vector<float>& normals,
+                         const OrientedCloud& ours, const OrientationHints& hints, int threads) {
+  if (normals.size() != 3 * points.size || ours.normals.size() != 4 * points.size ||
+      ours.confidences.size() != points.size || ours.components.size() != points.size) {
+    return {};
+  }
+  return Check(points, normals, ours, hints, threads).run();
+}
+
+}  // namespace segorient
