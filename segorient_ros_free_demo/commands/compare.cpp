@@ -71,6 +71,54 @@ PclResult runPcl(const PointView& points, const std::array<float, 3>& viewpoint,
   return out;
 }
 
+// Towards the sensor that saw a point, in double: 0 0 0 where it is not known.
+std::array<double, 3> towardsSensor(const PointView& points, std::size_t row,
+                                    const OrientationHints& hints) {
+  std::array<double, 3> out{0.0, 0.0, 0.0};
+  if (3 * row + 2 < hints.viewpoints.size() && isFinite(&hints.viewpoints[3 * row])) {
+    for (std::size_t a = 0; a < 3; ++a) {
+      out[a] =
+          static_cast<double>(hints.viewpoints[3 * row + a]) - static_cast<double>(points[row][a]);
+    }
+  } else if (hints.has_direction) {
+    std::copy_n(hints.direction.begin(), 3, out.begin());
+  }
+  return out;
+}
+
+double facing(const float* normal, const std::array<double, 3>& sensor) {
+  double sum = 0.0;
+  for (std::size_t a = 0; a < 3; ++a) sum += static_cast<double>(normal[a]) * sensor[a];
+  return sum;
+}
+
+// What pcl::flipNormalTowardsViewpoint() does, where points have sensors of their own.
+void turnToOwnSensors(const PointView& points, const OrientationHints& hints, Normals& normals) {
+  for (std::size_t i = 0; i < points.size; ++i) {
+    if (!(facing(&normals[4 * i], towardsSensor(points, i, hints)) < 0.0)) continue;
+    for (std::size_t a = 0; a < 3; ++a) normals[4 * i + a] = -normals[4 * i + a];
+  }
+}
+
+// Share of the points whose sensor is known that it sees from the front, in percent; NaN: none is.
+double shareFacing(const PointView& points, OrientationHints hints, const Normals& normals) {
+  std::size_t known = 0;
+  std::size_t front = 0;
+  for (std::size_t i = 0; i < points.size; ++i) {
+    std::array<double, 3> sensor = towardsSensor(points, i, hints);
+    if (sensor == std::array<double, 3>{0.0, 0.0, 0.0} && hints.has_viewpoint) {
+      for (std::size_t a = 0; a < 3; ++a) {
+        sensor[a] = static_cast<double>(hints.viewpoint[a]) - static_cast<double>(points[i][a]);
+      }
+    }
+    const double seen = facing(&normals[4 * i], sensor);
+    if (seen == 0.0 || !std::isfinite(seen)) continue;
+    ++known;
+    if (seen > 0.0) ++front;
+  }
+  return known == 0 ? NAN : 100.0 * static_cast<double>(front) / static_cast<double>(known);
+}
+
 Normals ownNormals(const CloudTable& table) {
   Normals out(4 * table.size, 0.F);
   for (std::size_t i = 0; i < table.size; ++i) {
@@ -124,6 +172,21 @@ void printAgainstTruth(const char* name, const Normals& truth, const Normals& no
       d.share(std::max(d.opposite, d.compared - d.opposite)), d.rms, d.median);
 }
 
+// What PCL's normals were turned to, and how far both face it.
+void printSensors(const PointView& points, const OrientationHints& hints, const Normals& pcl,
+                  const Normals& ours) {
+  const bool own = !hints.viewpoints.empty();
+  if (!own && !hints.has_direction && !hints.has_viewpoint) {
+    std::printf("viewpoint   not known; PCL took the origin\n");
+    return;
+  }
+  std::printf("viewpoint   %s, for both: PCL %.3f %%, ours %.3f %% of the points face it\n",
+              own                   ? "each point's own"
+              : hints.has_direction ? "far above"
+                                    : "one for all",
+              shareFacing(points, hints, pcl), shareFacing(points, hints, ours));
+}
+
 void print(const CloudTable& table, const PipelineReport& report, const PclResult& pcl_result,
            const Normals& our_normals) {
   const Difference d = compareNormals(pcl_result.normals, our_normals);
@@ -152,9 +215,11 @@ Scene sceneOf(const CloudTable& table, const LocalPoints& points, const Normals&
 int runCompare(const std::vector<std::string>& words) {
   CommandLine line(
       "compare IN [options]",
-      "Normals of pcl::NormalEstimationOMP, turned to the viewpoint of IN, beside those\n"
-      "of segorient orient: time, angles, share of points oriented differently; and both\n"
-      "against IN's own normals if it has any. Pictures show PCL left, ours right.",
+      "Normals of pcl::NormalEstimationOMP, turned to the sensor, beside those of\n"
+      "segorient orient: time, angles, share of points oriented differently; and both\n"
+      "against IN's own normals if it has any. Both know the same sensors: what IN says\n"
+      "(VIEWPOINT, vp_x vp_y vp_z, poses) or an option; if nothing does, PCL takes the\n"
+      "origin, as it does by default. Pictures show PCL left, ours right.",
       "segorient compare scan.ply --picture compare.png --poisson poisson");
   CommonOptions common;
   StageOptions stages;
@@ -209,6 +274,7 @@ int runCompare(const std::vector<std::string>& words) {
     // PCL counts the point itself.
     pcl_result =
         runPcl(points.view(), viewpoint, ours.report.k + 1, resolveThreads(common.threads));
+    turnToOwnSensors(points.view(), *options.orientation.hints, pcl_result.normals);
     if (!poisson_prefix.empty()) {
       bar.update("poisson", 2.0 * share);
       const TrueSurface truth(truth_path.empty() ? table : readUsableCloud(truth_path),
@@ -217,7 +283,10 @@ int runCompare(const std::vector<std::string>& words) {
                                     poisson_prefix, truth, bar);
     }
   }
-  if (!common.quiet) print(table, ours.report, pcl_result, ours.normals);
+  if (!common.quiet) {
+    print(table, ours.report, pcl_result, ours.normals);
+    printSensors(points.view(), *options.orientation.hints, pcl_result.normals, ours.normals);
+  }
   if (picture) {
     View view;
     writePng(beside({drawScene(sceneOf(table, points, pcl_result.normals, common.threads), view),

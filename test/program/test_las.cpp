@@ -79,7 +79,9 @@ TEST(Las, EveryPointFormat) {
     EXPECT_NEAR(valueOf(table, "scan_angle", i), format >= 6 ? -30.0 : -5.0, 1e-4);
     const bool time = format == 1 || format >= 3;
     EXPECT_EQ(table.find("gps_time") != nullptr, time);
-    if (time) EXPECT_EQ(valueOf(table, "gps_time", i), 1239.5);
+    if (time) {
+      EXPECT_EQ(valueOf(table, "gps_time", i), 1239.5);
+    }
     const bool color = format == 2 || format == 3 || format == 5 || format == 7 || format == 8 ||
                        format == 10;
     EXPECT_EQ(table.find("rgb") != nullptr, color);
@@ -89,8 +91,12 @@ TEST(Las, EveryPointFormat) {
       std::memcpy(&rgb, table.at(*table.find("rgb"), i), 4);
       EXPECT_EQ(rgb, 50U << 16 | 51U << 8 | 52U);
     }
-    if (format == 8 || format == 10) EXPECT_EQ(valueOf(table, "infrared", i), 905);
-    if (format >= 6) EXPECT_EQ(valueOf(table, "scanner_channel", i), 1);
+    if (format == 8 || format == 10) {
+      EXPECT_EQ(valueOf(table, "infrared", i), 905);
+    }
+    if (format >= 6) {
+      EXPECT_EQ(valueOf(table, "scanner_channel", i), 1);
+    }
   }
 }
 

@@ -108,7 +108,9 @@ TEST(Ptx, FilesThatAreNotWhole) {
   for (std::size_t length = 0; length + 2 < whole.size(); ++length) {
     const std::string result = outcome(directory.write("cut.ptx", whole.substr(0, length)));
     // Only the last number may be cut without a trace.
-    if (length + 16 < whole.size()) EXPECT_NE(result, "read") << length;
+    if (length + 16 < whole.size()) {
+      EXPECT_NE(result, "read") << length;
+    }
   }
   for (std::size_t at = 0; at < whole.size(); ++at) {
     for (const char damage : {'9', '\n', 'x'}) {

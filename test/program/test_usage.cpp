@@ -8,8 +8,8 @@
 namespace segorient::test {
 namespace {
 
-const std::vector<std::string> kCommands{"orient",  "normals",  "segment", "triangulate", "knn",
-                                         "compare", "evaluate", "render",  "view"};
+const std::vector<std::string> kCommands{"orient",  "normals", "segment",  "triangulate", "knn",
+                                         "compare", "check",   "evaluate", "render",      "view"};
 
 TEST(Usage, HelpOfTheProgramAndOfEveryCommand) {
   const Outcome help = runProgram({"--help"});
@@ -33,8 +33,7 @@ TEST(Usage, WrongUsageIsStatus2AndOneLine) {
       {"polish"},
       {"orient"},
       {"orient", fandisk()},
-      {"orient", fandisk(), out, "extra"},
-      {"orient", fandisk(), directory.file("out.las")},
+      {"orient", fandisk(), directory.file("out.laz")},
       {"orient", fandisk(), directory.file("out")},
       {"orient", fandisk(), out, "--metho", "auto"},
       {"orient", fandisk(), out, "--method", "best"},

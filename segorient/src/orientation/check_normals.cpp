@@ -77,6 +77,7 @@ class UnionFind {
 struct Judgement {
   std::int8_t sign = 0;    // +1 along our normal, -1 against it, 0 not judged
   std::int8_t facing = 0;  // +1 its sensor sees the normal's front, -1 its back, 0 not known
+  float seen = 0.F;        // cosine between normal and sensor, 0 not known
   NormalFault fault = NormalFault::NONE;
 };
 
@@ -170,6 +171,7 @@ void Check::judge() {
     float sensor[3];
     if (!toSensor(i, sensor)) continue;
     const float seen = dot(normal, sensor);
+    judgements_[i].seen = seen;
     if (std::fabs(seen) > kClearlySeen) judgements_[i].facing = seen > 0.F ? 1 : -1;
   }
 }
@@ -228,6 +230,7 @@ void Check::gatherPlaces() {
     std::array<std::size_t, 4> faults{};
     std::size_t points = 0;
     double confidence = 0.0;
+    double seen = 0.0;
     bool core = false;
     std::size_t border = 0;
     std::size_t smooth = 0;  // pairs across the border whose own sides agree in our orientation
@@ -246,6 +249,7 @@ void Check::gatherPlaces() {
     ++patch.faults[static_cast<std::size_t>(judgements_[i].fault)];
     ++patch.points;
     patch.confidence += static_cast<double>(ours_.confidences[row(i)]);
+    patch.seen += static_cast<double>(judgements_[i].seen);
     patch.core = patch.core || isCore(i);
     for (int j = 1; j < neighbors_.count(i); ++j) {
       const std::size_t other = at(neighbors_.indices(i)[j]);
@@ -264,8 +268,10 @@ void Check::gatherPlaces() {
     const bool by_sensor = 2 * sensor >= patch.points;
     const bool surface_turns =
         static_cast<double>(patch.smooth) < kMostlySmooth * static_cast<double>(patch.border);
+    // Seen at grazing angles, but all in all from the front: sensors know better than the surface.
+    const bool seen_in_front = patch.seen > 0.0;
     const bool sure = by_sensor || (patch.confidence >= static_cast<double>(kConfident) * points &&
-                                    !surface_turns);
+                                    !surface_turns && !seen_in_front);
     if (!patch.core || !sure) continue;
     FaultyPlace place;
     place.fault = by_sensor                    ? NormalFault::SENSOR
