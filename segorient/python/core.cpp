@@ -7,6 +7,7 @@
 #include <pybind11/numpy.h>
 #include <pybind11/pybind11.h>
 #include <pybind11/stl.h>
+#include <segorient/orientation/check_normals.h>
 #include <segorient/orientation/first_stages.h>
 #include <segorient/orientation/pipeline.h>
 #include <segorient/orientation/trajectory.h>
@@ -326,6 +327,58 @@ py::tuple segment(const FloatArray& points, const py::dict& given, const py::obj
                         normals[0], normals[1]);
 }
 
+// (faults, places, report) of normals that a cloud has.
+py::tuple check(const FloatArray& points, const FloatArray& normals, const py::dict& given,
+                const py::object& progress) {
+  const PointView rows = viewOf(points);
+  PipelineOptions options = optionsFrom(given);
+  const std::shared_ptr<const OrientationHints> hints = hintsFrom(given);
+  options.orientation.hints = hints;
+  const std::vector<float> own = rowsOf(normals);
+  const PipelineProgress callback = progressTo(progress);
+  NormalCheck found;
+  {
+    const py::gil_scoped_release unlocked;
+    const OrientedCloud ours = orientCloud(rows, nullptr, options, callback);
+    found = checkNormals(rows, own, ours, *hints, options.threads);
+  }
+  py::dict report;
+  report["points"] = found.faults.size();
+  report["judged"] = found.judged;
+  report["contradicting"] = found.at_fault;
+  report["share"] = found.judged == 0
+                        ? 0.0
+                        : static_cast<double>(found.at_fault) / static_cast<double>(found.judged);
+  report["without_normal"] = found.without_normal;
+  report["unlike"] = found.unlike;
+  py::list places;
+  for (const FaultyPlace& p : found.places) {
+    py::dict place;
+    place["contradicts"] = toString(p.fault);
+    place["points"] = p.points;
+    place["x"] = p.center[0];
+    place["y"] = p.center[1];
+    place["z"] = p.center[2];
+    place["size"] = p.size;
+    place["confidence"] = p.confidence;
+    place["scan"] = p.scan;
+    places.append(place);
+  }
+  report["places"] = places;
+  py::list scans;
+  for (const ScanCheck& s : found.scans) {
+    py::dict scan;
+    scan["scan"] = s.scan;
+    scan["judged"] = s.judged;
+    scan["against_sensor"] = s.against_sensor;
+    scans.append(scan);
+  }
+  report["scans"] = scans;
+  std::vector<std::uint8_t> faults;
+  for (const NormalFault f : found.faults) faults.push_back(static_cast<std::uint8_t>(f));
+  return py::make_tuple(column(std::move(faults)), column(std::move(found.place_of)), report);
+}
+
 // (viewpoints: (n, 3) in double, points joined, points outside, why there are none)
 py::tuple trajectoryViewpoints(
     const py::array_t<double, py::array::c_style | py::array::forcecast>& rows,
@@ -405,6 +458,7 @@ PYBIND11_MODULE(_core, module) {
   module.def("orient", &segorient::orient);
   module.def("normals", &segorient::normals);
   module.def("segment", &segorient::segment);
+  module.def("check", &segorient::check);
   module.def("join_trajectory", &segorient::trajectoryViewpoints);
   module.def("knn", &segorient::knn);
 }

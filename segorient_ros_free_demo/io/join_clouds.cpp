@@ -67,26 +67,22 @@ std::vector<Field> commonFields(const std::vector<CloudTable>& clouds,
   return fields;
 }
 
+template <typename T>
+void store(T value, std::uint8_t* to) {
+  std::memcpy(to, &value, sizeof(T));
+}
+
+// A number in the type of a field that has room for it.
 void storeElement(double v, const Field& field, std::uint8_t* to) {
-  switch (field.size) {
-    case 1:
-      *to = static_cast<std::uint8_t>(static_cast<std::int64_t>(v));
-      return;
-    case 2: {
-      const auto whole = static_cast<std::uint16_t>(static_cast<std::int64_t>(v));
-      std::memcpy(to, &whole, sizeof(whole));
-      return;
-    }
-    case 4: {
-      const auto single = static_cast<float>(v);
-      const auto whole =
-          static_cast<std::uint32_t>(field.type == 'F' ? 0 : static_cast<std::int64_t>(v));
-      std::memcpy(to, field.type == 'F' ? static_cast<const void*>(&single) : &whole, 4);
-      return;
-    }
-    default:
-      std::memcpy(to, &v, sizeof(v));
+  if (field.type == 'F') {
+    if (field.size == 8) return store(v, to);
+    return store(static_cast<float>(v), to);
   }
+  const auto whole = static_cast<std::int64_t>(v);
+  if (field.size == 8) return store(whole, to);
+  if (field.size == 4) return store(static_cast<std::uint32_t>(whole), to);
+  if (field.size == 2) return store(static_cast<std::uint16_t>(whole), to);
+  store(static_cast<std::uint8_t>(whole), to);
 }
 
 // One field of one cloud to its place in the joint one, from row `first` on.

@@ -156,17 +156,19 @@ void Layout::chooseScale() {
            std::abs(ticks(a, range_[a].high())) <= kMostInt;
   }
   if (fits) return;
-  double extent = 0.0;
-  for (const ValueRange& r : range_) extent = std::max(extent, r.extent());
-  constexpr double kUsed = 2e9;  // of the steps of 32 bits
-  const double step = extent > 0.0 ? std::pow(10.0, std::ceil(std::log10(extent / kUsed))) : 1e-9;
+  // Halves: the whole may be more than a double holds.
+  double half = 0.0;
+  for (const ValueRange& r : range_) {
+    if (!r.empty()) half = std::max(half, 0.5 * r.high() - 0.5 * r.low());
+  }
+  constexpr double kUsed = 1e9;  // steps to either side, of the 2^31 that there are
+  const double step = half > 0.0 ? std::pow(10.0, std::ceil(std::log10(half / kUsed))) : 1e-9;
   for (std::size_t a = 0; a < 3; ++a) {
-    // Near the least representable number no power of ten is left to divide by.
+    // Near the least number there is no power of ten is left to divide by.
     scale_[a] = std::max(step, std::numeric_limits<double>::min());
-    const double middle =
-        range_[a].empty() ? 0.0 : range_[a].low() + 0.5 * (range_[a].high() - range_[a].low());
+    const double middle = range_[a].empty() ? 0.0 : 0.5 * range_[a].low() + 0.5 * range_[a].high();
     const double whole = std::floor(middle);
-    offset_[a] = std::abs(whole - middle) <= extent ? whole : middle;
+    offset_[a] = std::abs(whole - middle) <= half ? whole : middle;
   }
 }
 

@@ -22,6 +22,9 @@ void fuzzPipeline(const std::uint8_t* data, std::size_t size);
 /// same points.
 void fuzzProgram(const std::uint8_t* data, std::size_t size);
 
+/// Files of scanners (PTX, PTS, LAS, trajectories): read, joined, written, read again.
+void fuzzScans(const std::uint8_t* data, std::size_t size);
+
 /// Says what does not hold and ends the process unless `holds`.
 void expectProperty(bool holds, const char* what);
 

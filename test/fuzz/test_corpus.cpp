@@ -41,6 +41,10 @@ TEST(FuzzCorpus, Pipeline) {
 TEST(FuzzCorpus, Program) {
   replay("program", fuzzProgram);
 }
+
+TEST(FuzzCorpus, Scans) {
+  replay("scans", fuzzScans);
+}
 #endif
 
 }  // namespace

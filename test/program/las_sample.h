@@ -11,8 +11,8 @@
 namespace segorient::test {
 
 inline std::size_t lasRecordBytes(int format) {
-  return std::vector<std::size_t>{20, 28, 26, 34, 57, 63, 30, 36, 38, 59, 67}[static_cast<std::size_t>(
-      format)];
+  return std::vector<std::size_t>{
+      20, 28, 26, 34, 57, 63, 30, 36, 38, 59, 67}[static_cast<std::size_t>(format)];
 }
 
 template <typename T>
@@ -26,7 +26,7 @@ struct LasSample {
   int format = 0;
   double scale = 0.001;
   double offset[3] = {500000.0, 5400000.0, 100.0};
-  std::string records;            ///< variable length records
+  std::string records;  ///< variable length records
   std::uint32_t record_count = 0;
   std::vector<std::string> points;
 
@@ -57,7 +57,8 @@ struct LasSample {
     const std::size_t color = format == 2 ? 20 : (format == 3 || format == 5 ? 28 : 30);
     if (format == 2 || format == 3 || format == 5 || format == 7 || format == 8 || format == 10) {
       for (std::size_t c = 0; c < 3; ++c) {
-        putAt(p, color + 2 * c, static_cast<std::uint16_t>(256 * (10 * i + static_cast<int>(c)) + 5));
+        putAt(p, color + 2 * c,
+              static_cast<std::uint16_t>(256 * (10 * i + static_cast<int>(c)) + 5));
       }
     }
     if (format == 8 || format == 10) putAt(p, 36, static_cast<std::uint16_t>(900 + i));
@@ -100,7 +101,8 @@ inline LasSample lasSample(int format, int size) {
 }
 
 /// A variable length record.
-inline std::string lasRecord(const std::string& user, std::uint16_t id, const std::string& content) {
+inline std::string lasRecord(const std::string& user, std::uint16_t id,
+                             const std::string& content) {
   std::string out(54, '\0');
   std::memcpy(&out[2], user.data(), user.size());
   putAt(out, 18, id);

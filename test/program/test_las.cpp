@@ -82,8 +82,8 @@ TEST(Las, EveryPointFormat) {
     if (time) {
       EXPECT_EQ(valueOf(table, "gps_time", i), 1239.5);
     }
-    const bool color = format == 2 || format == 3 || format == 5 || format == 7 || format == 8 ||
-                       format == 10;
+    const bool color =
+        format == 2 || format == 3 || format == 5 || format == 7 || format == 8 || format == 10;
     EXPECT_EQ(table.find("rgb") != nullptr, color);
     if (color) {
       EXPECT_EQ(valueOf(table, "green16", i), 256 * 51 + 5);
@@ -185,8 +185,8 @@ TEST(Las, ExtraBytesOfAllTypes) {
   LasSample sample = lasSample(0, 2);
   sample.records = lasRecord("LASF_Spec", 4,
                              lasExtra("height", 4, 8 | 16, 0.01, 100.0) + lasExtra("a name", 10) +
-                                 lasExtra("intensity", 1) + lasExtra("", 3) + lasExtra("pad", 0, 3) +
-                                 lasExtra("pair", 15));
+                                 lasExtra("intensity", 1) + lasExtra("", 3) +
+                                 lasExtra("pad", 0, 3) + lasExtra("pair", 15));
   sample.record_count = 1;
   for (std::string& p : sample.points) {
     std::string extra;
@@ -254,10 +254,11 @@ TEST(Las, PointsWithoutPlaceAreLeftOut) {
 // Classes above 31 have no place in the old formats.
 TEST(Las, NewFormatWhereTheOldOneHasNoRoom) {
   const ScratchDirectory directory;
-  const CloudTable table = readCloud(directory.write(
-      "a.ply",
-      "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\nproperty float z\n"
-      "property uchar classification\nend_header\n1 2 3 200\n"));
+  const CloudTable table =
+      readCloud(directory.write("a.ply",
+                                "ply\nformat ascii 1.0\nelement vertex 1\nproperty float "
+                                "x\nproperty float y\nproperty float z\n"
+                                "property uchar classification\nend_header\n1 2 3 200\n"));
   writeAs(table, directory.file("b.las"));
   EXPECT_EQ(readFile(directory.file("b.las"))[104], 6);
   EXPECT_EQ(valueOf(readCloud(directory.file("b.las")), "classification", 0), 200);

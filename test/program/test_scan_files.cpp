@@ -83,10 +83,10 @@ TEST(Ptx, SeveralScansAreCountedAndOnlyWhatWasSeenStays) {
 
 TEST(Ptx, ColoursAndMapCoordinates) {
   const ScratchDirectory directory;
-  const CloudTable table = readCloud(directory.write(
-      "a.ptx",
-      "1\n2\n4000000 5000000 100\n1 0 0\n0 1 0\n0 0 1\n1 0 0 0\n0 1 0 0\n0 0 1 0\n"
-      "4000000 5000000 100 1\n0.001 2 3 0.5 255 0 7\n1 1 1 0.5 1 2 3\n"));
+  const CloudTable table = readCloud(
+      directory.write("a.ptx",
+                      "1\n2\n4000000 5000000 100\n1 0 0\n0 1 0\n0 0 1\n1 0 0 0\n0 1 0 0\n0 0 1 0\n"
+                      "4000000 5000000 100 1\n0.001 2 3 0.5 255 0 7\n1 1 1 0.5 1 2 3\n"));
   EXPECT_EQ(table.find("x")->size, 8U);
   EXPECT_DOUBLE_EQ(table.position(0)[0], 4000000.001);
   std::uint32_t rgb = 0;
@@ -119,17 +119,17 @@ TEST(Ptx, FilesThatAreNotWhole) {
       outcome(directory.write("damaged.ptx", content));  // must come back
     }
   }
-  EXPECT_NE(outcome(directory.write("big.ptx", "999999\n999999\n" + whole.substr(4)))
-                .find("cut short"),
-            std::string::npos);
+  EXPECT_NE(
+      outcome(directory.write("big.ptx", "999999\n999999\n" + whole.substr(4))).find("cut short"),
+      std::string::npos);
   EXPECT_NE(outcome(directory.write("half.ptx", "1.5\n3\n" + whole.substr(4))).find("grid"),
             std::string::npos);
 }
 
 TEST(Pts, ScansIntensityAndColours) {
   const ScratchDirectory directory;
-  const CloudTable table = readCloud(directory.write(
-      "a.pts", "2\n1 2 3 -500 10 20 30\n4 5 6 7 0 0 255\n1\n7 8 9 1 1 1 1\n"));
+  const CloudTable table = readCloud(
+      directory.write("a.pts", "2\n1 2 3 -500 10 20 30\n4 5 6 7 0 0 255\n1\n7 8 9 1 1 1 1\n"));
   ASSERT_EQ(table.size, 3U);
   EXPECT_EQ(valueOf(table, "intensity", 0), -500.0);
   EXPECT_EQ(valueOf(table, "scan", 1), 0.0);
@@ -187,10 +187,10 @@ CloudTable cloudOf(const ScratchDirectory& directory, const std::string& name,
 TEST(JoinClouds, PointsScansViewpointsAndFillers) {
   const ScratchDirectory directory;
   std::vector<CloudTable> clouds;
-  clouds.push_back(cloudOf(
-      directory, "a.pcd",
-      "FIELDS x y z intensity ring\nSIZE 4 4 4 4 1\nTYPE F F F F U\nWIDTH 1\nHEIGHT 2\n"
-      "VIEWPOINT 7 8 9 1 0 0 0\nDATA ascii\n1 2 3 0.5 4\n4 5 6 1.5 200\n"));
+  clouds.push_back(
+      cloudOf(directory, "a.pcd",
+              "FIELDS x y z intensity ring\nSIZE 4 4 4 4 1\nTYPE F F F F U\nWIDTH 1\nHEIGHT 2\n"
+              "VIEWPOINT 7 8 9 1 0 0 0\nDATA ascii\n1 2 3 0.5 4\n4 5 6 1.5 200\n"));
   clouds.push_back(cloudOf(directory, "b.ply",
                            "ply\nformat ascii 1.0\nelement vertex 1\nproperty double x\nproperty "
                            "double y\nproperty double z\nproperty uchar red\nproperty uchar "
@@ -234,12 +234,12 @@ TEST(JoinClouds, FieldsOfDifferentLengthAreLeftOutWithANote) {
   const ScratchDirectory directory;
   const std::string rest = "\nWIDTH 1\nHEIGHT 1\nDATA ascii\n";
   std::vector<CloudTable> clouds;
-  clouds.push_back(cloudOf(directory, "a.pcd",
-                           "FIELDS x y z f\nSIZE 4 4 4 4\nTYPE F F F F\nCOUNT 1 1 1 2" + rest +
-                               "1 2 3 4 5\n"));
-  clouds.push_back(cloudOf(
-      directory, "b.pcd",
-      "FIELDS x y z f\nSIZE 4 4 4 4\nTYPE F F F F\nCOUNT 1 1 1 1" + rest + "1 2 3 4\n"));
+  clouds.push_back(
+      cloudOf(directory, "a.pcd",
+              "FIELDS x y z f\nSIZE 4 4 4 4\nTYPE F F F F\nCOUNT 1 1 1 2" + rest + "1 2 3 4 5\n"));
+  clouds.push_back(
+      cloudOf(directory, "b.pcd",
+              "FIELDS x y z f\nSIZE 4 4 4 4\nTYPE F F F F\nCOUNT 1 1 1 1" + rest + "1 2 3 4\n"));
   const CloudTable joint = joinClouds(std::move(clouds), {"a", "b"}, true);
   EXPECT_EQ(joint.find("f"), nullptr);
   ASSERT_EQ(joint.notes.size(), 1U);

@@ -139,6 +139,83 @@ class Orient(unittest.TestCase):
                         delta=30, epsilon=10, recompute=1, threads=2).normals)
 
 
+class Sensors(unittest.TestCase):
+    def test_up_and_a_trajectory_tell_the_side_of_a_bowl(self):
+        points, outward = bowl()
+        points = points + MAP
+        inward = segorient.orient(points, up=True, closed=False)
+        self.assertEqual(share(inward.normals, -outward), 1.0)
+        times = np.linspace(0.0, 10.0, len(points))
+        below = np.array([[0.0, 0.0, 0.0, -9.0], [10.0, 0.0, 0.0, -9.0]]) + np.concatenate([[0.0], MAP])
+        down = segorient.orient(points, trajectory=below, times=times, closed=False)
+        self.assertEqual(share(down.normals, outward), 1.0)
+
+    def test_the_end_of_a_trajectory_is_said(self):
+        points, _ = bowl()
+        times = np.linspace(0.0, 10.0, len(points))
+        with self.assertWarnsRegex(UserWarning, "outside of the trajectory"):
+            segorient.orient(points, trajectory=[[0, 0, 0, 9], [5, 0, 0, 9]], times=times)
+        with self.assertRaisesRegex(ValueError, "points 0 to 10, trajectory 20 to 30"):
+            segorient.orient(points, trajectory=[[20, 0, 0, 9], [30, 0, 0, 9]], times=times)
+
+    def test_scans_and_grids_are_taken(self):
+        x, y = np.meshgrid(np.linspace(-1, 1, 40), np.linspace(-1, 1, 30))
+        points = np.stack([x, y, np.full_like(x, 2.0)], axis=-1).reshape(-1, 3)
+        scans = np.repeat([0, 1], 600)
+        result = segorient.orient(points, organized=(30, 40), scans=scans, viewpoint=(0, 0, 0))
+        self.assertTrue((result.normals[:, 2] < 0.0).all())
+
+    def test_bad_ones_are_errors_that_say_why(self):
+        points, _ = bowl()
+        n = len(points)
+        path = [[0, 0, 0, 0]]
+        for error, text, options in (
+            (TypeError, "belong together", {"trajectory": path}),
+            (TypeError, "belong together", {"times": np.zeros(n)}),
+            (ValueError, "\\(m, 4\\)", {"trajectory": np.zeros((2, 3)), "times": np.zeros(n)}),
+            (ValueError, "times must have one", {"trajectory": path, "times": np.zeros(3)}),
+            (TypeError, "up must be", {"up": 1}),
+            (ValueError, "exclude each other", {"up": True, "viewpoint": (0, 0, 0)}),
+            (TypeError, "scans must be whole", {"scans": np.zeros(n)}),
+            (ValueError, "scans must have", {"scans": [1, 2]}),
+            (ValueError, "height and width", {"organized": (2, 3)}),
+            (TypeError, "organized", {"organized": 5}),
+        ):
+            with self.subTest(options=list(options)), self.assertRaisesRegex(error, text):
+                segorient.orient(points, **options)
+
+
+class CheckNormals(unittest.TestCase):
+    def test_right_normals_and_a_cap_that_is_turned_over(self):
+        points, outward = sphere()
+        points = points + MAP
+        right = segorient.check(points, outward)
+        self.assertFalse(right.contradictions.any())
+        self.assertEqual(right.report["places"], [])
+        cap = outward[:, 2] > 0.8
+        turned = np.where(cap[:, None], -outward, outward)
+        found = segorient.check(points, turned)
+        self.assertTrue((found.contradictions[cap] == 2).all())
+        self.assertFalse(found.contradictions[~cap].any())
+        np.testing.assert_array_equal(found.places, np.where(cap, 0, -1))
+        place = found.report["places"][0]
+        self.assertEqual(place["contradicts"], "surface")
+        self.assertLess(np.abs(np.array([place["x"], place["y"], place["z"]]) - MAP - [0, 0, 0.9]).max(), 0.05)
+
+    def test_a_sensor_tells_the_side_of_an_open_surface(self):
+        points, outward = bowl()
+        self.assertEqual(segorient.check(points, outward, closed=False).report["contradicting"], 0)
+        found = segorient.check(points, outward, up=True)
+        self.assertEqual(found.report["places"][0]["contradicts"], "sensor")
+
+    def test_bad_arguments(self):
+        points, outward = sphere(100)
+        with self.assertRaises(ValueError):
+            segorient.check(points, outward[:50])
+        with self.assertRaises(TypeError):
+            segorient.check(points, outward, closed=1)
+
+
 class OtherStages(unittest.TestCase):
     def test_normals_of_a_sphere_by_every_estimator(self):
         points, outward = sphere()

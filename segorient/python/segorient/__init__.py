@@ -28,10 +28,12 @@ from . import _core
 
 __version__ = "1.0.0"
 __all__ = [
+    "Check",
     "Neighbors",
     "Normals",
     "Orientation",
     "Segments",
+    "check",
     "knn",
     "normals",
     "orient",
@@ -52,6 +54,14 @@ class Orientation(NamedTuple):
     confidences: Floats  #: (n,) of the orientation: 0 a guess, 1 all evidence agrees
     components: npt.NDArray[np.int32]  #: (n,) connected component, the largest first; -1 as above
     report: Dict[str, Any]  #: what was done, as ``--report`` of the program has it, but for memory by stage
+
+
+class Check(NamedTuple):
+    """What :func:`check` found."""
+
+    contradictions: npt.NDArray[np.uint8]  #: (n,) 0 none, 1 the sensor, 2 the surface, 3 inside out
+    places: npt.NDArray[np.int32]  #: (n,) into ``report["places"]``, the largest first; -1: none
+    report: Dict[str, Any]  #: as ``segorient check --report`` of the program has it
 
 
 class Normals(NamedTuple):
@@ -174,6 +184,12 @@ def _options(
     return {name: value for name, value in options.items() if value is not None}
 
 
+def _flag(name: str, value: bool) -> bool:
+    if not isinstance(value, (bool, np.bool_)):
+        raise TypeError(f"{name} must be True, False or None, not {value!r}")
+    return bool(value)
+
+
 def _rows_of(name: str, value: npt.ArrayLike, size: int) -> npt.NDArray[Any]:
     """Checks that this is an array of a row for each point."""
     rows = _rows(name, value)
@@ -188,7 +204,9 @@ def _one_each(name: str, value: npt.ArrayLike, size: int, kinds: str) -> npt.NDA
     if array.dtype.kind not in kinds:
         raise TypeError(f"{name} must be {'whole' if kinds == 'iu' else 'real'} numbers, not {array.dtype}")
     if array.shape != (size,):
-        raise ValueError(f"{name} must have one number for each of the {size} points, not shape {array.shape}")
+        raise ValueError(
+            f"{name} must have one number for each of the {size} points, not shape {array.shape}"
+        )
     return array
 
 
@@ -205,7 +223,8 @@ def _joined(
     if size > 0 and joined == 0:
         raise ValueError(reason)
     if outside > 0:
-        warnings.warn(f"{outside} points were measured outside of the trajectory's time: no sensor is known", stacklevel=4)
+        text = f"{outside} points were measured outside of the trajectory's time: no sensor is known"
+        warnings.warn(text, stacklevel=4)
     if viewpoints is None:
         return np.asarray(seen)
     return np.where(np.isfinite(viewpoints).all(axis=1)[:, None], viewpoints, seen)
@@ -325,13 +344,13 @@ def orient(
     if gamma is not None:
         options["gamma"] = _angle("gamma", gamma)
     array, origin = _local(points)
-    options.update(_sensors(len(array), origin, viewpoint, viewpoints, trajectory, times, up, scans, organized))
+    options.update(
+        _sensors(len(array), origin, viewpoint, viewpoints, trajectory, times, up, scans, organized)
+    )
     if keep is not None:
         options["keep"] = _moved(_rows_of("keep", keep, len(array)), np.zeros(3))
     if closed is not None:
-        if not isinstance(closed, (bool, np.bool_)):
-            raise TypeError(f"closed must be True, False or None, not {closed!r}")
-        options["closed"] = bool(closed)
+        options["closed"] = _flag("closed", closed)
     if seeds is not None:
         if not isinstance(seeds, (tuple, list)) or len(seeds) != 2:
             raise TypeError("seeds must be a pair: points and their normals")
@@ -344,6 +363,50 @@ def orient(
     for where in result.report["contradictions"]:
         for axis, name in enumerate("xyz"):
             where[name] += origin[axis]
+    return result
+
+
+def check(
+    points: npt.ArrayLike,
+    normals: npt.ArrayLike,
+    *,
+    viewpoint: Optional[Union[Sequence[float], npt.NDArray[Any]]] = None,
+    viewpoints: Optional[npt.ArrayLike] = None,
+    trajectory: Optional[npt.ArrayLike] = None,
+    times: Optional[npt.ArrayLike] = None,
+    up: bool = False,
+    scans: Optional[npt.ArrayLike] = None,
+    organized: Optional[Tuple[int, int]] = None,
+    closed: Optional[bool] = None,
+    threads: int = 0,
+    progress: Optional[Progress] = None,
+) -> Check:
+    """Which normals contradict the sensors that saw their points, or the surface.
+
+    >>> found = segorient.check(points, normals)
+    >>> assert not found.places.max() >= 0, found.report["places"]
+
+    Patches that are turned over, and closed parts that are inside out; single points prove nothing.
+
+    :param points: (n, 3)
+    :param normals: (n, 3), of any length; NaN or 0: none
+    :param viewpoint, viewpoints, trajectory, times, up, scans, organized, closed: as of :func:`orient`
+    :param threads: 0 = all cores; results do not depend on it
+    :param progress: called with a stage's name and the fraction that is done
+    :raises TypeError, ValueError: for arguments that make no sense
+    """
+    options = _options(None, "auto", None, None, None, None, 0, threads)
+    array, origin = _local(points)
+    given = _moved(_rows_of("normals", normals, len(array)), np.zeros(3))
+    options.update(
+        _sensors(len(array), origin, viewpoint, viewpoints, trajectory, times, up, scans, organized)
+    )
+    if closed is not None:
+        options["closed"] = _flag("closed", closed)
+    result = Check(*_core.check(array, given, options, progress))
+    for place in result.report["places"]:
+        for axis, name in enumerate("xyz"):
+            place[name] += origin[axis]
     return result
 
 

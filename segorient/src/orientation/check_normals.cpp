@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026, the segorient authors
-#include <segorient/common/compact_cloud.h>
 #include <segorient/orientation/check_normals.h>
-#include <segorient/search/median_hash_index.h>
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <map>
 #include <numeric>
+
+#include "search/prepared_cloud.h"
 
 namespace segorient {
 namespace {
@@ -29,6 +29,8 @@ constexpr float kSmooth = 0.70710678F;
 constexpr double kMostlySmooth = 2.0 / 3.0;
 // Residual of the winding number: closed surfaces stay below it even with noise.
 constexpr float kClosedResidual = 0.1F;
+
+constexpr float kMost = std::numeric_limits<float>::max();
 
 std::size_t at(std::int32_t i) {
   return static_cast<std::size_t>(i);
@@ -89,14 +91,9 @@ class Check {
         normals_(normals),
         ours_(ours),
         hints_(hints),
-        cloud_(compactCloud(points, nullptr, threads)),
+        cloud_(points, nullptr, threads),
         judgements_(cloud_.size()) {
-    normalizeUnit(cloud_);
-    search::MedianHashIndex index;
-    search::MedianHashIndex::Options options;
-    options.threads = threads;
-    index.build(cloud_.view(), nullptr, options);
-    index.nearestKAll(kNeighbors + 1, neighbors_, false);
+    cloud_.findNeighbors(kNeighbors, false);
   }
 
   NormalCheck run() {
@@ -107,7 +104,8 @@ class Check {
   }
 
  private:
-  std::size_t row(std::size_t i) const { return at(cloud_.source[i]); }
+  std::size_t row(std::size_t i) const { return cloud_.rowOf(i); }
+  const Neighborhoods& neighbors() const { return cloud_.neighborhoods(); }
   const float* ourNormal(std::size_t i) const { return &ours_.normals[4 * row(i)]; }
   std::int32_t component(std::size_t i) const { return ours_.components[row(i)]; }
 
@@ -120,16 +118,22 @@ class Check {
   bool isCore(std::size_t i) const;
   bool isAtFault(std::size_t i) const { return judgements_[i].fault != NormalFault::NONE; }
   void gatherPlaces();
+  std::int32_t scanOf(std::size_t row) const {
+    return row < hints_.scans.size() ? hints_.scans[row] : -1;
+  }
+  void countForScan(std::size_t row, const Judgement& judgement, bool same);
+  void measurePlaces();
+  void sortPlaces();
   NormalCheck report();
 
   const PointView& points_;
   const std::vector<float>& normals_;
   const OrientedCloud& ours_;
   const OrientationHints& hints_;
-  CompactCloud cloud_;
-  Neighborhoods neighbors_;
+  PreparedCloud cloud_;
   std::vector<Judgement> judgements_;
   std::vector<std::int32_t> place_of_;
+  std::map<std::int32_t, ScanCheck> scans_;
   NormalCheck out_;
 };
 
@@ -215,8 +219,8 @@ void Check::findFaults() {
 // Whether all neighbours that can be judged are at fault, too, and most can.
 bool Check::isCore(std::size_t i) const {
   int judged = 0;
-  for (int j = 1; j < neighbors_.count(i); ++j) {
-    const std::size_t other = at(neighbors_.indices(i)[j]);
+  for (int j = 1; j < neighbors().count(i); ++j) {
+    const std::size_t other = at(neighbors().indices(i)[j]);
     if (judgements_[other].sign == 0) continue;
     if (!isAtFault(other)) return false;
     ++judged;
@@ -237,8 +241,8 @@ void Check::gatherPlaces() {
   };
   UnionFind sets(cloud_.size());
   for (std::size_t i = 0; i < cloud_.size(); ++i) {
-    for (int j = 1; isAtFault(i) && j < neighbors_.count(i); ++j) {
-      const std::size_t other = at(neighbors_.indices(i)[j]);
+    for (int j = 1; isAtFault(i) && j < neighbors().count(i); ++j) {
+      const std::size_t other = at(neighbors().indices(i)[j]);
       if (isAtFault(other)) sets.unite(i, other);
     }
   }
@@ -251,8 +255,8 @@ void Check::gatherPlaces() {
     patch.confidence += static_cast<double>(ours_.confidences[row(i)]);
     patch.seen += static_cast<double>(judgements_[i].seen);
     patch.core = patch.core || isCore(i);
-    for (int j = 1; j < neighbors_.count(i); ++j) {
-      const std::size_t other = at(neighbors_.indices(i)[j]);
+    for (int j = 1; j < neighbors().count(i); ++j) {
+      const std::size_t other = at(neighbors().indices(i)[j]);
       if (isAtFault(other) || judgements_[other].sign == 0) continue;
       const float along = dot(ourNormal(i), ourNormal(other));
       if (std::fabs(along) < kSmooth) continue;
@@ -291,58 +295,64 @@ void Check::gatherPlaces() {
 
 // From distinct points to rows. A row that repeats another's place has a normal of its own.
 NormalCheck Check::report() {
-  const std::size_t rows = cloud_.row_of.size();
+  const std::size_t rows = cloud_.rows();
   out_.faults.assign(rows, NormalFault::NONE);
   out_.place_of.assign(rows, -1);
-  std::map<std::int32_t, ScanCheck> scans;
-  struct Box {
-    std::array<double, 3> sum{0.0, 0.0, 0.0};
-    std::array<float, 3> low;
-    std::array<float, 3> high;
-    std::map<std::int32_t, std::size_t> scans;
-  };
-  std::vector<Box> boxes(out_.places.size());
-  for (Box& b : boxes) {
-    b.low.fill(std::numeric_limits<float>::max());
-    b.high.fill(std::numeric_limits<float>::lowest());
-  }
   for (std::size_t r = 0; r < rows; ++r) {
     float normal[3];
-    if (cloud_.row_of[r] < 0 || !normalize(inDouble(&normals_[3 * r]), normal)) {
+    if (cloud_.pointOf(r) < 0 || !normalize(inDouble(&normals_[3 * r]), normal)) {
       ++out_.without_normal;
       continue;
     }
-    const std::size_t i = at(cloud_.row_of[r]);
-    const Judgement& j = judgements_[i];
+    const std::size_t i = at(cloud_.pointOf(r));
     const float agree = dot(normal, ourNormal(i));
-    if (!(std::fabs(agree) >= kSameLine) || j.sign == 0) {
+    if (!(std::fabs(agree) >= kSameLine) || judgements_[i].sign == 0) {
       ++out_.unlike;
       continue;
     }
     ++out_.judged;
-    const bool same = (agree > 0.F ? 1 : -1) == j.sign;
-    const std::int32_t scan = r < hints_.scans.size() ? hints_.scans[r] : -1;
-    if (j.facing != 0 && scan >= 0) {
-      ScanCheck& s = scans[scan];
-      s.scan = scan;
-      ++s.judged;
-      if (same == (j.facing < 0)) ++s.against_sensor;
-    }
+    const bool same = (agree > 0.F ? 1 : -1) == judgements_[i].sign;
+    countForScan(r, judgements_[i], same);
     if (place_of_[i] < 0 || !same) continue;
-    out_.faults[r] = j.fault;
+    out_.faults[r] = judgements_[i].fault;
     out_.place_of[r] = place_of_[i];
     ++out_.at_fault;
-    ++out_.places[at(place_of_[i])].points;
-    Box& box = boxes[at(place_of_[i])];
+  }
+  for (const auto& [number, scan] : scans_) out_.scans.push_back(scan);
+  measurePlaces();
+  sortPlaces();
+  return std::move(out_);
+}
+
+void Check::countForScan(std::size_t r, const Judgement& judgement, bool same) {
+  if (judgement.facing == 0 || scanOf(r) < 0) return;
+  ScanCheck& scan = scans_[scanOf(r)];
+  scan.scan = scanOf(r);
+  ++scan.judged;
+  if (same == (judgement.facing < 0)) ++scan.against_sensor;
+}
+
+// Number, middle, size and scan of each place.
+void Check::measurePlaces() {
+  struct Box {
+    std::array<double, 3> sum{0.0, 0.0, 0.0};
+    std::array<float, 3> low{kMost, kMost, kMost};
+    std::array<float, 3> high{-kMost, -kMost, -kMost};
+    std::map<std::int32_t, std::size_t> scans;
+  };
+  std::vector<Box> boxes(out_.places.size());
+  for (std::size_t r = 0; r < out_.place_of.size(); ++r) {
+    if (out_.place_of[r] < 0) continue;
+    Box& box = boxes[at(out_.place_of[r])];
+    ++out_.places[at(out_.place_of[r])].points;
     for (std::size_t a = 0; a < 3; ++a) {
       box.sum[a] += static_cast<double>(points_[r][a]);
       box.low[a] = std::min(box.low[a], points_[r][a]);
       box.high[a] = std::max(box.high[a], points_[r][a]);
     }
-    if (scan >= 0) ++box.scans[scan];
+    if (scanOf(r) >= 0) ++box.scans[scanOf(r)];
   }
-  for (const auto& [number, scan] : scans) out_.scans.push_back(scan);
-  for (std::size_t p = 0; p < out_.places.size(); ++p) {
+  for (std::size_t p = 0; p < boxes.size(); ++p) {
     FaultyPlace& place = out_.places[p];
     for (std::size_t a = 0; a < 3; ++a) {
       place.center[a] = static_cast<float>(boxes[p].sum[a] / static_cast<double>(place.points));
@@ -352,6 +362,9 @@ NormalCheck Check::report() {
       if (2 * count > place.points) place.scan = scan;
     }
   }
+}
+
+void Check::sortPlaces() {
   std::vector<std::int32_t> order(out_.places.size());
   std::iota(order.begin(), order.end(), 0);
   std::stable_sort(order.begin(), order.end(), [this](std::int32_t a, std::int32_t b) {
@@ -365,7 +378,6 @@ NormalCheck Check::report() {
   }
   out_.places = std::move(sorted);
   for (std::int32_t& p : out_.place_of) p = p < 0 ? -1 : rank[at(p)];
-  return std::move(out_);
 }
 
 }  // namespace
