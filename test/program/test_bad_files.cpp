@@ -162,7 +162,7 @@ INSTANTIATE_TEST_SUITE_P(
     Files, BadFileTest,
     testing::Values(
         BadFile{"empty.pcd", "", "is empty"}, BadFile{"empty.ply", "", "is empty"},
-        BadFile{"points.las", "LASF", "not known by its ending"},
+        BadFile{"points.e57", "ASTM-E57", "not known by its ending"},
         BadFile{"none", "1 2 3\n", "not known by its ending"},
         BadFile{"many.pcd",
                 kXyz + "WIDTH 4000000000\nHEIGHT 1\nPOINTS 4000000000\nDATA binary\n0123",

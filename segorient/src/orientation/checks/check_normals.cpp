@@ -8,7 +8,7 @@
 #include <map>
 #include <numeric>
 
-#include "search/prepared_cloud.h"
+#include "orientation/checks/fault_patches.h"
 
 namespace segorient {
 namespace {
@@ -18,15 +18,6 @@ constexpr float kSameLine = 0.5F;
 // Normals of noisy scans are wrong by some degrees, rarely by 15: seen at less than that from edge
 // on, either side may be the right one.
 constexpr float kClearlySeen = 0.2588190F;
-// Neighbours to be asked: those within about 1.6 spacings.
-constexpr int kNeighbors = 8;
-// Three votes of four; see SegmentOrientationResult.
-constexpr float kConfident = 0.5F;
-// Surfaces within 45 degrees of each other are one piece, on which a change of side can be seen.
-constexpr float kSmooth = 0.70710678F;
-// Along the border of a patch that is turned over, the surface goes on smoothly but for some
-// strays.
-constexpr double kMostlySmooth = 2.0 / 3.0;
 // Residual of the winding number: closed surfaces stay below it even with noise.
 constexpr float kClosedResidual = 0.1F;
 
@@ -55,34 +46,6 @@ std::array<double, 3> inDouble(const float* v) {
   return {static_cast<double>(v[0]), static_cast<double>(v[1]), static_cast<double>(v[2])};
 }
 
-// Sets of points that hang together.
-class UnionFind {
- public:
-  explicit UnionFind(std::size_t size) : parent_(size) {
-    std::iota(parent_.begin(), parent_.end(), std::size_t{0});
-  }
-  std::size_t find(std::size_t i) {
-    while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
-    return i;
-  }
-  void unite(std::size_t a, std::size_t b) {
-    a = find(a);
-    b = find(b);
-    parent_[std::max(a, b)] = std::min(a, b);
-  }
-
- private:
-  std::vector<std::size_t> parent_;
-};
-
-// What is known of each distinct point.
-struct Judgement {
-  std::int8_t sign = 0;    // +1 along our normal, -1 against it, 0 not judged
-  std::int8_t facing = 0;  // +1 its sensor sees the normal's front, -1 its back, 0 not known
-  float seen = 0.F;        // cosine between normal and sensor, 0 not known
-  NormalFault fault = NormalFault::NONE;
-};
-
 class Check {
  public:
   Check(const PointView& points, const std::vector<float>& normals, const OrientedCloud& ours,
@@ -93,19 +56,20 @@ class Check {
         hints_(hints),
         cloud_(points, nullptr, threads),
         judgements_(cloud_.size()) {
-    cloud_.findNeighbors(kNeighbors, false);
+    cloud_.findNeighbors(kCheckNeighbors, false);
   }
 
   NormalCheck run() {
     judge();
     findFaults();
-    gatherPlaces();
+    FaultPatches patches = findFaultPatches(cloud_, judgements_, ours_);
+    out_.places = std::move(patches.places);
+    place_of_ = std::move(patches.of_points);
     return report();
   }
 
  private:
   std::size_t row(std::size_t i) const { return cloud_.rowOf(i); }
-  const Neighborhoods& neighbors() const { return cloud_.neighborhoods(); }
   const float* ourNormal(std::size_t i) const { return &ours_.normals[4 * row(i)]; }
   std::int32_t component(std::size_t i) const { return ours_.components[row(i)]; }
 
@@ -115,9 +79,6 @@ class Check {
   void judge();
   std::vector<std::int8_t> referenceSigns(std::vector<bool>& inside_out) const;
   void findFaults();
-  bool isCore(std::size_t i) const;
-  bool isAtFault(std::size_t i) const { return judgements_[i].fault != NormalFault::NONE; }
-  void gatherPlaces();
   std::int32_t scanOf(std::size_t row) const {
     return row < hints_.scans.size() ? hints_.scans[row] : -1;
   }
@@ -213,83 +174,6 @@ void Check::findFaults() {
     } else if (j.facing == 0 && j.sign != reference[c]) {  // what was seen from the front is right
       j.fault = inside_out[c] ? NormalFault::INSIDE_OUT : NormalFault::SURFACE;
     }
-  }
-}
-
-// Whether all neighbours that can be judged are at fault, too, and most can.
-bool Check::isCore(std::size_t i) const {
-  int judged = 0;
-  for (int j = 1; j < neighbors().count(i); ++j) {
-    const std::size_t other = at(neighbors().indices(i)[j]);
-    if (judgements_[other].sign == 0) continue;
-    if (!isAtFault(other)) return false;
-    ++judged;
-  }
-  return 2 * judged > kNeighbors;
-}
-
-// Patches, without those that prove nothing.
-void Check::gatherPlaces() {
-  struct Patch {
-    std::array<std::size_t, 4> faults{};
-    std::size_t points = 0;
-    double confidence = 0.0;
-    double seen = 0.0;
-    bool core = false;
-    std::size_t border = 0;
-    std::size_t smooth = 0;  // pairs across the border whose own sides agree in our orientation
-  };
-  UnionFind sets(cloud_.size());
-  for (std::size_t i = 0; i < cloud_.size(); ++i) {
-    for (int j = 1; isAtFault(i) && j < neighbors().count(i); ++j) {
-      const std::size_t other = at(neighbors().indices(i)[j]);
-      if (isAtFault(other)) sets.unite(i, other);
-    }
-  }
-  std::map<std::size_t, Patch> patches;
-  for (std::size_t i = 0; i < cloud_.size(); ++i) {
-    if (!isAtFault(i)) continue;
-    Patch& patch = patches[sets.find(i)];
-    ++patch.faults[static_cast<std::size_t>(judgements_[i].fault)];
-    ++patch.points;
-    patch.confidence += static_cast<double>(ours_.confidences[row(i)]);
-    patch.seen += static_cast<double>(judgements_[i].seen);
-    patch.core = patch.core || isCore(i);
-    for (int j = 1; j < neighbors().count(i); ++j) {
-      const std::size_t other = at(neighbors().indices(i)[j]);
-      if (isAtFault(other) || judgements_[other].sign == 0) continue;
-      const float along = dot(ourNormal(i), ourNormal(other));
-      if (std::fabs(along) < kSmooth) continue;
-      ++patch.border;
-      if (along > 0.F) ++patch.smooth;
-    }
-  }
-  std::map<std::size_t, std::int32_t> number;
-  for (const auto& [root, patch] : patches) {
-    const double points = static_cast<double>(patch.points);
-    const std::size_t sensor = patch.faults[static_cast<std::size_t>(NormalFault::SENSOR)];
-    const std::size_t inside = patch.faults[static_cast<std::size_t>(NormalFault::INSIDE_OUT)];
-    const bool by_sensor = 2 * sensor >= patch.points;
-    const bool surface_turns =
-        static_cast<double>(patch.smooth) < kMostlySmooth * static_cast<double>(patch.border);
-    // Seen at grazing angles, but all in all from the front: sensors know better than the surface.
-    const bool seen_in_front = patch.seen > 0.0;
-    const bool sure = by_sensor || (patch.confidence >= static_cast<double>(kConfident) * points &&
-                                    !surface_turns && !seen_in_front);
-    if (!patch.core || !sure) continue;
-    FaultyPlace place;
-    place.fault = by_sensor                    ? NormalFault::SENSOR
-                  : 2 * inside >= patch.points ? NormalFault::INSIDE_OUT
-                                               : NormalFault::SURFACE;
-    place.confidence = static_cast<float>(patch.confidence / points);
-    number[root] = static_cast<std::int32_t>(out_.places.size());
-    out_.places.push_back(place);
-  }
-  place_of_.assign(cloud_.size(), -1);
-  for (std::size_t i = 0; i < cloud_.size(); ++i) {
-    if (!isAtFault(i)) continue;
-    const auto known = number.find(sets.find(i));
-    if (known != number.end()) place_of_[i] = known->second;
   }
 }
 

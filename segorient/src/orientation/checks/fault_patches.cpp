@@ -1,0 +1,167 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the segorient authors
+#include "orientation/checks/fault_patches.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+#include <numeric>
+
+namespace segorient {
+namespace {
+
+// Surfaces within 45 degrees of each other are one piece, on which a change of side can be seen.
+constexpr float kSmooth = 0.70710678F;
+// Along the border of a patch that is turned over, the surface goes on smoothly but for some
+// strays.
+constexpr double kMostlySmooth = 2.0 / 3.0;
+
+std::size_t at(std::int32_t i) {
+  return static_cast<std::size_t>(i);
+}
+
+// Sets of points that hang together.
+class UnionFind {
+ public:
+  explicit UnionFind(std::size_t size) : parent_(size) {
+    std::iota(parent_.begin(), parent_.end(), std::size_t{0});
+  }
+  std::size_t find(std::size_t i) {
+    while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
+    return i;
+  }
+  void unite(std::size_t a, std::size_t b) {
+    a = find(a);
+    b = find(b);
+    parent_[std::max(a, b)] = std::min(a, b);
+  }
+
+ private:
+  std::vector<std::size_t> parent_;
+};
+
+struct Patch {
+  std::array<std::size_t, 4> faults{};  // points by NormalFault
+  std::size_t points = 0;
+  double confidence = 0.0;  // sums over its points
+  double seen = 0.0;
+  bool core = false;
+  std::size_t border = 0;
+  std::size_t smooth = 0;  // pairs across the border whose own sides agree in our orientation
+
+  std::size_t of(NormalFault fault) const { return faults[static_cast<std::size_t>(fault)]; }
+  NormalFault fault() const {
+    if (2 * of(NormalFault::SENSOR) >= points) return NormalFault::SENSOR;
+    return 2 * of(NormalFault::INSIDE_OUT) >= points ? NormalFault::INSIDE_OUT
+                                                     : NormalFault::SURFACE;
+  }
+  // Whether it is more than noise, and our own orientation is worth more than the normals' there.
+  bool provesSomething() const {
+    if (!core) return false;
+    if (fault() == NormalFault::SENSOR) return true;
+    const bool confident =
+        confidence >= static_cast<double>(kConfident) * static_cast<double>(points);
+    const bool goes_on = static_cast<double>(smooth) >= kMostlySmooth * static_cast<double>(border);
+    // Seen at grazing angles, but all in all from the front: sensors know better than the surface.
+    const bool seen_in_front = seen > 0.0;
+    return confident && goes_on && !seen_in_front;
+  }
+};
+
+class Patches {
+ public:
+  Patches(const PreparedCloud& cloud, const std::vector<Judgement>& judgements,
+          const OrientedCloud& ours)
+      : cloud_(cloud),
+        table_(cloud.neighborhoods()),
+        judgements_(judgements),
+        ours_(ours),
+        sets_(cloud.size()) {}
+
+  FaultPatches run() {
+    unite();
+    for (std::size_t i = 0; i < cloud_.size(); ++i) {
+      if (isAtFault(i)) add(i, patches_[sets_.find(i)]);
+    }
+    return results();
+  }
+
+ private:
+  bool isAtFault(std::size_t i) const { return judgements_[i].fault != NormalFault::NONE; }
+  std::size_t neighbor(std::size_t i, int j) const { return at(table_.indices(i)[j]); }
+  const float* ourNormal(std::size_t i) const { return &ours_.normals[4 * cloud_.rowOf(i)]; }
+
+  void unite() {
+    for (std::size_t i = 0; i < cloud_.size(); ++i) {
+      for (int j = 1; isAtFault(i) && j < table_.count(i); ++j) {
+        if (isAtFault(neighbor(i, j))) sets_.unite(i, neighbor(i, j));
+      }
+    }
+  }
+
+  // Whether all neighbours that can be judged are at fault, too, and most can.
+  bool isCore(std::size_t i) const {
+    int judged = 0;
+    for (int j = 1; j < table_.count(i); ++j) {
+      if (judgements_[neighbor(i, j)].sign == 0) continue;
+      if (!isAtFault(neighbor(i, j))) return false;
+      ++judged;
+    }
+    return 2 * judged > kCheckNeighbors;
+  }
+
+  void add(std::size_t i, Patch& patch) const {
+    ++patch.faults[static_cast<std::size_t>(judgements_[i].fault)];
+    ++patch.points;
+    patch.confidence += static_cast<double>(ours_.confidences[cloud_.rowOf(i)]);
+    patch.seen += static_cast<double>(judgements_[i].seen);
+    patch.core = patch.core || isCore(i);
+    for (int j = 1; j < table_.count(i); ++j) {
+      const std::size_t other = neighbor(i, j);
+      if (isAtFault(other) || judgements_[other].sign == 0) continue;
+      const float* a = ourNormal(i);
+      const float* b = ourNormal(other);
+      const float along = a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+      if (std::fabs(along) < kSmooth) continue;
+      ++patch.border;
+      if (along > 0.F) ++patch.smooth;
+    }
+  }
+
+  FaultPatches results() {
+    FaultPatches out;
+    std::map<std::size_t, std::int32_t> number;
+    for (const auto& [root, patch] : patches_) {
+      if (!patch.provesSomething()) continue;
+      FaultyPlace place;
+      place.fault = patch.fault();
+      place.confidence = static_cast<float>(patch.confidence / static_cast<double>(patch.points));
+      number[root] = static_cast<std::int32_t>(out.places.size());
+      out.places.push_back(place);
+    }
+    out.of_points.assign(cloud_.size(), -1);
+    for (std::size_t i = 0; i < cloud_.size(); ++i) {
+      if (!isAtFault(i)) continue;
+      const auto known = number.find(sets_.find(i));
+      if (known != number.end()) out.of_points[i] = known->second;
+    }
+    return out;
+  }
+
+  const PreparedCloud& cloud_;
+  const Neighborhoods& table_;
+  const std::vector<Judgement>& judgements_;
+  const OrientedCloud& ours_;
+  UnionFind sets_;
+  std::map<std::size_t, Patch> patches_;  // by the set's first point
+};
+
+}  // namespace
+
+FaultPatches findFaultPatches(const PreparedCloud& cloud, const std::vector<Judgement>& judgements,
+                              const OrientedCloud& ours) {
+  return Patches(cloud, judgements, ours).run();
+}
+
+}  // namespace segorient
