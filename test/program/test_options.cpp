@@ -2,7 +2,8 @@
 // Copyright (c) 2026, the segorient authors
 // Options that all commands share, warnings, hints, the report's page, and Ctrl-C.
 #include <sys/wait.h>
-#include <boost/property_tree/json_parser.hpp>#include <gtest/gtest.h>
+#include <boost/property_tree/json_parser.hpp>
+#include <gtest/gtest.h>
 
 #include <signal.h>
 #include <unistd.h>
