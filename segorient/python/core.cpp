@@ -255,7 +255,7 @@ py::dict reportOf(const OrientedCloud& cloud) {
   }
   out["contradictions"] = contradictions;
   py::list sensors;
-  for (const SensorReport& s : report.sensors) {
+  for (const KnownSensor& s : report.known_sensors) {
     py::dict sensor;
     sensor["x"] = s.position[0];
     sensor["y"] = s.position[1];
@@ -269,7 +269,7 @@ py::dict reportOf(const OrientedCloud& cloud) {
     sensor["density"] = s.density;
     sensors.append(sensor);
   }
-  out["sensors"] = sensors;
+  out["known_sensors"] = sensors;
   addSegments(cloud, out);
   return out;
 }

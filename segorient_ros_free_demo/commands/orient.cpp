@@ -53,7 +53,7 @@ void printSummary(const PipelineReport& report, const StageMemory& memory,
         report.contradictions.size(), origin[0] + static_cast<double>(where[0]),
         origin[1] + static_cast<double>(where[1]), origin[2] + static_cast<double>(where[2]));
   }
-  for (const SensorReport& s : report.sensors) {
+  for (const KnownSensor& s : report.known_sensors) {
     if (s.used) continue;
     std::printf(
         "not followed    the sensor at (%g, %g, %g) contradicts the surface of its %zu points\n",
@@ -68,8 +68,8 @@ void printSummary(const PipelineReport& report, const StageMemory& memory,
 
 void addSensors(const PipelineReport& report, const std::array<double, 3>& origin,
                 JsonWriter& json) {
-  json.beginArray("sensors");
-  for (const SensorReport& s : report.sensors) {
+  json.beginArray("known_sensors");
+  for (const KnownSensor& s : report.known_sensors) {
     json.beginItem();
     json.field("x", origin[0] + static_cast<double>(s.position[0]));
     json.field("y", origin[1] + static_cast<double>(s.position[1]));

@@ -119,12 +119,12 @@ TEST(KnownSensors, ARoomFacesTheStationWithinIt) {
   for (const OrientationHints& hints : {seenFrom(station), eachItsOwn(scans)}) {
     const OrientedCloud cloud = orient(scans.xyz, hints);
     EXPECT_GE(shareOutward(cloud.normals, scans.normals), 0.998);
-    ASSERT_EQ(cloud.report.sensors.size(), 1U);
-    EXPECT_TRUE(cloud.report.sensors[0].used);
-    EXPECT_EQ(cloud.report.sensors[0].seen, scans.size());
-    EXPECT_LT(cloud.report.sensors[0].hidden, 0.05F);
-    EXPECT_LT(cloud.report.sensors[0].density, 0.5F);
-    EXPECT_NEAR(cloud.report.sensors[0].position[2], 1.4F, 1e-5F);
+    ASSERT_EQ(cloud.report.known_sensors.size(), 1U);
+    EXPECT_TRUE(cloud.report.known_sensors[0].used);
+    EXPECT_EQ(cloud.report.known_sensors[0].seen, scans.size());
+    EXPECT_LT(cloud.report.known_sensors[0].hidden, 0.05F);
+    EXPECT_LT(cloud.report.known_sensors[0].density, 0.5F);
+    EXPECT_NEAR(cloud.report.known_sensors[0].position[2], 1.4F, 1e-5F);
   }
 }
 
@@ -136,7 +136,7 @@ TEST(KnownSensors, EachSideOfAThinWallFacesWhoSawIt) {
   scan(wall, {-7, 50, -4}, 90, 0.05, 3, scans);
   const OrientedCloud cloud = orient(scans.xyz, eachItsOwn(scans));
   EXPECT_GE(shareOutward(cloud.normals, scans.normals), 0.998);
-  ASSERT_EQ(cloud.report.sensors.size(), 2U);
+  ASSERT_EQ(cloud.report.known_sensors.size(), 2U);
 }
 
 // Four stations around a solid; the poses of two across from each other are mixed up.
@@ -155,12 +155,12 @@ TEST(KnownSensors, MixedUpPosesAreFoundAndLeftToTheSurface) {
     }
   }
   const OrientedCloud right = orient(scans.xyz, eachItsOwn(scans));
-  for (const SensorReport& s : right.report.sensors) EXPECT_TRUE(s.used) << s.position[0];
+  for (const KnownSensor& s : right.report.known_sensors) EXPECT_TRUE(s.used) << s.position[0];
   EXPECT_GE(shareOutward(right.normals, scans.normals), 0.999);
   const OrientedCloud mixed = orient(scans.xyz, hints);
   EXPECT_GE(shareOutward(mixed.normals, scans.normals), 0.998);
-  ASSERT_EQ(mixed.report.sensors.size(), 4U);
-  for (const SensorReport& s : mixed.report.sensors) {
+  ASSERT_EQ(mixed.report.known_sensors.size(), 4U);
+  for (const KnownSensor& s : mixed.report.known_sensors) {
     EXPECT_EQ(s.used, std::fabs(s.position[0]) < 3.F) << s.position[0];
     EXPECT_EQ(s.seen, s.used ? s.points : 0U);
   }
@@ -171,10 +171,10 @@ TEST(KnownSensors, AViewpointInsideASolidChangesNothingAndIsReported) {
   const OrientedCloud free = orient(cube.xyz, {});
   const OrientedCloud cloud = orient(cube.xyz, seenFrom({0.4, 0.55, 0.5}));
   EXPECT_EQ(cloud.normals, free.normals);
-  EXPECT_TRUE(free.report.sensors.empty());
-  ASSERT_EQ(cloud.report.sensors.size(), 1U);
-  EXPECT_FALSE(cloud.report.sensors[0].used);
-  EXPECT_EQ(cloud.report.sensors[0].seen, 0U);
+  EXPECT_TRUE(free.report.known_sensors.empty());
+  ASSERT_EQ(cloud.report.known_sensors.size(), 1U);
+  EXPECT_FALSE(cloud.report.known_sensors[0].used);
+  EXPECT_EQ(cloud.report.known_sensors[0].seen, 0U);
 }
 
 TEST(KnownSensors, OneViewpointDoesNotTurnTheFarSideOfAMergedSolid) {
@@ -184,9 +184,9 @@ TEST(KnownSensors, OneViewpointDoesNotTurnTheFarSideOfAMergedSolid) {
   EXPECT_GE(shareOutward(free.normals, solid.normals), 0.99);
   EXPECT_GE(shareOutward(cloud.normals, solid.normals),
             shareOutward(free.normals, solid.normals) - 0.001);
-  ASSERT_EQ(cloud.report.sensors.size(), 1U);
-  EXPECT_TRUE(cloud.report.sensors[0].used);
-  EXPECT_GT(cloud.report.sensors[0].hidden, 0.1F);
+  ASSERT_EQ(cloud.report.known_sensors.size(), 1U);
+  EXPECT_TRUE(cloud.report.known_sensors[0].used);
+  EXPECT_GT(cloud.report.known_sensors[0].hidden, 0.1F);
 }
 
 TEST(KnownSensors, PointsWithoutOneFollowTheSurfaceAround) {
@@ -197,8 +197,8 @@ TEST(KnownSensors, PointsWithoutOneFollowTheSurfaceAround) {
   }
   const OrientedCloud cloud = orient(scans.xyz, hints);
   EXPECT_GE(shareOutward(cloud.normals, scans.normals), 0.998);
-  ASSERT_EQ(cloud.report.sensors.size(), 1U);
-  EXPECT_LT(cloud.report.sensors[0].points, scans.size() * 4 / 10);
+  ASSERT_EQ(cloud.report.known_sensors.size(), 1U);
+  EXPECT_LT(cloud.report.known_sensors[0].points, scans.size() * 4 / 10);
   hints.viewpoints.assign(3 * scans.size(), std::numeric_limits<float>::quiet_NaN());
   EXPECT_EQ(orient(scans.xyz, hints).normals, orient(scans.xyz, {}).normals);
 }

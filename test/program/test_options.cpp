@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026, the segorient authors
 // Options that all commands share, warnings, hints, the report's page, and Ctrl-C.
+#include <gtest/gtest.h>
 #include <sys/wait.h>
 #include <boost/property_tree/json_parser.hpp>
-#include <gtest/gtest.h>
 
 #include <signal.h>
 #include <unistd.h>

@@ -116,7 +116,7 @@ void runAutomatic(const PipelineOptions& options, detail::StageClock& clock, Wor
   report.normals_chosen = sheetChoice(result);
   report.contradictions = std::move(result.orientation.contradictions);
   report.clusters = std::move(result.orientation.clusters);
-  report.sensors = std::move(result.orientation.sensors);
+  report.known_sensors = std::move(result.orientation.sensors);
   work.surface.normals = std::move(result.normals);
   work.surface.segmentation = std::move(result.segmentation);
   work.orientation.segments = std::move(result.segments);
@@ -137,7 +137,7 @@ void scatter(const Working& work, OrientedCloud& out) {
   for (Contradiction& c : out.report.contradictions) {
     for (float& v : c.where) v *= cloud.unit();
   }
-  for (SensorReport& s : out.report.sensors) {
+  for (KnownSensor& s : out.report.known_sensors) {
     for (float& v : s.position) v *= cloud.unit();
   }
 }

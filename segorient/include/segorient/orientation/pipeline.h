@@ -6,9 +6,9 @@
 #include <segorient/common/point_view.h>
 #include <segorient/features/local_normals.h>
 #include <segorient/features/recompute_normals.h>
+#include <segorient/orientation/known_sensor.h>
 #include <segorient/orientation/orientation_options.h>
 #include <segorient/orientation/orientation_result.h>
-#include <segorient/orientation/sensor_report.h>
 #include <segorient/segmentation/region_growing.h>
 #include <segorient/segmentation/segmentation.h>
 
@@ -70,7 +70,7 @@ struct PipelineReport {
   /// sides has some.
   std::vector<Contradiction> contradictions;
   std::vector<ClusterOrientationResult> clusters;  ///< of AUTO
-  std::vector<SensorReport> sensors;               ///< of AUTO: what became of known sensors
+  std::vector<KnownSensor> known_sensors;          ///< of AUTO: what became of known sensors
   std::vector<StageTime> stages;
   double seconds = 0.0;                                ///< all stages
   std::size_t peak_memory = 0;                         ///< of the process so far, bytes

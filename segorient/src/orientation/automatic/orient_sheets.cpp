@@ -391,7 +391,7 @@ void Orienter::keepClosedFromSensors(const std::vector<Ballot>& ballots) {
     facing_[i] = 0.F;
     std::fill_n(&sensors_.toward[3 * i], 3, 0.F);
   }
-  SensorReport& report = sensors_.scans[0];
+  KnownSensor& report = sensors_.scans[0];
   report.used = 2 * believed > points_.size;
   if (!report.used) report.seen = 0;
 }

@@ -4,9 +4,9 @@
 
 #include <segorient/common/neighborhoods.h>
 #include <segorient/common/point_view.h>
+#include <segorient/orientation/known_sensor.h>
 #include <segorient/orientation/orientation_options.h>
 #include <segorient/orientation/orientation_result.h>
-#include <segorient/orientation/sensor_report.h>
 #include <segorient/segmentation/segmentation.h>
 
 #include <cstdint>
@@ -24,7 +24,7 @@ struct AutoOrientation {
   std::vector<ClusterOrientationResult> clusters;  ///< by descending number of points
   std::vector<Contradiction> contradictions;       ///< by descending weight
   float viewpoint_agreement = 0.F;                 ///< see ViewpointFit
-  std::vector<SensorReport> sensors;               ///< positions in the points' unit
+  std::vector<KnownSensor> sensors;                ///< positions in the points' unit
   /// 3 floats a point: unit vector to the sensor that saw it, 0 where none is known or believed;
   /// empty without any
   std::vector<float> toward;

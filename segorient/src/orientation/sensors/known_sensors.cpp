@@ -92,7 +92,7 @@ class Finder {
     }
     std::vector<std::int32_t> number(places.size(), -1);
     std::array<double, 3> sum{0.0, 0.0, 0.0};
-    SensorReport moving;
+    KnownSensor moving;
     moving.moving = true;
     for (std::size_t p = 0; p < places.size(); ++p) {
       if (size[p] < kLeastPoints && places.size() > 1) {
@@ -103,7 +103,7 @@ class Finder {
         continue;
       }
       number[p] = static_cast<std::int32_t>(out_.scans.size());
-      SensorReport scan;
+      KnownSensor scan;
       scan.position = places[p];
       scan.points = size[p];
       out_.scans.push_back(scan);
@@ -142,7 +142,7 @@ class Finder {
 
   // What the points of one scan say about its sensor.
   void look(std::size_t s) {
-    SensorReport& report = out_.scans[s];
+    KnownSensor& report = out_.scans[s];
     if (report.moving || report.points < kLeastPoints) return;
     std::vector<std::uint32_t> rows;
     for (std::size_t i = 0; i < points_.size; ++i) {

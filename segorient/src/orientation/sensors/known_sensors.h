@@ -4,7 +4,7 @@
 
 #include <segorient/common/neighborhoods.h>
 #include <segorient/common/point_view.h>
-#include <segorient/orientation/sensor_report.h>
+#include <segorient/orientation/known_sensor.h>
 
 #include <cstddef>
 #include <cstdint>
@@ -14,14 +14,14 @@
 
 namespace segorient::detail {
 
-/// Up to this SensorReport::density the sensor was there: elsewhere it is .7 and more.
+/// Up to this KnownSensor::density the sensor was there: elsewhere it is .7 and more.
 constexpr float kConfirmed = 0.7F;
 
 /// Where each point was seen from, as far as that is known and not contradicted.
 struct KnownSensors {
-  std::vector<float> toward;        ///< 3 a point: unit vector to its sensor; 0 = unknown
-  std::vector<std::int32_t> scan;   ///< into `scans`, -1 = none
-  std::vector<SensorReport> scans;  ///< positions in the cloud's unit, by position
+  std::vector<float> toward;       ///< 3 a point: unit vector to its sensor; 0 = unknown
+  std::vector<std::int32_t> scan;  ///< into `scans`, -1 = none
+  std::vector<KnownSensor> scans;  ///< positions in the cloud's unit, by position
   /// The one place for all points, which a closed surface may contradict as a whole; else every
   /// point has been told its own.
   bool common = false;

@@ -47,8 +47,8 @@ std::vector<float> facingOf(const SheetField& field, std::size_t points,
                             const KnownSensors& sensors) {
   // A plane over k points with a residual of r spacings is off by about r / (sqrt(k) times the
   // neighbourhood's own rms extent); that is .45 r for eight neighbours and less for more. What
-  // curvature does beside is some degrees. Where the residual is large, the scale was chosen so that
-  // noise turns the normal by less than 3.5 degrees.
+  // curvature does beside is some degrees. Where the residual is large, the scale was chosen so
+  // that noise turns the normal by less than 3.5 degrees.
   constexpr float kPerResidual = 0.45F;
   constexpr float kBend = 0.03F;
   constexpr float kMost = 0.061F;

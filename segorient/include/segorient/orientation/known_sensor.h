@@ -10,7 +10,7 @@ namespace segorient {
 
 /// What became of one place that points are said to have been seen from. Places with few points
 /// each, as a moving sensor has them, are one entry together, with their mean as its position.
-struct SensorReport {
+struct KnownSensor {
   std::array<float, 3> position{0.F, 0.F, 0.F};  ///< in input coordinates
   std::size_t points = 0;                        ///< distinct points that are said to be its own
   std::size_t seen = 0;  ///< of these, those that it could see: others were left to the surface
