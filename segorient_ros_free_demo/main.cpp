@@ -22,6 +22,7 @@ struct Command {
 
 constexpr std::array kCommands{
     Command{"orient", "IN... OUT     one oriented normal a point: the main job", runOrient},
+    Command{"sensors", "IN [OUT.json] where the sensors stood", runSensors},
     Command{"normals", "IN OUT        unoriented normals", runNormals},
     Command{"segment", "IN OUT        segments: labels, colours, kinds", runSegment},
     Command{"triangulate", "IN OUT        the segments' triangulations as one mesh",

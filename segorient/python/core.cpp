@@ -11,6 +11,7 @@
 #include <segorient/orientation/first_stages.h>
 #include <segorient/orientation/pipeline.h>
 #include <segorient/orientation/trajectory.h>
+#include <segorient/orientation/sensors.h>
 #include <segorient/search/median_hash_index.h>
 
 #include <array>
@@ -125,6 +126,10 @@ std::vector<float> rowsOf(const py::handle& array) {
 
 std::shared_ptr<const OrientationHints> hintsFrom(const py::dict& given) {
   auto hints = std::make_shared<OrientationHints>();
+  if (given.contains("suggested")) {
+    const std::vector<float> v = rowsOf(given["suggested"]);
+    hints->suggested = {{v[0], v[1], v[2]}};
+  }
   if (given.contains("closed")) {
     hints->surface = given["closed"].cast<bool>() ? SurfaceKind::CLOSED : SurfaceKind::OPEN;
   }
@@ -195,6 +200,25 @@ void addSegments(const OrientedCloud& cloud, py::dict& out) {
   }
   out["segments"] = segments;
   out["hard_segments"] = hard;
+}
+
+py::list sensorList(const SensorReport& report) {
+  py::list out;
+  for (const FoundSensor& s : report.sensors) {
+    py::dict sensor;
+    sensor["kind"] = sensorKindName(s.kind);
+    sensor["evidence"] = sensorEvidenceName(s.evidence);
+    static constexpr std::array<const char*, 3> kPosition{"x", "y", "z"};
+    static constexpr std::array<const char*, 3> kAxis{"axis_x", "axis_y", "axis_z"};
+    for (std::size_t a = 0; a < 3; ++a) sensor[kPosition[a]] = s.position[a];
+    for (std::size_t a = 0; a < 3; ++a) sensor[kAxis[a]] = s.axis[a];
+    sensor["points"] = s.points;
+    sensor["cost_ratio"] = s.cost_ratio;
+    sensor["suggested"] = s.suggested;
+    sensor["sure"] = s.sure;
+    out.append(sensor);
+  }
+  return out;
 }
 
 // The same names and values as --report.
@@ -270,14 +294,38 @@ py::dict reportOf(const OrientedCloud& cloud) {
     sensors.append(sensor);
   }
   out["known_sensors"] = sensors;
+  out["sensors"] = sensorList(report.sensors);
   addSegments(cloud, out);
   return out;
+}
+
+py::tuple sensors(const FloatArray& points, const py::object& suggestions, std::size_t image_width,
+                  int threads) {
+  const PointView rows = viewOf(points);
+  SensorOptions options;
+  options.threads = threads;
+  options.image_width = image_width;
+  options.suggestions.clear();
+  const std::vector<float> places = rowsOf(suggestions);
+  for (std::size_t i = 0; i + 3 <= places.size(); i += 3) {
+    options.suggestions.push_back({places[i], places[i + 1], places[i + 2]});
+  }
+  SensorReport report;
+  {
+    const py::gil_scoped_release unlocked;
+    report = findSensors(rows, options);
+  }
+  const py::list found = sensorList(report);
+  return py::make_tuple(found, column(std::move(report.sensor_of)), report.deviation, report.chance,
+                        report.why);
 }
 
 py::tuple orient(const FloatArray& points, const py::dict& given, const py::object& progress) {
   const PointView rows = viewOf(points);
   PipelineOptions options = optionsFrom(given);
   options.orientation.hints = hintsFrom(given);
+  if (given.contains("find_sensors"))
+    options.automatic.find_sensors = given["find_sensors"].cast<bool>();
   const PipelineProgress callback = progressTo(progress);
   OrientedCloud cloud;
   {
@@ -460,5 +508,6 @@ PYBIND11_MODULE(_core, module) {
   module.def("segment", &segorient::segment);
   module.def("check", &segorient::check);
   module.def("join_trajectory", &segorient::trajectoryViewpoints);
+  module.def("sensors", &segorient::sensors);
   module.def("knn", &segorient::knn);
 }

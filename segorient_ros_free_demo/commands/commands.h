@@ -13,6 +13,7 @@ int runOrient(const std::vector<std::string>& words);
 int runNormals(const std::vector<std::string>& words);
 int runSegment(const std::vector<std::string>& words);
 int runTriangulate(const std::vector<std::string>& words);
+int runSensors(const std::vector<std::string>& words);
 int runKnn(const std::vector<std::string>& words);
 int runCompare(const std::vector<std::string>& words);
 int runCheck(const std::vector<std::string>& words);

@@ -15,6 +15,7 @@
 #include "support/memory.h"
 #include "support/progress_bar.h"
 #include "support/result_columns.h"
+#include "support/sensor_report.h"
 #include "support/stage_memory.h"
 #include "support/stage_options.h"
 
@@ -35,6 +36,9 @@ void printSummary(const PipelineReport& report, const StageMemory& memory,
   std::printf("neighbours      %d; spacing %.4g, noise %.2f spacings\n", report.k,
               static_cast<double>(report.spacing), static_cast<double>(report.noise));
   std::printf("normals         %s\n", report.normals_chosen.c_str());
+  for (const FoundSensor& s : report.sensors.sensors) {
+    std::printf("sensor found    %s\n", describeSensor(s, origin).c_str());
+  }
   std::printf("components      %zu, oriented by method %s\n", report.components.size(),
               toString(report.method));
   for (std::size_t i = 0; i < report.components.size(); ++i) {
@@ -170,6 +174,7 @@ std::string reportText(const OrientedCloud& cloud, const StageMemory& memory,
   }
   json.endArray();
   addSensors(report, origin, json);
+  addTo(json, report.sensors, origin);
   addSegments(cloud, json);
   return json.finish();
 }

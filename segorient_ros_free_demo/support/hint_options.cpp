@@ -112,6 +112,14 @@ CloudTable HintOptions::read(const std::vector<std::string>& paths, bool quiet) 
   return table;
 }
 
+std::array<float, 3> localOrigin(const LocalPoints& points) {
+  return moved({0.0, 0.0, 0.0}, points.origin());
+}
+
+std::size_t imageWidth(const CloudTable& table) {
+  return table.height > 1 && table.width * table.height == table.size ? table.width : 0;
+}
+
 void HintOptions::add(CommandLine& line) {
   line.options()("viewpoint", po::value(&viewpoint_text_),
                  "=X,Y,Z: where all was seen from, else as the file says; what could be seen from "
@@ -124,7 +132,9 @@ void HintOptions::add(CommandLine& line) {
       "open", po::bool_switch(&open_), "one viewpoint decides, whatever looks like an inside")(
       "seeds", po::value(&seeds_), "a cloud of points whose normals are known")(
       "keep-orientation", po::bool_switch(&keep_),
-      "take the signs of the normals that IN has as evidence");
+      "take the signs of the normals that IN has as evidence")(
+      "no-sensors", po::bool_switch(&no_sensors_),
+      "do not look for where the sensors stood; see segorient sensors");
 }
 
 void HintOptions::check(const CommandLine& line, const CommonOptions& common,
@@ -139,8 +149,8 @@ void HintOptions::check(const CommandLine& line, const CommonOptions& common,
   require(viewpoint_text_.empty() || (three && finite),
           "--viewpoint takes three numbers, as in --viewpoint=1.5,0,-2");
   if (options.orientation.method == OrientationMethod::AUTO || common.quiet) return;
-  for (const char* name :
-       {"viewpoint", "trajectory", "up", "closed", "open", "seeds", "keep-orientation"}) {
+  for (const char* name : {"viewpoint", "trajectory", "up", "closed", "open", "seeds",
+                           "keep-orientation", "no-sensors"}) {
     if (line.given(name)) warn("--" + std::string(name) + " changes nothing without method auto");
   }
 }
@@ -148,7 +158,9 @@ void HintOptions::check(const CommandLine& line, const CommonOptions& common,
 void HintOptions::apply(const CloudTable& table, const std::string& path, const LocalPoints& points,
                         PipelineOptions& options) const {
   const std::array<double, 3>& origin = points.origin();
+  options.automatic.find_sensors = !no_sensors_;
   auto hints = std::make_shared<OrientationHints>();
+  hints->suggested = {localOrigin(points)};
   if (closed_) hints->surface = SurfaceKind::CLOSED;
   if (open_) hints->surface = SurfaceKind::OPEN;
   const std::array<double, 3> sensor{table.viewpoint[0], table.viewpoint[1], table.viewpoint[2]};

@@ -12,6 +12,12 @@
 
 namespace segorient::program {
 
+/// The origin of the file's coordinates, as `points` have it: where many sensors put themselves.
+std::array<float, 3> localOrigin(const LocalPoints& points);
+
+/// Pixels in a row of an organised cloud, else 0.
+std::size_t imageWidth(const CloudTable& table);
+
 /// What a user knows about the orientation beforehand, as options of the commands that orient; and
 /// what the files say themselves: the place of a sensor, fields vp_x, vp_y, vp_z and scan, and
 /// grids.
@@ -41,6 +47,7 @@ class HintOptions {
   bool closed_ = false;
   bool open_ = false;
   bool keep_ = false;
+  bool no_sensors_ = false;
 };
 
 }  // namespace segorient::program

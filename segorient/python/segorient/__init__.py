@@ -19,7 +19,7 @@ threads go on. Ctrl-C ends the work at the next stage.
 """
 
 import warnings
-from typing import Any, Callable, Dict, NamedTuple, Optional, Sequence, Tuple, Union
+from typing import Any, Callable, Dict, List, NamedTuple, Optional, Sequence, Tuple, Union
 
 import numpy as np
 import numpy.typing as npt
@@ -34,10 +34,12 @@ __all__ = [
     "Orientation",
     "Segments",
     "check",
+    "Sensors",
     "knn",
     "normals",
     "orient",
     "segment",
+    "sensors",
 ]
 
 Floats = npt.NDArray[np.float32]
@@ -78,6 +80,16 @@ class Segments(NamedTuple):
     kinds: npt.NDArray[np.uint8]  #: (segments,) 0 regular, 1 connected, 2 isolated
     normals: Floats  #: (n, 3) unit normals that agree within each segment
     curvatures: Floats  #: (n,) smallest variance in the sum of all three, as in PCL
+
+
+class Sensors(NamedTuple):
+    """What :func:`sensors` found."""
+
+    sensors: List[Dict[str, Any]]  #: each with kind, x, y, z, points, cost_ratio, sure and more
+    sensor_of: npt.NDArray[np.int32]  #: (n,) the sensor of each point; -1 = none
+    deviation: float  #: mean deviation of the log density from a constant
+    chance: float  #: the same if points were strewn at random
+    why: str  #: in a few words, what was found or why nothing
 
 
 class Neighbors(NamedTuple):
@@ -132,6 +144,13 @@ def _local(points: npt.ArrayLike) -> Tuple[Floats, _Origin]:
             if max(np.abs(low).max(), np.abs(high).max()) > 2.0 * (high - low).max():
                 origin = low + 0.5 * (high - low)
     return _moved(array, origin), origin
+
+
+def _to_world(places: List[Dict[str, Any]], origin: _Origin) -> None:
+    """Adds `origin` to the x, y, z of each."""
+    for place in places:
+        for axis, name in enumerate("xyz"):
+            place[name] += origin[axis]
 
 
 def _angle(name: str, value: Optional[float]) -> Optional[float]:
@@ -301,6 +320,7 @@ def orient(
     closed: Optional[bool] = None,
     keep: Optional[npt.ArrayLike] = None,
     seeds: Optional[Tuple[npt.ArrayLike, npt.ArrayLike]] = None,
+    find_sensors: bool = True,
     threads: int = 0,
     progress: Optional[Progress] = None,
 ) -> Orientation:
@@ -335,6 +355,7 @@ def orient(
     :param closed: True: each part has an inside; False: a viewpoint decides; None: as it looks
     :param keep: (n, 3) normals whose signs say something; NaN or 0: none
     :param seeds: points and their normals, (m, 3) each, that are known
+    :param find_sensors: where none is known, look for where the sensors stood, see :func:`sensors`
     :param threads: 0 = all cores; results do not depend on it
     :param progress: called with a stage's name and the fraction that is done
     :raises TypeError, ValueError: for arguments that make no sense
@@ -344,6 +365,10 @@ def orient(
     if gamma is not None:
         options["gamma"] = _angle("gamma", gamma)
     array, origin = _local(points)
+    if not isinstance(find_sensors, (bool, np.bool_)):
+        raise TypeError(f"find_sensors must be True or False, not {find_sensors!r}")
+    options["find_sensors"] = bool(find_sensors)
+    options["suggested"] = _moved(np.zeros(3), origin)
     options.update(
         _sensors(len(array), origin, viewpoint, viewpoints, trajectory, times, up, scans, organized)
     )
@@ -360,9 +385,8 @@ def orient(
             raise ValueError(f"seeds have {len(places)} points and {len(directions)} normals")
         options["seeds"] = np.hstack([_moved(places, origin), _moved(directions, np.zeros(3))])
     result = Orientation(*_core.orient(array, options, progress))
-    for where in result.report["contradictions"]:
-        for axis, name in enumerate("xyz"):
-            where[name] += origin[axis]
+    _to_world(result.report["contradictions"], origin)
+    _to_world(result.report["sensors"], origin)
     return result
 
 
@@ -503,3 +527,30 @@ def knn(
         rows = _rows("queries", queries)
         places = rows if _is_viewable(rows) and not origin.any() else _moved(rows, origin)
     return Neighbors(*_core.knn(array, wanted, places, cores))
+
+
+def sensors(
+    points: npt.ArrayLike,
+    *,
+    suggestions: Optional[npt.ArrayLike] = None,
+    width: int = 0,
+    threads: int = 0,
+) -> Sensors:
+    """Where the sensors stood, from positions alone: from the density of points on surfaces, which
+    falls with distance and incidence, or from the pixels of an organised cloud.
+
+    :param points: (n, 3)
+    :param suggestions: (m, 3) positions that are tried first; None: the origin
+    :param width: pixels in a row of an organised cloud, row by row; 0: not organised
+    :param threads: 0 = all cores; results do not depend on it
+    :raises TypeError, ValueError: for arguments that make no sense
+    """
+    cores = _whole("threads", threads, 0, 1 << 16)
+    pixels = _whole("width", width, 0, 1 << 30)
+    if cores is None or pixels is None:
+        raise TypeError("width and threads must be whole numbers")
+    array, origin = _local(points)
+    places = np.zeros((1, 3)) if suggestions is None else _rows("suggestions", suggestions)
+    found = Sensors(*_core.sensors(array, _moved(places, origin), pixels, cores))
+    _to_world(found.sensors, origin)
+    return found

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-from typing import Any, Callable, Dict, Optional, Tuple
+from typing import Any, Callable, Dict, List, Optional, Tuple
 
 import numpy as np
 import numpy.typing as npt
@@ -14,6 +14,9 @@ def normals(points: _Floats, options: Dict[str, Any], progress: _Progress) -> Tu
 def segment(
     points: _Floats, options: Dict[str, Any], progress: _Progress
 ) -> Tuple[npt.NDArray[np.int32], npt.NDArray[np.uint8], _Floats, _Floats]: ...
+def sensors(
+    points: _Floats, suggestions: _Floats, image_width: int, threads: int
+) -> Tuple[List[Dict[str, Any]], npt.NDArray[np.int32], float, float, str]: ...
 def knn(
     points: _Floats, k: int, queries: Optional[_Floats], threads: int
 ) -> Tuple[npt.NDArray[np.int32], _Floats]: ...

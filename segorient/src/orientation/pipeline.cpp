@@ -17,6 +17,7 @@
 #include "orientation/cloud_scale.h"
 #include "orientation/orient_segments.h"
 #include "orientation/sensors/point_hints.h"
+#include "orientation/sensors/sensor_hints.h"
 #include "orientation/stage_clock.h"
 #include "orientation/surface_stages.h"
 #include "segmentation/segmentation_rows.h"
@@ -99,13 +100,23 @@ std::string sheetChoice(const detail::AutoStages& stages) {
   return text.str();
 }
 
-// The default method brings its own stages; its normals come out oriented.
-void runAutomatic(const PipelineOptions& options, detail::StageClock& clock, Working& work,
-                  PipelineReport& report) {
-  PointHints hints;
-  if (options.orientation.hints) {
-    hints = resolveHints(*options.orientation.hints, work.surface.cloud);
+// What the caller knows, and where nothing is known of sensors, what can be found.
+PointHints findHints(const PointView& points, const PipelineOptions& options, PreparedCloud& cloud,
+                     PipelineReport& report) {
+  const OrientationHints none;
+  const OrientationHints& given = options.orientation.hints ? *options.orientation.hints : none;
+  if (!options.automatic.find_sensors || !detail::lacksSensors(given)) {
+    return resolveHints(given, cloud);
   }
+  OrientationHints found = given;
+  report.sensors = detail::addFoundSensors(points, cloud, options.threads, found);
+  return resolveHints(found, cloud);
+}
+
+// The default method brings its own stages; its normals come out oriented.
+void runAutomatic(const PointView& points, const PipelineOptions& options,
+                  detail::StageClock& clock, Working& work, PipelineReport& report) {
+  const PointHints hints = findHints(points, options, work.surface.cloud, report);
   detail::AutoStages result = detail::runAutoStages(
       work.surface.cloud, options, hints,
       [&clock](const char* stage, double fraction) { clock.begin(stage, fraction); });
@@ -192,7 +203,7 @@ OrientedCloud orientCloud(const PointView& points, const std::vector<pcl::index_
   clock.begin("search", 0.0);
   work.surface.cloud = PreparedCloud(points, indices, options.threads);
   if (options.orientation.method == OrientationMethod::AUTO) {
-    runAutomatic(options, clock, work, out.report);
+    runAutomatic(points, options, clock, work, out.report);
   } else {
     runPaper(options, clock, work, out.report);
     applyOrientation(work);

@@ -63,6 +63,8 @@ struct OrientationHints {
   /// Normals whose signs say something: 3 floats an input row, NaN or 0 = none; as `viewpoints`.
   std::vector<float> normals;
   std::vector<Seed> seeds;  ///< each counts for the point nearest to it; NaN or zero: none
+  /// Where a sensor may have stood; tried where none is known, see SensorOptions::suggestions.
+  std::vector<std::array<float, 3>> suggested{{0.F, 0.F, 0.F}};
 };
 
 }  // namespace segorient

@@ -49,6 +49,10 @@ struct AutomaticOptions {
   bool infer_viewpoint = true;   ///< a scan from one place: what disagrees with it is turned over,
                                  ///< but for cavities that the winding number vouches for
 
+  /// Where no sensor is known, look for some, see findSensors(): those that are sure count as if
+  /// they were given. orientCloud() does it; what takes segments from elsewhere does not.
+  bool find_sensors = true;
+
   // The normals that are returned.
   int filter_rounds = 2;      ///< of averaging over neighbours that are on one sheet; 0 = off
   bool filter_wedges = true;  ///< its special care for narrow wedges

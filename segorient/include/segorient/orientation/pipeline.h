@@ -9,6 +9,7 @@
 #include <segorient/orientation/known_sensor.h>
 #include <segorient/orientation/orientation_options.h>
 #include <segorient/orientation/orientation_result.h>
+#include <segorient/orientation/sensors.h>
 #include <segorient/segmentation/region_growing.h>
 #include <segorient/segmentation/segmentation.h>
 
@@ -71,6 +72,8 @@ struct PipelineReport {
   std::vector<Contradiction> contradictions;
   std::vector<ClusterOrientationResult> clusters;  ///< of AUTO
   std::vector<KnownSensor> known_sensors;          ///< of AUTO: what became of known sensors
+  /// What AUTO found where no sensor was given; empty otherwise. sensor_of is by input row.
+  SensorReport sensors;
   std::vector<StageTime> stages;
   double seconds = 0.0;                                ///< all stages
   std::size_t peak_memory = 0;                         ///< of the process so far, bytes

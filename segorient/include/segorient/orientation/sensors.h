@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the segorient authors
+#pragma once
+
+#include <pcl/point_cloud.h>
+#include <segorient/common/cloud_access.h>
+#include <segorient/common/point_view.h>
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace segorient {
+
+enum class SensorKind : std::uint8_t {
+  STATION,  ///< a scanner that stood still and looked all around
+  CAMERA,   ///< a depth camera: one view along an optical axis
+  MOVING,   ///< a place on the way of a scanner that went along while it turned
+  ABOVE     ///< an aircraft or a drone: far above, `axis` points there
+};
+
+/// "station", "camera", "moving" or "above".
+const char* sensorKindName(SensorKind kind);
+
+/// What told that there was a sensor.
+enum class SensorEvidence : std::uint8_t {
+  DENSITY,  ///< how the density of points falls with distance and incidence
+  LAYERS,   ///< one uneven surface over the ground, as it is seen from above
+  IMAGE     ///< the pixels of an organised cloud: straight rays that meet in one place
+};
+
+struct FoundSensor {
+  SensorKind kind = SensorKind::STATION;
+  SensorEvidence evidence = SensorEvidence::DENSITY;
+  std::array<float, 3> position{0.F, 0.F, 0.F};  ///< input coordinates
+  /// Unit vector: the optical axis of a camera, into the scene; the axis that a station turned
+  /// about, or 0 where none was found; towards what is above.
+  std::array<float, 3> axis{0.F, 0.F, 0.F};
+  bool suggested = false;  ///< whether the position is one of SensorOptions::suggestions
+  std::size_t points = 0;  ///< rows that it explains
+  /// What the sensor leaves unexplained of the densities' (or the pixels') deviation from a
+  /// constant: 1 = no better than no sensor at all, 0 = everything is explained. From above: the
+  /// share of the ground with a second layer.
+  float cost_ratio = 1.F;
+  /// Whether normals may be turned to it. Ratios of solids, sheets and clouds without a sensor do
+  /// not come near those that count as sure.
+  bool sure = false;
+};
+
+/// "density", "layers" or "image".
+const char* sensorEvidenceName(SensorEvidence evidence);
+
+struct SensorOptions {
+  /// Positions to be looked at first: where a file says nothing, the origin is where most cameras
+  /// and scanners put themselves. A position that fits is preferred to any that is searched; one
+  /// that does not is no evidence of anything. Not finite: left out.
+  std::vector<std::array<float, 3>> suggestions{{0.F, 0.F, 0.F}};
+  bool search = true;  ///< otherwise only suggestions, and images
+  /// Pixels in a row of an organised cloud, row by row from the first; 0 = not organised.
+  std::size_t image_width = 0;
+  int threads = 0;  ///< see resolveThreads()
+};
+
+struct SensorReport {
+  std::vector<FoundSensor> sensors;     ///< by descending number of points
+  std::vector<std::int32_t> sensor_of;  ///< for each row, into `sensors`; -1 = by none
+  /// Mean deviation of log density from a constant, and what it were by chance alone.
+  float deviation = 0.F;
+  float chance = 0.F;
+  std::string why;  ///< in a few words, what was found or why nothing
+
+  /// Whether a sensor was found that normals may be turned to.
+  bool sure() const;
+};
+
+/// Where the sensors stood, from positions alone.
+///
+/// Rays that spread by equal angles leave a density of |cos(incidence)| / distance^2 on surfaces,
+/// times what the device does to directions: 1 / cos(elevation) for a scanner that turns about an
+/// axis, 1 / cos^3 for a camera. The place whose law leaves least of the measured densities is
+/// sought; it is a sensor where next to nothing is left. Clouds of even density have none. Some
+/// thousand neighbourhoods are looked at, so it takes a fraction of a second on any cloud.
+///
+/// \param points rows that are not finite and repeated ones take no part
+/// \return no sensors where nothing tells (too few points, no flat neighbourhoods, even density)
+SensorReport findSensors(const PointView& points, const SensorOptions& options = {});
+
+/// The same for a PCL cloud; one that is organised is taken for an image.
+template <typename PointT>
+SensorReport findSensors(const pcl::PointCloud<PointT>& cloud, SensorOptions options = {}) {
+  if (cloud.height > 1 && options.image_width == 0) options.image_width = cloud.width;
+  const CloudPoints<PointT> points(cloud);
+  return findSensors(points.view(), options);
+}
+
+}  // namespace segorient

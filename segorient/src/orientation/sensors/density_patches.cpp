@@ -1,0 +1,203 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the segorient authors
+#include "orientation/sensors/density_patches.h"
+
+#include <segorient/common/threads.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+
+#include "common/median.h"
+#include "features/symmetric_eigen.h"
+
+namespace segorient::detail {
+namespace {
+
+// A few parameters are fitted; medians of so many are sure to two per cent.
+constexpr std::size_t kSample = 3000;
+// Neighbourhoods to try: the density of k points has an error of 1 / root k, noise and quantised
+// depth ask for more of them, detail for fewer.
+constexpr std::array<int, 3> kScales{24, 48, 96};
+constexpr float kMostlyFlat = 0.62F;   // so many are flat: no need for more neighbours
+constexpr float kNotMuchLess = 0.75F;  // of the flat ones: the more neighbours, the surer
+// Flat: the least eigenvalue is below this part of the next.
+constexpr double kFlatness = 0.05;
+// Not a line: single rings and scan lines have no density in the surface.
+constexpr double kWidth = 0.08;
+// Fits of five parameters to fewer independent densities than this may come about by chance.
+constexpr std::size_t kIndependent = 60;
+constexpr std::size_t kLeastFlat = 150;
+
+struct Piece {
+  std::array<float, 3> center{};
+  std::array<float, 3> normal{};
+  float log_density = 0.F;
+  bool flat = false;
+};
+
+Piece pieceOf(const PointView& points, const float* origin, const pcl::index_t* rows, int count) {
+  double sum[3] = {0.0, 0.0, 0.0};
+  SymmetricMatrix3 m{0.0, 0.0, 0.0, 0.0, 0.0, 0.0};
+  for (int j = 0; j < count; ++j) {
+    const float* q = points[static_cast<std::size_t>(rows[j])];
+    const double d[3] = {static_cast<double>(q[0]) - static_cast<double>(origin[0]),
+                         static_cast<double>(q[1]) - static_cast<double>(origin[1]),
+                         static_cast<double>(q[2]) - static_cast<double>(origin[2])};
+    for (int a = 0; a < 3; ++a) sum[a] += d[a];
+    m.xx += d[0] * d[0];
+    m.xy += d[0] * d[1];
+    m.xz += d[0] * d[2];
+    m.yy += d[1] * d[1];
+    m.yz += d[1] * d[2];
+    m.zz += d[2] * d[2];
+  }
+  const double n = count;
+  const double c[3] = {sum[0] / n, sum[1] / n, sum[2] / n};
+  const SymmetricEigen3 eigen =
+      symmetricEigen({m.xx / n - c[0] * c[0], m.xy / n - c[0] * c[1], m.xz / n - c[0] * c[2],
+                      m.yy / n - c[1] * c[1], m.yz / n - c[1] * c[2], m.zz / n - c[2] * c[2]});
+  Piece out;
+  out.flat =
+      eigen.values[0] < kFlatness * eigen.values[1] && eigen.values[1] > kWidth * eigen.values[2];
+  if (!out.flat) return out;
+  for (std::size_t a = 0; a < 3; ++a) {
+    out.center[a] = static_cast<float>(static_cast<double>(origin[a]) + c[a]);
+    out.normal[a] = static_cast<float>(eigen.vectors[0][a]);
+  }
+  // An evenly filled disc of area A has variances A / (4 pi).
+  constexpr double kPi = 3.14159265358979323846;
+  out.log_density =
+      static_cast<float>(std::log(n / (4.0 * kPi * std::sqrt(eigen.values[1] * eigen.values[2]))));
+  return out;
+}
+
+struct Sample {
+  std::vector<std::size_t> rows;
+  std::vector<pcl::index_t> neighbors;  // kMost a row
+  std::vector<float> sixth;             // distance to the sixth neighbour
+};
+
+// Only as many neighbours as the scale needs: on a cloud of even density the first one will do.
+Sample takeSample(const PointView& points, const search::MedianHashIndex& index, int count,
+                  int threads) {
+  Sample out;
+  const std::size_t step = std::max<std::size_t>(1, points.size / kSample);
+  for (std::size_t i = 0; i < points.size; i += step) out.rows.push_back(i);
+  const auto width = static_cast<std::size_t>(count);
+  out.neighbors.resize(out.rows.size() * width);
+  out.sixth.resize(out.rows.size());
+#pragma omp parallel num_threads(threads)
+  {
+    std::vector<float> squared(width);
+#pragma omp for schedule(static)
+    for (std::size_t i = 0; i < out.rows.size(); ++i) {
+      index.nearestK(points[out.rows[i]], count, &out.neighbors[i * width], squared.data());
+      out.sixth[i] = std::sqrt(squared[6]);
+    }
+  }
+  return out;
+}
+
+DensityPatches atScale(const PointView& points, const search::MedianHashIndex& index, int k,
+                       int threads) {
+  const int count = k + 1;
+  Sample sample = takeSample(points, index, count, threads);
+  std::vector<Piece> pieces(sample.rows.size());
+#pragma omp parallel for schedule(static) num_threads(threads)
+  for (std::size_t i = 0; i < pieces.size(); ++i) {
+    pieces[i] = pieceOf(points, points[sample.rows[i]],
+                        &sample.neighbors[i * static_cast<std::size_t>(count)], count);
+  }
+  DensityPatches out;
+  out.k = k;
+  for (std::size_t i = 0; i < pieces.size(); ++i) {
+    const Piece& piece = pieces[i];
+    if (!piece.flat || !std::isfinite(piece.log_density)) continue;
+    out.x.push_back(piece.center[0]);
+    out.y.push_back(piece.center[1]);
+    out.z.push_back(piece.center[2]);
+    out.nx.push_back(piece.normal[0]);
+    out.ny.push_back(piece.normal[1]);
+    out.nz.push_back(piece.normal[2]);
+    out.log_density.push_back(piece.log_density);
+    out.point.push_back(sample.rows[i]);
+  }
+  out.setSparsity();
+  out.flat = static_cast<float>(out.size()) / static_cast<float>(pieces.size());
+  const auto place =
+      sample.sixth.begin() + static_cast<std::ptrdiff_t>(sample.sixth.size() * 85 / 100);
+  std::nth_element(sample.sixth.begin(), place, sample.sixth.end());
+  out.reach = *place;
+  out.spacing = median(sample.sixth);
+  return out;
+}
+
+}  // namespace
+
+void DensityPatches::setSparsity() {
+  const float middle = median(log_density);
+  sparsity.resize(log_density.size());
+  for (std::size_t i = 0; i < sparsity.size(); ++i) sparsity[i] = std::exp(middle - log_density[i]);
+}
+
+DensityPatches DensityPatches::thinned(std::size_t count) const {
+  DensityPatches out;
+  out.k = k;
+  out.flat = flat;
+  out.spacing = spacing;
+  out.reach = reach;
+  const std::size_t step = std::max<std::size_t>(1, size() / std::max<std::size_t>(1, count));
+  for (std::size_t i = 0; i < size(); i += step) {
+    out.x.push_back(x[i]);
+    out.y.push_back(y[i]);
+    out.z.push_back(z[i]);
+    out.nx.push_back(nx[i]);
+    out.ny.push_back(ny[i]);
+    out.nz.push_back(nz[i]);
+    out.log_density.push_back(log_density[i]);
+    out.sparsity.push_back(sparsity[i]);
+    out.point.push_back(point[i]);
+  }
+  return out;
+}
+
+DensityPatches densityPatches(const PointView& points, const search::MedianHashIndex& index,
+                              int threads) {
+  const int team = resolveThreads(threads);
+  std::vector<DensityPatches> scales;
+  for (const int k : kScales) {
+    if (points.size < static_cast<std::size_t>(k) * kIndependent) break;
+    DensityPatches found = atScale(points, index, k, team);
+    const float independent = found.flat * static_cast<float>(points.size) / static_cast<float>(k);
+    const bool enough =
+        independent >= static_cast<float>(kIndependent) && found.size() >= kLeastFlat;
+    if (enough) scales.push_back(std::move(found));
+    if (enough && scales.back().flat >= kMostlyFlat) return std::move(scales.back());
+  }
+  float most = 0.F;
+  for (const DensityPatches& s : scales) most = std::max(most, s.flat);
+  for (std::size_t s = scales.size(); s-- > 0;) {
+    if (scales[s].flat >= kNotMuchLess * most) return std::move(scales[s]);
+  }
+  return {};
+}
+
+float chanceDeviation(int k) {
+  // The mean of |x| of a normal distribution is .8 of its deviation.
+  return 0.8F / std::sqrt(static_cast<float>(k + 1));
+}
+
+float deviation(std::vector<float>& values) {
+  if (values.empty()) return 0.F;
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  const float median = *middle;
+  double sum = 0.0;
+  for (const float v : values)
+    sum += static_cast<double>(std::min(std::fabs(v - median), kDeviationCut));
+  return static_cast<float>(sum / static_cast<double>(values.size()));
+}
+
+}  // namespace segorient::detail

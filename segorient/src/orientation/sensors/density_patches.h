@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the segorient authors
+#pragma once
+
+#include <segorient/common/point_view.h>
+#include <segorient/search/median_hash_index.h>
+
+#include <cstddef>
+#include <vector>
+
+namespace segorient::detail {
+
+/// Flat pieces of a cloud's surface with the density of the points on them: what tells where a
+/// sensor stood. Row i is one piece; a piece is a point's neighbourhood.
+struct DensityPatches {
+  std::vector<float> x, y, z;      ///< centre
+  std::vector<float> nx, ny, nz;   ///< unit normal, of either sign
+  std::vector<float> log_density;  ///< of points per area *in* the surface
+  std::vector<float> sparsity;     ///< median density over density
+  std::vector<std::size_t> point;  ///< row of the cloud
+  int k = 0;                       ///< neighbours that each was made of
+  float flat = 0.F;                ///< share of the neighbourhoods that were flat
+  float spacing = 0.F;             ///< median distance to the sixth neighbour
+  float reach = 0.F;               ///< 85th percentile of the distance to the sixth neighbour
+
+  std::size_t size() const { return x.size(); }
+
+  /// Fills `sparsity` from `log_density`.
+  void setSparsity();
+
+  /// Every m-th piece, at most `count` or a few more.
+  DensityPatches thinned(std::size_t count) const;
+};
+
+/// \param points in an order that depends on where they are (CompactCloud), so that every m-th is
+///        a fair sample that is the same for any order of the input
+/// \param index of `points`
+/// \return empty if there are too few independent flat neighbourhoods to tell a law by
+DensityPatches densityPatches(const PointView& points, const search::MedianHashIndex& index,
+                              int threads);
+
+/// What the mean deviation of log density from its median is where points fall at random with the
+/// same density everywhere: counts of k vary by their root.
+float chanceDeviation(int k);
+
+/// What lies farther from the median is another surface's density, or no surface: a factor of 4.5.
+constexpr float kDeviationCut = 1.5F;
+
+/// Mean over the values of |value - median|, cut off at kDeviationCut. \param values are reordered
+float deviation(std::vector<float>& values);
+
+}  // namespace segorient::detail

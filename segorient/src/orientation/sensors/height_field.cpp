@@ -1,0 +1,131 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the segorient authors
+#include "orientation/sensors/height_field.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <utility>
+#include <vector>
+
+namespace segorient::detail {
+namespace {
+
+// Aircraft see land, which is wider than high; what a camera sees is about as deep as it is wide.
+constexpr float kMostRelief = 0.3F;
+// Columns of three spacings hold about nine points where all was seen from above: .97 to 1 of them
+// are filled, of what scanners on the ground leave .4 to .8.
+constexpr float kColumn = 3.F;
+constexpr std::size_t kFilled = 3;
+constexpr float kMostlyFilled = 0.9F;
+// Layers: as far apart as two columns are wide. Aircraft: .01 to .09 of the columns (walls, trees);
+// solids and rooms .15 and more.
+constexpr float kApart = 2.F;
+constexpr float kFewLayered = 0.12F;
+// Layers closer than that, in the neighbourhood of a flat piece: thin plates have them everywhere.
+constexpr int kAround = 96;
+constexpr float kBehind = 1.F;  // spacings
+constexpr float kShareBehind = 0.2F;
+constexpr float kFewBacked = 0.3F;
+
+struct Ground {
+  std::array<float, 3> low{};
+  std::array<float, 3> high{};
+};
+
+Ground groundOf(const PointView& points) {
+  constexpr std::size_t kSample = 20000;
+  const std::size_t step = std::max<std::size_t>(1, points.size / kSample);
+  Ground out;
+  for (std::size_t a = 0; a < 3; ++a) {
+    std::vector<float> values;
+    for (std::size_t i = 0; i < points.size; i += step) values.push_back(points[i][a]);
+    const std::size_t cut = values.size() / 50;
+    const auto low = values.begin() + static_cast<std::ptrdiff_t>(cut);
+    std::nth_element(values.begin(), low, values.end());
+    out.low[a] = *low;
+    const auto high = values.end() - static_cast<std::ptrdiff_t>(cut) - 1;
+    std::nth_element(values.begin(), high, values.end());
+    out.high[a] = *high;
+  }
+  return out;
+}
+
+void measureColumns(const PointView& points, const Ground& ground, float side, HeightField& out) {
+  std::vector<std::pair<std::uint64_t, float>> heights;
+  for (std::size_t i = 0; i < points.size; ++i) {
+    const float x = (points[i][0] - ground.low[0]) / side;
+    const float y = (points[i][1] - ground.low[1]) / side;
+    if (x < 0.F || y < 0.F || points[i][0] > ground.high[0] || points[i][1] > ground.high[1]) {
+      continue;
+    }
+    const auto column = (static_cast<std::uint64_t>(x) << 32U) | static_cast<std::uint64_t>(y);
+    heights.emplace_back(column, points[i][2]);
+  }
+  std::sort(heights.begin(), heights.end());
+  std::size_t columns = 0;
+  std::size_t filled = 0;
+  std::size_t layered = 0;
+  for (std::size_t begin = 0; begin < heights.size();) {
+    std::size_t end = begin + 1;
+    float gap = 0.F;
+    for (; end < heights.size() && heights[end].first == heights[begin].first; ++end) {
+      gap = std::max(gap, heights[end].second - heights[end - 1].second);
+    }
+    ++columns;
+    if (end - begin >= kFilled) {
+      ++filled;
+      layered += gap > kApart * side ? 1 : 0;
+    }
+    begin = end;
+  }
+  if (filled == 0) return;
+  out.filled = static_cast<float>(filled) / static_cast<float>(columns);
+  out.layered = static_cast<float>(layered) / static_cast<float>(filled);
+}
+
+float shareBacked(const PointView& points, const search::MedianHashIndex& index,
+                  const DensityPatches& patches) {
+  constexpr std::size_t kPieces = 500;
+  const DensityPatches some = patches.thinned(kPieces);
+  std::array<pcl::index_t, kAround> rows{};
+  std::array<float, kAround> squared{};
+  std::size_t backed = 0;
+  for (std::size_t i = 0; i < some.size(); ++i) {
+    const float center[3] = {some.x[i], some.y[i], some.z[i]};
+    const int found = index.nearestK(center, kAround, rows.data(), squared.data());
+    int behind = 0;
+    for (int j = 0; j < found; ++j) {
+      const float* q = points[static_cast<std::size_t>(rows[static_cast<std::size_t>(j)])];
+      const float off = (q[0] - center[0]) * some.nx[i] + (q[1] - center[1]) * some.ny[i] +
+                        (q[2] - center[2]) * some.nz[i];
+      behind += std::fabs(off) > kBehind * some.spacing ? 1 : 0;
+    }
+    backed += static_cast<float>(behind) > kShareBehind * static_cast<float>(found) ? 1 : 0;
+  }
+  return static_cast<float>(backed) / static_cast<float>(std::max<std::size_t>(1, some.size()));
+}
+
+}  // namespace
+
+bool HeightField::sure() const {
+  return relief <= kMostRelief && filled >= kMostlyFilled && layered <= kFewLayered &&
+         backed <= kFewBacked;
+}
+
+HeightField measureHeightField(PreparedCloud& cloud, const DensityPatches& patches) {
+  HeightField out;
+  const PointView points = cloud.points();
+  const Ground ground = groundOf(points);
+  const float width = std::hypot(ground.high[0] - ground.low[0], ground.high[1] - ground.low[1]);
+  out.relief = width > 0.F ? (ground.high[2] - ground.low[2]) / width : 1e30F;
+  // Cheap things first: most clouds end here.
+  if (out.relief > kMostRelief || !(patches.spacing > 0.F)) return out;
+  measureColumns(points, ground, kColumn * patches.spacing, out);
+  if (out.layered <= kFewLayered) out.backed = shareBacked(points, cloud.index(), patches);
+  return out;
+}
+
+}  // namespace segorient::detail

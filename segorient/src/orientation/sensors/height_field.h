@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the segorient authors
+#pragma once
+
+#include "orientation/sensors/density_patches.h"
+#include "search/prepared_cloud.h"
+
+namespace segorient::detail {
+
+/// How far a cloud is one surface over the xy plane, as aircraft and drones see the ground.
+struct HeightField {
+  float relief = 0.F;   ///< height over the diagonal of the ground, of the middle 96 per cent
+  float filled = 0.F;   ///< share of the columns that have some points and not just one or two
+  float layered = 1.F;  ///< share of those that have two layers far apart
+  float backed = 1.F;   ///< share of flat pieces with another layer close behind or before them
+
+  /// Whether it was seen from above for sure. Even sampling of an open sheet looks the same: let
+  /// the densities be uneven, too.
+  bool sure() const;
+};
+
+HeightField measureHeightField(PreparedCloud& cloud, const DensityPatches& patches);
+
+}  // namespace segorient::detail

@@ -1,0 +1,267 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the segorient authors
+#include "orientation/sensors/moving_sensor.h"
+
+#include <segorient/common/threads.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <numeric>
+#include <utility>
+
+#include "orientation/sensors/sampling_law.h"
+#include "orientation/sensors/shares.h"
+#include "orientation/sensors/simplex.h"
+
+namespace segorient::detail {
+namespace {
+
+using Position = std::array<double, 3>;
+using Line = std::vector<double>;  // x, y of one end, x, y of the other, z
+
+constexpr std::size_t kPieces = 500;
+constexpr int kPlaces = 9;       // a line of places is as good as a path once they are near
+constexpr int kElevations = 36;  // bins of 5 degrees: the steps between a lidar's beams and less
+constexpr int kBeamRounds = 6;
+constexpr float kPrior = 0.02F;  // of an even share of the pieces: empty bins stay as they are
+constexpr int kStarts = 4;
+constexpr int kEvaluations = 160;
+constexpr double kStep = 0.04;  // of the extent
+
+// The bin of an elevation by its sine, from a table: arcsines are slow.
+class ElevationBins {
+ public:
+  ElevationBins() {
+    for (int i = 0; i < kFine; ++i) {
+      const double sine = (2.0 * i + 1.0) / kFine - 1.0;
+      constexpr double kPi = 3.14159265358979323846;
+      const int bin = static_cast<int>((std::asin(sine) / kPi + 0.5) * kElevations);
+      table_[static_cast<std::size_t>(i)] =
+          static_cast<std::uint8_t>(std::min(bin, kElevations - 1));
+    }
+  }
+  std::size_t of(float sine) const {
+    const auto i = static_cast<int>((sine + 1.F) * (0.5F * kFine));
+    return table_[static_cast<std::size_t>(std::clamp(i, 0, kFine - 1))];
+  }
+
+ private:
+  static constexpr int kFine = 1024;
+  std::array<std::uint8_t, kFine> table_{};
+};
+
+std::vector<Position> placesAlong(const Line& line) {
+  std::vector<Position> out;
+  for (int i = 0; i < kPlaces; ++i) {
+    const double t = static_cast<double>(i) / (kPlaces - 1);
+    out.push_back({line[0] + t * (line[2] - line[0]), line[1] + t * (line[3] - line[1]), line[4]});
+  }
+  return out;
+}
+
+// What the places leave on the pieces, and how it depends on the beams.
+class TrackModel {
+ public:
+  explicit TrackModel(const DensityPatches& patches) : patches_(patches) {}
+
+  // The beams that suit the line best, in a few rounds: each bin by what is missing where its
+  // beams make most of the density.
+  float fit(const std::vector<Position>& places) {
+    look(places);
+    beams_.assign(kElevations, 1.F);
+    for (int round = 0; round < kBeamRounds; ++round) {
+      mix();
+      const float prior = kPrior * static_cast<float>(patches_.size()) / kElevations;
+      std::vector<float> missing(kElevations, 0.F);
+      std::vector<float> weight(kElevations, prior);
+      for (std::size_t j = 0; j < rows_.size(); ++j) {
+        for (std::size_t i = 0; i < mixed_.size(); ++i) {
+          const std::size_t b = bins_[j][i];
+          const float share = beams_[b] * rows_[j][i] * inverse_[i];
+          missing[b] += share * lacking_[i];
+          weight[b] += share;
+        }
+      }
+      for (std::size_t b = 0; b < beams_.size(); ++b) beams_[b] *= std::exp(missing[b] / weight[b]);
+    }
+    mix();
+    return deviation(logs_);
+  }
+
+  const std::vector<float>& beams() const { return beams_; }
+
+ private:
+  void look(const std::vector<Position>& places) {
+    rows_.resize(places.size());
+    bins_.resize(places.size());
+    for (std::size_t j = 0; j < places.size(); ++j) {
+      beamShares(patches_, places[j], rows_[j], bins_[j]);
+    }
+  }
+
+  // The sum over the places, its logs, and what lacks until it is the median's.
+  void mix() {
+    const std::size_t n = patches_.size();
+    mixed_.assign(n, 1e-30F);
+    for (std::size_t j = 0; j < rows_.size(); ++j) {
+      for (std::size_t i = 0; i < n; ++i) mixed_[i] += beams_[bins_[j][i]] * rows_[j][i];
+    }
+    logs_ = mixed_;
+    takeLogs(logs_);
+    order_ = logs_;
+    const auto middle = order_.begin() + static_cast<std::ptrdiff_t>(n / 2);
+    std::nth_element(order_.begin(), middle, order_.end());
+    inverse_.resize(n);
+    lacking_.resize(n);
+    for (std::size_t i = 0; i < n; ++i) {
+      inverse_[i] = 1.F / mixed_[i];
+      lacking_[i] = std::clamp(*middle - logs_[i], -kDeviationCut, kDeviationCut);
+    }
+  }
+
+ public:
+  // As an ANGLE_GRID about z would have it, and the elevation's bin.
+  static void beamShares(const DensityPatches& patches, const Position& place,
+                         std::vector<float>& row, std::vector<std::uint8_t>& bins) {
+    static const ElevationBins kBins;
+    ratios(patches, {place, {0.0, 0.0, 1.0}, SamplingLaw::ANGLE_GRID}, row);
+    bins.resize(patches.size());
+    for (std::size_t i = 0; i < bins.size(); ++i) {
+      const float x = patches.x[i] - static_cast<float>(place[0]);
+      const float y = patches.y[i] - static_cast<float>(place[1]);
+      const float z = patches.z[i] - static_cast<float>(place[2]);
+      const float d = std::sqrt(std::max(x * x + y * y + z * z, 1e-12F));
+      bins[i] = static_cast<std::uint8_t>(kBins.of(z / d));
+    }
+  }
+
+ private:
+  const DensityPatches& patches_;
+  std::vector<std::vector<float>> rows_;
+  std::vector<std::vector<std::uint8_t>> bins_;
+  std::vector<float> beams_;
+  std::vector<float> mixed_;
+  std::vector<float> logs_;
+  std::vector<float> order_;
+  std::vector<float> inverse_;
+  std::vector<float> lacking_;
+};
+
+// The level direction in which the pieces spread most, and how far.
+std::array<double, 3> longDirection(const DensityPatches& patches) {
+  const double n = static_cast<double>(patches.size());
+  double mean[2] = {0.0, 0.0};
+  for (std::size_t i = 0; i < patches.size(); ++i) {
+    mean[0] += static_cast<double>(patches.x[i]) / n;
+    mean[1] += static_cast<double>(patches.y[i]) / n;
+  }
+  double xx = 0.0;
+  double xy = 0.0;
+  double yy = 0.0;
+  for (std::size_t i = 0; i < patches.size(); ++i) {
+    const double x = static_cast<double>(patches.x[i]) - mean[0];
+    const double y = static_cast<double>(patches.y[i]) - mean[1];
+    xx += x * x;
+    xy += x * y;
+    yy += y * y;
+  }
+  const double angle = 0.5 * std::atan2(2.0 * xy, xx - yy);
+  const double c = std::cos(angle);
+  const double s = std::sin(angle);
+  double reach = 0.0;
+  for (std::size_t i = 0; i < patches.size(); ++i) {
+    reach = std::max(reach, std::fabs(c * (static_cast<double>(patches.x[i]) - mean[0]) +
+                                      s * (static_cast<double>(patches.y[i]) - mean[1])));
+  }
+  return {c, s, 2.0 * reach};
+}
+
+// Short and long lines along the scene and across it, in its middle and beside, low and high.
+std::vector<Line> startLines(const DensityPatches& patches, const Extent& extent) {
+  const std::array<double, 3> spread = longDirection(patches);
+  const double length = spread[2];
+  const double middle[2] = {0.5 * (extent.low[0] + extent.high[0]),
+                            0.5 * (extent.low[1] + extent.high[1])};
+  std::vector<Line> out;
+  for (const auto& [dx, dy] : {std::pair{spread[0], spread[1]}, std::pair{-spread[1], spread[0]}}) {
+    for (const double beside : {-0.06, 0.0, 0.06}) {
+      for (const double along : {-0.2, 0.0, 0.2}) {
+        const double x = middle[0] + length * (along * dx - beside * dy);
+        const double y = middle[1] + length * (along * dy + beside * dx);
+        for (const double height : {0.12, 0.3, 0.6}) {
+          const double z = extent.low[2] + height * (extent.high[2] - extent.low[2]);
+          for (const double half : {0.01, 0.1}) {
+            out.push_back({x - half * length * dx, y - half * length * dy, x + half * length * dx,
+                           y + half * length * dy, z});
+          }
+        }
+      }
+    }
+  }
+  return out;
+}
+
+bool isInside(const std::vector<Position>& places, const Extent& extent) {
+  return std::all_of(places.begin(), places.end(), [&](const Position& p) {
+    bool in = true;
+    for (std::size_t a = 0; a < 3; ++a) in = in && p[a] >= extent.low[a] && p[a] <= extent.high[a];
+    return in;
+  });
+}
+
+}  // namespace
+
+Track searchTrack(const DensityPatches& patches, const Extent& extent, int threads) {
+  const DensityPatches some = patches.thinned(kPieces);
+  std::vector<Line> lines = startLines(some, extent);
+  std::vector<double> costs(lines.size());
+  const int team = resolveThreads(threads);
+#pragma omp parallel num_threads(team)
+  {
+    TrackModel model(some);
+#pragma omp for schedule(static)
+    for (std::size_t i = 0; i < lines.size(); ++i) {
+      costs[i] = static_cast<double>(model.fit(placesAlong(lines[i])));
+    }
+  }
+  std::vector<std::size_t> order(lines.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::stable_sort(order.begin(), order.end(),
+                   [&](std::size_t a, std::size_t b) { return costs[a] < costs[b]; });
+  order.resize(std::min<std::size_t>(order.size(), kStarts));
+#pragma omp parallel for schedule(static, 1) num_threads(team)
+  for (std::size_t s = 0; s < order.size(); ++s) {
+    TrackModel model(some);
+    const auto cost = [&](const Line& line) {
+      return static_cast<double>(model.fit(placesAlong(line)));
+    };
+    const std::vector<double> steps(5, kStep * extent.diagonal());
+    costs[order[s]] = minimize(cost, steps, kEvaluations, lines[order[s]]);
+  }
+  const std::size_t best =
+      *std::min_element(order.begin(), order.end(),
+                        [&](std::size_t a, std::size_t b) { return costs[a] < costs[b]; });
+  Track out;
+  out.places = placesAlong(lines[best]);
+  TrackModel model(patches);
+  out.cost = model.fit(out.places);
+  out.beams = model.beams();
+  out.inside = isInside(out.places, extent);
+  return out;
+}
+
+std::vector<std::int32_t> placeOf(const DensityPatches& patches, const Occupancy& occupancy,
+                                  const Track& track) {
+  std::vector<std::vector<float>> rows(track.places.size());
+  std::vector<std::uint8_t> bins;
+  std::vector<float> seen(patches.size());
+  for (std::size_t j = 0; j < rows.size(); ++j) {
+    TrackModel::beamShares(patches, track.places[j], rows[j], bins);
+    occupancy.visibility(patches, track.places[j], seen.data());
+    for (std::size_t i = 0; i < seen.size(); ++i) rows[j][i] *= track.beams[bins[i]] * seen[i];
+  }
+  return strongestPlaces(patches, track.places, rows);
+}
+
+}  // namespace segorient::detail

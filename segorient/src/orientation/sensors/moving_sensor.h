@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the segorient authors
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "orientation/sensors/density_patches.h"
+#include "orientation/sensors/occupancy.h"
+#include "orientation/sensors/station_search.h"
+
+namespace segorient::detail {
+
+/// A sensor that went along a straight level line while it turned about the z axis: a lidar on a
+/// vehicle. Its beams are nobody's grid: how many there are by elevation is found with the line.
+struct Track {
+  std::vector<std::array<double, 3>> places;  ///< from one end to the other, equally far apart
+  std::vector<float> beams;                   ///< by elevation, from straight down, relative
+  float cost = 0.F;                           ///< as costOf()
+  bool inside = false;                        ///< whether the line is in the scene, as a vehicle is
+};
+
+Track searchTrack(const DensityPatches& patches, const Extent& extent, int threads);
+
+/// For each piece the place of the track that most of its points come from, by the side of the
+/// surface that most of them were seen from.
+std::vector<std::int32_t> placeOf(const DensityPatches& patches, const Occupancy& occupancy,
+                                  const Track& track);
+
+}  // namespace segorient::detail

@@ -1,0 +1,171 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the segorient authors
+#include "orientation/sensors/several_stations.h"
+
+#include <segorient/common/threads.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+
+#include "orientation/sensors/sampling_law.h"
+#include "orientation/sensors/shares.h"
+#include "orientation/sensors/simplex.h"
+#include "orientation/sensors/station_mixture.h"
+#include "orientation/sensors/station_search.h"
+
+namespace segorient::detail {
+namespace {
+
+using Position = std::array<double, 3>;
+
+constexpr std::size_t kPieces = 600;       // while stations are sought
+constexpr std::size_t kFinePieces = 1500;  // for those that were found
+constexpr double kStep = 0.02;             // of the extent
+constexpr double kFineStep = 0.005;
+constexpr int kEvaluations = 50;
+constexpr int kFineRounds = 2;
+// Of the constant's cost: stations that gain less than this are not there.
+constexpr float kGain = 0.035F;
+
+// Some stations and what each leaves on the pieces. Weights are equal: one scanner, one setting.
+class Sum {
+ public:
+  Sum(const DensityPatches& patches, const Occupancy& occupancy, const Position& axis,
+      std::vector<Position> positions)
+      : patches_(patches),
+        occupancy_(occupancy),
+        axis_(axis),
+        positions_(std::move(positions)),
+        seen_(positions_.size()),
+        densities_(positions_.size()) {
+    look();
+  }
+
+  // Each station in turn to where the cost is least, what it can see left as it was meanwhile.
+  void refine(double step) {
+    for (std::size_t j = 0; j < positions_.size(); ++j) {
+      const std::vector<float> others = sumWithout(j);
+      const auto cost = [&](const std::vector<double>& v) {
+        densityAt({v[0], v[1], v[2]}, seen_[j], trial_);
+        for (std::size_t i = 0; i < trial_.size(); ++i) trial_[i] += others[i];
+        return static_cast<double>(costOfSum(trial_));
+      };
+      std::vector<double> values(positions_[j].begin(), positions_[j].end());
+      minimize(cost, {step, step, step}, kEvaluations, values);
+      positions_[j] = {values[0], values[1], values[2]};
+      densityAt(positions_[j], seen_[j], densities_[j]);
+    }
+    look();
+  }
+
+  // The one that is missed least goes.
+  void dropOne() {
+    std::size_t least = 0;
+    float cost = 0.F;
+    for (std::size_t j = 0; j < positions_.size(); ++j) {
+      trial_ = sumWithout(j);
+      const float without = costOfSum(trial_);
+      if (j == 0 || without < cost) {
+        least = j;
+        cost = without;
+      }
+    }
+    const auto at = static_cast<std::ptrdiff_t>(least);
+    positions_.erase(positions_.begin() + at);
+    seen_.erase(seen_.begin() + at);
+    densities_.erase(densities_.begin() + at);
+  }
+
+  float cost() {
+    trial_ = sumWithout(positions_.size());
+    return costOfSum(trial_);
+  }
+
+  std::vector<std::int32_t> strongest() const {
+    return strongestPlaces(patches_, positions_, densities_);
+  }
+
+  const std::vector<Position>& positions() const { return positions_; }
+
+ private:
+  void look() {
+    for (std::size_t j = 0; j < positions_.size(); ++j) {
+      seen_[j].resize(patches_.size());
+      occupancy_.visibility(patches_, positions_[j], seen_[j].data());
+      densityAt(positions_[j], seen_[j], densities_[j]);
+    }
+  }
+
+  // Over the density that is there.
+  void densityAt(const Position& position, const std::vector<float>& seen,
+                 std::vector<float>& out) const {
+    ratios(patches_, {position, axis_, SamplingLaw::ANGLE_GRID}, out);
+    for (std::size_t i = 0; i < out.size(); ++i) out[i] *= seen[i];
+  }
+
+  std::vector<float> sumWithout(std::size_t left_out) const {
+    std::vector<float> sum(patches_.size(), 0.F);
+    for (std::size_t j = 0; j < densities_.size(); ++j) {
+      if (j == left_out) continue;
+      for (std::size_t i = 0; i < sum.size(); ++i) sum[i] += densities_[j][i];
+    }
+    return sum;
+  }
+
+  static float costOfSum(std::vector<float>& sum) {
+    takeLogs(sum);
+    return deviation(sum);
+  }
+
+  const DensityPatches& patches_;
+  const Occupancy& occupancy_;
+  Position axis_;
+  std::vector<Position> positions_;
+  std::vector<std::vector<float>> seen_;
+  std::vector<std::vector<float>> densities_;
+  std::vector<float> trial_;
+};
+
+}  // namespace
+
+Stations searchStations(const DensityPatches& patches, const Occupancy& occupancy,
+                        const Position& axis, int threads) {
+  const Extent extent = extentOf(patches);
+  const double diagonal = extent.diagonal();
+  const DensityPatches some = patches.thinned(kPieces);
+  Stations out;
+  out.axis = axis;
+  Sum sum(some, occupancy, axis,
+          mixturePlaces(some, occupancy, extent, axis, resolveThreads(threads)));
+  if (sum.positions().empty()) return out;
+  sum.refine(kStep * diagonal);
+  // All numbers of stations down to one.
+  std::vector<Stations> tried;
+  while (true) {
+    sum.refine(kStep * diagonal);
+    tried.push_back({sum.positions(), axis, sum.cost()});
+    if (sum.positions().size() == 1) break;
+    sum.dropOne();
+  }
+  std::vector<float> densities = some.log_density;
+  const float constant = deviation(densities);
+  float least = tried[0].cost;
+  for (const Stations& t : tried) least = std::min(least, t.cost);
+  for (const Stations& t : tried) {
+    if (t.cost <= least + kGain * constant) out = t;  // the last one has fewest
+  }
+  const DensityPatches fine = patches.thinned(kFinePieces);
+  Sum found(fine, occupancy, axis, out.positions);
+  for (int round = 0; round < kFineRounds; ++round) found.refine(kFineStep * diagonal);
+  out.positions = found.positions();
+  out.cost = found.cost();
+  return out;
+}
+
+std::vector<std::int32_t> stationOf(const DensityPatches& patches, const Occupancy& occupancy,
+                                    const Stations& stations) {
+  return Sum(patches, occupancy, stations.axis, stations.positions).strongest();
+}
+
+}  // namespace segorient::detail

@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the segorient authors
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "orientation/sensors/density_patches.h"
+#include "orientation/sensors/occupancy.h"
+
+namespace segorient::detail {
+
+/// Stations of one scanner, each of which sent the same rays: the density is the sum of what they
+/// leave where they can see.
+struct Stations {
+  std::vector<std::array<double, 3>> positions;
+  std::array<double, 3> axis{0.0, 0.0, 1.0};  ///< all turned about
+  float cost = 0.F;                           ///< as costOf()
+};
+
+/// The smallest number of stations that explains the densities as well as any number does.
+Stations searchStations(const DensityPatches& patches, const Occupancy& occupancy,
+                        const std::array<double, 3>& axis, int threads);
+
+/// For each piece the station that left most of its density.
+std::vector<std::int32_t> stationOf(const DensityPatches& patches, const Occupancy& occupancy,
+                                    const Stations& stations);
+
+}  // namespace segorient::detail

@@ -1,0 +1,207 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the segorient authors
+#include "orientation/sensors/station_search.h"
+
+#include <segorient/common/threads.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <numeric>
+#include <utility>
+
+namespace segorient::detail {
+namespace {
+
+using Position = std::array<double, 3>;
+
+// The coarse search sees this many pieces: enough to tell which of the places is near.
+constexpr std::size_t kCoarse = 400;
+constexpr int kPlacesInside = 1000;  // so the truth is about 5 % of the extent from one of them
+constexpr int kStarts = 6;           // valleys that are followed
+constexpr double kApart = 0.08;      // of the extent, between starts
+// Of the constant's cost: without a step the best of the places has .24 to .62 where there is a
+// single station, 1.0 and more on solids and sheets.
+constexpr float kHopeless = 0.8F;
+constexpr double kCoarseStep = 0.05;
+constexpr double kFineStep = 0.01;
+constexpr int kCoarseEvaluations = 100;
+constexpr int kFineEvaluations = 250;
+constexpr int kAxisEvaluations = 60;
+
+double distance(const Position& a, const Position& b) {
+  return std::sqrt((a[0] - b[0]) * (a[0] - b[0]) + (a[1] - b[1]) * (a[1] - b[1]) +
+                   (a[2] - b[2]) * (a[2] - b[2]));
+}
+
+// The laws, those with a vertical once for each coordinate axis: people turn clouds so that up is
+// y, too, and tilting scanners have a level one.
+std::vector<Place> lawsAt(const Position& position) {
+  std::vector<Place> out{{position, {0.0, 0.0, 1.0}, SamplingLaw::SOLID_ANGLE},
+                         {position, {0.0, 0.0, 1.0}, SamplingLaw::PINHOLE}};
+  for (std::size_t a = 0; a < 3; ++a) {
+    Place grid{position, {0.0, 0.0, 0.0}, SamplingLaw::ANGLE_GRID};
+    grid.axis[a] = 1.0;
+    out.push_back(grid);
+  }
+  return out;
+}
+
+std::vector<Position> shells(const Position& middle, double extent) {
+  constexpr int kDirections = 90;
+  constexpr double kGolden = 3.14159265358979323846 * 3.2360679774997896964;  // 2 pi times .618..
+  std::vector<Position> out;
+  for (const double radius : {0.4, 0.6, 0.8, 1.1, 1.5, 2.1}) {
+    for (int k = 0; k < kDirections; ++k) {
+      const double z = 1.0 - (2.0 * k + 1.0) / kDirections;
+      const double r = std::sqrt(1.0 - z * z);
+      out.push_back({middle[0] + radius * extent * r * std::cos(kGolden * k),
+                     middle[1] + radius * extent * r * std::sin(kGolden * k),
+                     middle[2] + radius * extent * z});
+    }
+  }
+  return out;
+}
+
+// The best places for one law, apart from each other, the best first.
+std::vector<FittedPlace> valleys(const DensityPatches& coarse, const std::vector<Position>& places,
+                                 const Place& law, double extent, int threads) {
+  std::vector<float> costs(places.size());
+#pragma omp parallel num_threads(threads)
+  {
+    std::vector<float> scratch;
+#pragma omp for schedule(static)
+    for (std::size_t i = 0; i < places.size(); ++i) {
+      Place place = law;
+      place.position = places[i];
+      if (law.law == SamplingLaw::PINHOLE) place.axis = meanView(coarse, places[i]);
+      costs[i] = costOf(coarse, place, scratch);
+    }
+  }
+  std::vector<std::size_t> order(places.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::stable_sort(order.begin(), order.end(),
+                   [&](std::size_t a, std::size_t b) { return costs[a] < costs[b]; });
+  std::vector<FittedPlace> starts;
+  for (const std::size_t i : order) {
+    const bool apart = std::all_of(starts.begin(), starts.end(), [&](const FittedPlace& s) {
+      return distance(s.place.position, places[i]) > kApart * extent;
+    });
+    if (!apart) continue;
+    Place place = law;
+    place.position = places[i];
+    starts.push_back({place, costs[i]});
+    if (starts.size() == static_cast<std::size_t>(kStarts)) break;
+  }
+  return starts;
+}
+
+// Where the best of the valleys leads to.
+FittedPlace follow(const DensityPatches& coarse, std::vector<FittedPlace> starts, double extent,
+                   int threads) {
+#pragma omp parallel for schedule(static, 1) num_threads(threads)
+  for (std::size_t i = 0; i < starts.size(); ++i) {
+    starts[i].cost =
+        refinePlace(coarse, kCoarseStep * extent, false, kCoarseEvaluations, starts[i].place);
+  }
+  return *std::min_element(starts.begin(), starts.end(),
+                           [](const auto& a, const auto& b) { return a.cost < b.cost; });
+}
+
+}  // namespace
+
+double Extent::diagonal() const {
+  return distance(low, high);
+}
+
+Extent extentOf(const DensityPatches& patches) {
+  Extent out;
+  const std::vector<float>* columns[3] = {&patches.x, &patches.y, &patches.z};
+  for (std::size_t a = 0; a < 3; ++a) {
+    std::vector<float> values = *columns[a];
+    if (values.empty()) continue;
+    const std::size_t cut = values.size() / 100;
+    const auto low = values.begin() + static_cast<std::ptrdiff_t>(cut);
+    std::nth_element(values.begin(), low, values.end());
+    out.low[a] = static_cast<double>(*low);
+    const auto high = values.end() - static_cast<std::ptrdiff_t>(cut) - 1;
+    std::nth_element(values.begin(), high, values.end());
+    out.high[a] = static_cast<double>(*high);
+  }
+  return out;
+}
+
+std::vector<Position> placesAround(const Extent& extent, int inside) {
+  const double diagonal = extent.diagonal();
+  Position width{};
+  Position middle{};
+  double volume = 1.0;
+  for (std::size_t a = 0; a < 3; ++a) {
+    width[a] = std::max(extent.high[a] - extent.low[a], 0.05 * diagonal);
+    middle[a] = 0.5 * (extent.low[a] + extent.high[a]);
+    volume *= width[a];
+  }
+  const double cell = std::cbrt(volume / inside);
+  std::array<int, 3> count{};
+  for (std::size_t a = 0; a < 3; ++a)
+    count[a] = std::max(3, static_cast<int>(std::ceil(width[a] / cell)));
+  std::vector<Position> out;
+  for (int i = 0; i < count[0]; ++i) {
+    for (int j = 0; j < count[1]; ++j) {
+      for (int k = 0; k < count[2]; ++k) {
+        const double at[3] = {i + 0.5, j + 0.5, k + 0.5};
+        Position place{};
+        for (std::size_t a = 0; a < 3; ++a) {
+          place[a] = middle[a] + width[a] * (at[a] / count[a] - 0.5);
+        }
+        out.push_back(place);
+      }
+    }
+  }
+  const std::vector<Position> around = shells(middle, diagonal);
+  out.insert(out.end(), around.begin(), around.end());
+  return out;
+}
+
+FittedPlace fitAt(const DensityPatches& patches, const Position& position) {
+  FittedPlace best;
+  for (const Place& law : lawsAt(position)) {
+    FittedPlace fitted{law, 0.F};
+    const bool camera = law.law == SamplingLaw::PINHOLE;
+    fitted.cost = refinePlace(patches, 0.0, camera, kAxisEvaluations, fitted.place);
+    if (law.law == SamplingLaw::SOLID_ANGLE || fitted.cost < best.cost) best = fitted;
+  }
+  return best;
+}
+
+std::optional<FittedPlace> searchStation(const DensityPatches& patches, float constant,
+                                         int threads) {
+  const Extent extent = extentOf(patches);
+  const double diagonal = extent.diagonal();
+  const DensityPatches coarse = patches.thinned(kCoarse);
+  const std::vector<Position> places = placesAround(extent, kPlacesInside);
+  const int team = resolveThreads(threads);
+  // The best of each law, of those with a vertical the best vertical.
+  std::vector<FittedPlace> found;
+  for (const Place& law : lawsAt({0.0, 0.0, 0.0})) {
+    std::vector<FittedPlace> starts = valleys(coarse, places, law, diagonal, team);
+    // The other laws differ by what the device does to directions, which is less than this.
+    if (found.empty() && starts.front().cost > kHopeless * constant) return std::nullopt;
+    const FittedPlace fitted = follow(coarse, std::move(starts), diagonal, team);
+    const bool rival = !found.empty() && found.back().place.law == law.law;
+    if (!rival) {
+      found.push_back(fitted);
+    } else if (fitted.cost < found.back().cost) {
+      found.back() = fitted;
+    }
+  }
+#pragma omp parallel for schedule(static, 1) num_threads(team)
+  for (std::size_t i = 0; i < found.size(); ++i) {
+    found[i].cost =
+        refinePlace(patches, kFineStep * diagonal, true, kFineEvaluations, found[i].place);
+  }
+  return *std::min_element(found.begin(), found.end(),
+                           [](const auto& a, const auto& b) { return a.cost < b.cost; });
+}
+
+}  // namespace segorient::detail

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the segorient authors
+#pragma once
+
+#include <array>
+#include <optional>
+#include <vector>
+
+#include "orientation/sensors/sampling_law.h"
+
+namespace segorient::detail {
+
+/// A place and how far the densities deviate from its law.
+struct FittedPlace {
+  Place place;
+  float cost = 0.F;
+};
+
+/// One known position: the law, and its axis, that fit best there.
+FittedPlace fitAt(const DensityPatches& patches, const std::array<double, 3>& position);
+
+/// The best place anywhere around and inside the cloud; nothing where none is much better than
+/// no sensor. \param constant deviation() of the log densities
+std::optional<FittedPlace> searchStation(const DensityPatches& patches, float constant,
+                                         int threads);
+
+/// Where the middle 98 per cent of the pieces are, along each axis.
+struct Extent {
+  std::array<double, 3> low{0.0, 0.0, 0.0};
+  std::array<double, 3> high{0.0, 0.0, 0.0};
+
+  double diagonal() const;
+};
+Extent extentOf(const DensityPatches& patches);
+
+/// Places in a regular grid inside the extent, `inside` or a few more, and on shells around it.
+std::vector<std::array<double, 3>> placesAround(const Extent& extent, int inside);
+
+}  // namespace segorient::detail
