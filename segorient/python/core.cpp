@@ -325,7 +325,7 @@ py::tuple orient(const FloatArray& points, const py::dict& given, const py::obje
   PipelineOptions options = optionsFrom(given);
   options.orientation.hints = hintsFrom(given);
   if (given.contains("find_sensors"))
-    options.automatic.find_sensors = given["find_sensors"].cast<bool>();
+    options.orientation.automatic.find_sensors = given["find_sensors"].cast<bool>();
   const PipelineProgress callback = progressTo(progress);
   OrientedCloud cloud;
   {

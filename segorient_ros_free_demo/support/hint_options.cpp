@@ -158,7 +158,7 @@ void HintOptions::check(const CommandLine& line, const CommonOptions& common,
 void HintOptions::apply(const CloudTable& table, const std::string& path, const LocalPoints& points,
                         PipelineOptions& options) const {
   const std::array<double, 3>& origin = points.origin();
-  options.automatic.find_sensors = !no_sensors_;
+  options.orientation.automatic.find_sensors = !no_sensors_;
   auto hints = std::make_shared<OrientationHints>();
   hints->suggested = {localOrigin(points)};
   if (closed_) hints->surface = SurfaceKind::CLOSED;

@@ -43,6 +43,59 @@ TEST(Triangulate, IsOneMeshWithItsFrontsOutward) {
   EXPECT_EQ(readFile(directory.file("mesh.vtk")).compare(0, 5, "# vtk"), 0);
 }
 
+// An image of three walls by a camera at (1, 2, 3) that looks along z.
+std::string organisedView() {
+  std::ostringstream out;
+  out << "VERSION 0.7\nFIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nCOUNT 1 1 1\nWIDTH 40\nHEIGHT 30\n"
+         "VIEWPOINT 0 0 0 1 0 0 0\nPOINTS 1200\nDATA ascii\n";
+  for (int v = 0; v < 30; ++v) {
+    for (int u = 0; u < 40; ++u) {
+      const double depth = (u < 15 ? 2.0 : 3.0) + 0.02 * v;
+      out << 1.0 + depth * (u - 20) / 50.0 << " " << 2.0 + depth * (v - 15) / 50.0 << " "
+          << 3.0 + depth << "\n";
+    }
+  }
+  return out.str();
+}
+
+TEST(Sensors, SaysWhatIsGivenAndWhatIsFound) {
+  const ScratchDirectory directory;
+  const std::string path = directory.file("sensors.json");
+  const Outcome none = runProgram({"sensors", fandisk(), path});
+  ASSERT_EQ(none.status, 0) << none.err;
+  EXPECT_NE(none.out.find("given           none"), std::string::npos) << none.out;
+  boost::property_tree::ptree json;
+  boost::property_tree::read_json(path, json);
+  EXPECT_EQ(json.get<std::size_t>("points"), 16475U);
+  EXPECT_TRUE(json.get_child("sensors").empty());
+  EXPECT_NE(json.get<std::string>("why"), "");
+
+  const Outcome one = runProgram({"sensors", directory.write("view.pcd", organisedView()), path});
+  ASSERT_EQ(one.status, 0) << one.err;
+  boost::property_tree::read_json(path, json);
+  ASSERT_EQ(json.get_child("sensors").size(), 1U) << one.out;
+  const auto& camera = json.get_child("sensors").front().second;
+  EXPECT_EQ(camera.get<std::string>("kind"), "camera");
+  EXPECT_EQ(camera.get<std::string>("evidence"), "image");
+  EXPECT_NEAR(camera.get<double>("x"), 1.0, 1e-2);
+  EXPECT_NEAR(camera.get<double>("y"), 2.0, 1e-2);
+  EXPECT_NEAR(camera.get<double>("z"), 3.0, 1e-2);
+  EXPECT_TRUE(camera.get<bool>("sure"));
+
+  const std::string seen =
+      "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty "
+      "float y\nproperty float z\nproperty float vp_x\nproperty float "
+      "vp_y\nproperty float vp_z\nend_header\n";
+  const std::string given =
+      directory.write("given.ply", seen + "0 0 0 5 6 7\n1 0 0 5 6 7\n0 1 0 8 8 8\n");
+  ASSERT_EQ(runProgram({"sensors", given, path, "-q"}).status, 0);
+  boost::property_tree::read_json(path, json);
+  ASSERT_EQ(json.get_child("given").size(), 2U);
+  EXPECT_EQ(json.get_child("given").front().second.get<double>("y"), 6.0);
+  EXPECT_EQ(json.get_child("given").front().second.get<int>("points"), 2);
+  EXPECT_EQ(runProgram({"sensors", given, directory.file("sensors.txt")}).status, 2);
+}
+
 // Every segment and component says how it was oriented; the shipped Fandisk leaves few questions.
 TEST(Orient, ReportTellsHowEachSegmentWasOriented) {
   const ScratchDirectory directory;

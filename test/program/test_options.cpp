@@ -33,6 +33,7 @@ TEST(Options, EveryCommandTakesWhatAllShare) {
         {"segment", in, directory.file("c.pcd")},
         {"triangulate", in, directory.file("d.ply")},
         {"knn", in},
+        {"sensors", in},
         {"compare", in},
         {"evaluate", out, out},
         {"render", out, directory.file("e.png")}}) {

@@ -263,6 +263,22 @@ class OtherStages(unittest.TestCase):
         far = segorient.knn(points.astype(float) + MAP, 7, queries=points[:9] + MAP)
         np.testing.assert_array_equal(far.indices, segorient.knn(points, 7).indices[:9])
 
+    def test_a_camera_is_found_by_its_image(self):
+        v, u = np.mgrid[0:30, 0:40]
+        depth = np.where(u < 15, 2.0, 3.0) + 0.02 * v
+        points = np.stack([depth * (u - 20) / 50, depth * (v - 15) / 50, depth], -1).reshape(-1, 3)
+        for shift in (np.array([1.0, 2.0, 3.0]), np.array([500000.0, 6000000.0, 100.0])):
+            found = segorient.sensors(points + shift, width=40)
+            self.assertEqual(len(found.sensors), 1)
+            camera = found.sensors[0]
+            self.assertEqual((camera["kind"], camera["sure"]), ("camera", True))
+            np.testing.assert_allclose([camera[a] for a in "xyz"], shift, atol=0.05)
+            np.testing.assert_array_equal(found.sensor_of, np.zeros(len(points), np.int32))
+        self.assertEqual(segorient.sensors(sphere()).sensors, [])
+        self.assertRaises(ValueError, segorient.sensors, points, width=-1)
+        self.assertRaises(ValueError, segorient.sensors, points, suggestions=[1.0, 2.0, 3.0])
+        self.assertRaises(TypeError, segorient.orient, points, find_sensors=1)
+
     def test_what_is_not_there_is_said(self):
         points = sphere(500)[0]
         points[7] = np.nan

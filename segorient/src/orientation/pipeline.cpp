@@ -105,7 +105,7 @@ PointHints findHints(const PointView& points, const PipelineOptions& options, Pr
                      PipelineReport& report) {
   const OrientationHints none;
   const OrientationHints& given = options.orientation.hints ? *options.orientation.hints : none;
-  if (!options.automatic.find_sensors || !detail::lacksSensors(given)) {
+  if (!options.orientation.automatic.find_sensors || !detail::lacksSensors(given)) {
     return resolveHints(given, cloud);
   }
   OrientationHints found = given;

@@ -25,6 +25,7 @@ constexpr double kStep = 0.02;             // of the extent
 constexpr double kFineStep = 0.005;
 constexpr int kEvaluations = 50;
 constexpr int kFineRounds = 2;
+constexpr int kRelocations = 3;  // at most, for each number of stations
 // Of the constant's cost: stations that gain less than this are not there.
 constexpr float kGain = 0.035F;
 
@@ -57,6 +58,35 @@ class Sum {
       densityAt(positions_[j], seen_[j], densities_[j]);
     }
     look();
+  }
+
+  // Puts one station to another of these places and lets all settle, if that is better: what went
+  // to the wrong place does not find the way by small steps.
+  bool relocate(const std::vector<Position>& places, double step) {
+    const float before = cost();
+    float least = before;
+    std::size_t moved = 0;
+    std::size_t to = 0;
+    std::vector<float> seen(patches_.size());
+    std::vector<float> there;
+    for (std::size_t c = 0; c < places.size(); ++c) {
+      occupancy_.visibility(patches_, places[c], seen.data());
+      densityAt(places[c], seen, there);
+      for (std::size_t j = 0; j < positions_.size(); ++j) {
+        trial_ = sumWithout(j);
+        for (std::size_t i = 0; i < trial_.size(); ++i) trial_[i] += there[i];
+        const float value = costOfSum(trial_);
+        if (value >= least) continue;
+        least = value;
+        moved = j;
+        to = c;
+      }
+    }
+    if (least >= before) return false;
+    positions_[moved] = places[to];
+    look();
+    refine(step);
+    return true;
   }
 
   // The one that is missed least goes.
@@ -136,14 +166,17 @@ Stations searchStations(const DensityPatches& patches, const Occupancy& occupanc
   const DensityPatches some = patches.thinned(kPieces);
   Stations out;
   out.axis = axis;
-  Sum sum(some, occupancy, axis,
-          mixturePlaces(some, occupancy, extent, axis, resolveThreads(threads)));
+  const std::vector<Position> places =
+      mixturePlaces(some, occupancy, extent, axis, resolveThreads(threads));
+  Sum sum(some, occupancy, axis, places);
   if (sum.positions().empty()) return out;
   sum.refine(kStep * diagonal);
   // All numbers of stations down to one.
   std::vector<Stations> tried;
   while (true) {
     sum.refine(kStep * diagonal);
+    for (int i = 0; i < kRelocations && sum.relocate(places, kStep * diagonal); ++i) {
+    }
     tried.push_back({sum.positions(), axis, sum.cost()});
     if (sum.positions().size() == 1) break;
     sum.dropOne();

@@ -1,0 +1,122 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the segorient authors
+// A virtual room, seen by virtual sensors with exact rays.
+#pragma once
+
+#include <segorient/common/point_view.h>
+#include <segorient/orientation/sensors.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <random>
+#include <vector>
+
+namespace segorient {
+
+using Vector = std::array<double, 3>;
+
+constexpr double kPi = 3.14159265358979323846;
+
+// A room 6 x 4 x 3 with a cupboard, seen from inside.
+struct Room {
+  Vector size{6.0, 4.0, 3.0};
+  Vector low{4.5, 0.0, 0.0};  // the cupboard
+  Vector high{6.0, 1.0, 2.0};
+
+  double firstHit(const Vector& o, const Vector& d) const {
+    double leave = 1e30;
+    double enter_box = 0.0;
+    double leave_box = 1e30;
+    for (std::size_t a = 0; a < 3; ++a) {
+      if (std::fabs(d[a]) < 1e-12) {
+        if (o[a] < low[a] || o[a] > high[a]) leave_box = -1.0;
+        continue;
+      }
+      leave = std::min(leave, ((d[a] > 0 ? size[a] : 0.0) - o[a]) / d[a]);
+      const double s = (low[a] - o[a]) / d[a];
+      const double t = (high[a] - o[a]) / d[a];
+      enter_box = std::max(enter_box, std::min(s, t));
+      leave_box = std::min(leave_box, std::max(s, t));
+    }
+    return enter_box < leave_box && enter_box > 0.0 ? std::min(enter_box, leave) : leave;
+  }
+};
+
+class Scan {
+ public:
+  void add(const Vector& o, const Vector& d) {
+    const double t = room_.firstHit(o, d);
+    for (std::size_t a = 0; a < 3; ++a) rows_.push_back(static_cast<float>(o[a] + t * d[a]));
+  }
+  void addNothing() { rows_.insert(rows_.end(), 3, std::numeric_limits<float>::quiet_NaN()); }
+  void move(const Vector& by) {
+    for (std::size_t i = 0; i < rows_.size(); ++i) rows_[i] += static_cast<float>(by[i % 3]);
+  }
+  void scale(float by) {
+    for (float& v : rows_) v *= by;
+  }
+  std::vector<float>& rows() { return rows_; }
+  PointView view() const { return {rows_.data(), 3, rows_.size() / 3}; }
+
+ private:
+  Room room_;
+  std::vector<float> rows_;
+};
+
+// A scanner on a tripod: equal steps of azimuth and elevation.
+inline Scan scanFrom(const Vector& station, double step_degrees) {
+  Scan scan;
+  const double step = step_degrees * kPi / 180.0;
+  for (double e = -1.0; e < 1.5; e += step) {
+    for (double a = 0.1 * step; a < 2.0 * kPi; a += step) {
+      scan.add(station, {std::cos(e) * std::cos(a), std::cos(e) * std::sin(a), std::sin(e)});
+    }
+  }
+  return scan;
+}
+
+constexpr std::size_t kWidth = 120;
+constexpr std::size_t kHeight = 90;
+
+// A camera that looks along `forward` (level) from `eye`; every 50th pixel is missing.
+inline Scan viewFrom(const Vector& eye, double heading) {
+  Scan scan;
+  const Vector forward{std::cos(heading), std::sin(heading), 0.0};
+  const Vector right{std::sin(heading), -std::cos(heading), 0.0};
+  for (std::size_t i = 0; i < kWidth * kHeight; ++i) {
+    const double u = (static_cast<double>(i % kWidth) - 60.0) / 100.0;
+    const double v = (static_cast<double>(i / kWidth) - 45.0) / 100.0;
+    if (i % 50 == 7) {
+      scan.addNothing();
+    } else {
+      scan.add(eye, {forward[0] + u * right[0], forward[1] + u * right[1], -v});
+    }
+  }
+  return scan;
+}
+
+// A box sampled evenly, at random.
+inline std::vector<float> evenBox(std::size_t count) {
+  std::mt19937 random(7);
+  std::uniform_real_distribution<float> unit(0.F, 1.F);
+  std::vector<float> rows;
+  for (std::size_t i = 0; i < count; ++i) {
+    std::array<float, 3> p{unit(random), unit(random), unit(random)};
+    p[i % 3] = i % 2 == 0 ? 0.F : 1.F;
+    rows.insert(rows.end(), p.begin(), p.end());
+  }
+  return rows;
+}
+
+inline double distanceTo(const FoundSensor& sensor, const Vector& truth) {
+  double sum = 0.0;
+  for (std::size_t a = 0; a < 3; ++a) {
+    sum += std::pow(static_cast<double>(sensor.position[a]) - truth[a], 2);
+  }
+  return std::sqrt(sum);
+}
+
+}  // namespace segorient

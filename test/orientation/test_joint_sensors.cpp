@@ -1,0 +1,111 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the segorient authors
+// Several stations, a scanner on its way, aircraft.
+#include <gtest/gtest.h>
+#include <segorient/orientation/pipeline.h>
+#include <segorient/orientation/sensors.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <random>
+#include <vector>
+
+#include "sensor_scans.h"
+
+namespace segorient {
+namespace {
+
+TEST(Sensors, SeveralStationsAreFoundAndShareThePoints) {
+  const std::array<Vector, 3> truth{{{1.0, 3.2, 1.5}, {5.2, 3.0, 1.4}, {3.0, 0.8, 1.6}}};
+  Scan scan;
+  std::vector<std::size_t> seen_by;
+  for (std::size_t s = 0; s < truth.size(); ++s) {
+    Scan one = scanFrom(truth[s], 1.8);
+    seen_by.insert(seen_by.end(), one.view().size, s);
+    scan.rows().insert(scan.rows().end(), one.rows().begin(), one.rows().end());
+  }
+  const SensorReport report = findSensors(scan.view());
+  ASSERT_EQ(report.sensors.size(), truth.size());
+  std::size_t points = 0;
+  for (const Vector& t : truth) {
+    double nearest = 1e30;
+    for (const FoundSensor& s : report.sensors) nearest = std::min(nearest, distanceTo(s, t));
+    EXPECT_LT(nearest, 0.1);
+  }
+  for (std::size_t s = 0; s < report.sensors.size(); ++s) {
+    EXPECT_TRUE(report.sensors[s].sure);
+    points += report.sensors[s].points;
+    EXPECT_GE(report.sensors[0].points, report.sensors[s].points);
+  }
+  EXPECT_EQ(points, scan.view().size);
+}
+
+// A lidar of few beams that turns while it goes along.
+TEST(Sensors, AMovingScannerIsFoundAlongItsWay) {
+  Scan scan;
+  constexpr int kPoses = 12;
+  const auto pose = [](int i) { return Vector{1.0 + 0.3 * i, 1.6 + 0.04 * i, 1.3}; };
+  for (int i = 0; i < kPoses; ++i) {
+    for (double e = -25.0; e <= 15.0; e += 2.5) {
+      for (double a = 0.1 * i; a < 360.0; a += 1.5) {
+        const double azimuth = a * kPi / 180.0;
+        const double elevation = e * kPi / 180.0;
+        scan.add(pose(i), {std::cos(elevation) * std::cos(azimuth),
+                           std::cos(elevation) * std::sin(azimuth), std::sin(elevation)});
+      }
+    }
+  }
+  const SensorReport report = findSensors(scan.view());
+  ASSERT_GT(report.sensors.size(), 1U) << report.why;
+  std::size_t points = 0;
+  for (const FoundSensor& s : report.sensors) {
+    EXPECT_TRUE(s.sure);
+    double nearest = 1e30;
+    for (int i = 0; i < kPoses; ++i) nearest = std::min(nearest, distanceTo(s, pose(i)));
+    EXPECT_LT(nearest, 0.4);
+    points += s.points;
+  }
+  EXPECT_EQ(points, scan.view().size);
+}
+
+// Hills 10 x 10 whose points are in strips ten times as dense as what is between, as aircraft fly;
+// with a thickness, another such sheet below.
+std::vector<float> hills(std::size_t count, float thickness) {
+  std::mt19937 random(5);
+  std::uniform_real_distribution<float> unit(0.F, 1.F);
+  std::vector<float> rows;
+  while (rows.size() < 3 * count) {
+    const float x = 10.F * unit(random);
+    const float y = 10.F * unit(random);
+    if (std::fmod(x, 2.F) > 0.7F && unit(random) > 0.1F) continue;
+    const float below = rows.size() % 2 == 0 ? 0.F : thickness;
+    rows.insert(rows.end(), {x, y, 0.5F * std::sin(x) * std::cos(0.8F * y) - below});
+  }
+  return rows;
+}
+
+TEST(Sensors, UnevenGroundIsSeenFromAbove) {
+  const std::vector<float> rows = hills(30000, 0.F);
+  const PointView points{rows.data(), 3, rows.size() / 3};
+  const SensorReport report = findSensors(points);
+  ASSERT_EQ(report.sensors.size(), 1U) << report.why;
+  EXPECT_EQ(report.sensors[0].kind, SensorKind::ABOVE);
+  EXPECT_EQ(report.sensors[0].axis, (std::array<float, 3>{0.F, 0.F, 1.F}));
+  EXPECT_EQ(report.sensors[0].points, points.size);
+  const OrientedCloud cloud = orientCloud(points, nullptr, {});
+  std::size_t up = 0;
+  for (std::size_t i = 0; i < points.size; ++i) up += cloud.normals[4 * i + 2] > 0.F ? 1 : 0;
+  EXPECT_GT(static_cast<double>(up), 0.99 * static_cast<double>(points.size));
+}
+
+TEST(Sensors, ThinPlatesAreNotSeenFromAbove) {
+  for (const float thickness : {0.1F, 0.2F, 0.4F, 1.F}) {
+    const std::vector<float> rows = hills(30000, thickness);
+    const SensorReport report = findSensors({rows.data(), 3, rows.size() / 3});
+    EXPECT_TRUE(report.sensors.empty()) << thickness;
+  }
+}
+
+}  // namespace
+}  // namespace segorient
