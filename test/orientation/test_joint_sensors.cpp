@@ -69,7 +69,7 @@ TEST(Sensors, AMovingScannerIsFoundAlongItsWay) {
   EXPECT_EQ(points, scan.view().size);
 }
 
-// Hills 10 x 10 whose points are in strips ten times as dense as what is between, as aircraft fly;
+// Hills 10 x 10 whose points are in strips more than twice as dense as what is between, as aircraft fly;
 // with a thickness, another such sheet below.
 std::vector<float> hills(std::size_t count, float thickness) {
   std::mt19937 random(5);
@@ -78,7 +78,7 @@ std::vector<float> hills(std::size_t count, float thickness) {
   while (rows.size() < 3 * count) {
     const float x = 10.F * unit(random);
     const float y = 10.F * unit(random);
-    if (std::fmod(x, 2.F) > 0.7F && unit(random) > 0.1F) continue;
+    if (std::fmod(x, 2.F) > 0.5F && unit(random) > 0.4F) continue;
     const float below = rows.size() % 2 == 0 ? 0.F : thickness;
     rows.insert(rows.end(), {x, y, 0.5F * std::sin(x) * std::cos(0.8F * y) - below});
   }

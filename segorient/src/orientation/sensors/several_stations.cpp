@@ -26,6 +26,8 @@ constexpr double kFineStep = 0.005;
 constexpr int kEvaluations = 50;
 constexpr int kFineRounds = 2;
 constexpr int kRelocations = 3;  // at most, for each number of stations
+constexpr int kAlternatives = 200;
+constexpr std::size_t kMostRelocated = 6;  // more stations than that find places by their number
 // Of the constant's cost: stations that gain less than this are not there.
 constexpr float kGain = 0.035F;
 
@@ -60,20 +62,30 @@ class Sum {
     look();
   }
 
-  // Puts one station to another of these places and lets all settle, if that is better: what went
-  // to the wrong place does not find the way by small steps.
-  bool relocate(const std::vector<Position>& places, double step) {
+  // Places that a station might be put to, all at once.
+  void setAlternatives(std::vector<Position> places, int threads) {
+    alternatives_ = std::move(places);
+    alternative_densities_.resize(alternatives_.size());
+#pragma omp parallel for schedule(static) num_threads(threads)
+    for (std::size_t c = 0; c < alternatives_.size(); ++c) {
+      std::vector<float> seen(patches_.size());
+      occupancy_.visibility(patches_, alternatives_[c], seen.data());
+      densityAt(alternatives_[c], seen, alternative_densities_[c]);
+    }
+  }
+
+  // Puts one station to one of the alternatives and lets all settle, if that is better: a mirror
+  // image behind a wall does not find the way by small steps.
+  bool relocate(double step) {
     const float before = cost();
     float least = before;
     std::size_t moved = 0;
     std::size_t to = 0;
-    std::vector<float> seen(patches_.size());
-    std::vector<float> there;
-    for (std::size_t c = 0; c < places.size(); ++c) {
-      occupancy_.visibility(patches_, places[c], seen.data());
-      densityAt(places[c], seen, there);
-      for (std::size_t j = 0; j < positions_.size(); ++j) {
-        trial_ = sumWithout(j);
+    for (std::size_t j = 0; j < positions_.size(); ++j) {
+      const std::vector<float> others = sumWithout(j);
+      for (std::size_t c = 0; c < alternatives_.size(); ++c) {
+        trial_ = others;
+        const std::vector<float>& there = alternative_densities_[c];
         for (std::size_t i = 0; i < trial_.size(); ++i) trial_[i] += there[i];
         const float value = costOfSum(trial_);
         if (value >= least) continue;
@@ -83,7 +95,7 @@ class Sum {
       }
     }
     if (least >= before) return false;
-    positions_[moved] = places[to];
+    positions_[moved] = alternatives_[to];
     look();
     refine(step);
     return true;
@@ -116,7 +128,9 @@ class Sum {
     return strongestPlaces(patches_, positions_, densities_);
   }
 
-  const std::vector<Position>& positions() const { return positions_; }
+  const std::vector<Position>& positions() const {
+    return positions_;
+  }
 
  private:
   void look() {
@@ -154,6 +168,8 @@ class Sum {
   std::vector<Position> positions_;
   std::vector<std::vector<float>> seen_;
   std::vector<std::vector<float>> densities_;
+  std::vector<Position> alternatives_;
+  std::vector<std::vector<float>> alternative_densities_;
   std::vector<float> trial_;
 };
 
@@ -170,12 +186,14 @@ Stations searchStations(const DensityPatches& patches, const Occupancy& occupanc
       mixturePlaces(some, occupancy, extent, axis, resolveThreads(threads));
   Sum sum(some, occupancy, axis, places);
   if (sum.positions().empty()) return out;
+  sum.setAlternatives(placesInside(extent, kAlternatives), resolveThreads(threads));
   sum.refine(kStep * diagonal);
   // All numbers of stations down to one.
   std::vector<Stations> tried;
   while (true) {
     sum.refine(kStep * diagonal);
-    for (int i = 0; i < kRelocations && sum.relocate(places, kStep * diagonal); ++i) {
+    const bool few = sum.positions().size() <= kMostRelocated;
+    for (int i = 0; few && i < kRelocations && sum.relocate(kStep * diagonal); ++i) {
     }
     tried.push_back({sum.positions(), axis, sum.cost()});
     if (sum.positions().size() == 1) break;

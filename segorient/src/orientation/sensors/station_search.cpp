@@ -131,7 +131,7 @@ Extent extentOf(const DensityPatches& patches) {
   return out;
 }
 
-std::vector<Position> placesAround(const Extent& extent, int inside) {
+std::vector<Position> placesInside(const Extent& extent, int count_wanted) {
   const double diagonal = extent.diagonal();
   Position width{};
   Position middle{};
@@ -141,7 +141,7 @@ std::vector<Position> placesAround(const Extent& extent, int inside) {
     middle[a] = 0.5 * (extent.low[a] + extent.high[a]);
     volume *= width[a];
   }
-  const double cell = std::cbrt(volume / inside);
+  const double cell = std::cbrt(volume / count_wanted);
   std::array<int, 3> count{};
   for (std::size_t a = 0; a < 3; ++a)
     count[a] = std::max(3, static_cast<int>(std::ceil(width[a] / cell)));
@@ -158,7 +158,14 @@ std::vector<Position> placesAround(const Extent& extent, int inside) {
       }
     }
   }
-  const std::vector<Position> around = shells(middle, diagonal);
+  return out;
+}
+
+std::vector<Position> placesAround(const Extent& extent, int inside) {
+  std::vector<Position> out = placesInside(extent, inside);
+  Position middle{};
+  for (std::size_t a = 0; a < 3; ++a) middle[a] = 0.5 * (extent.low[a] + extent.high[a]);
+  const std::vector<Position> around = shells(middle, extent.diagonal());
   out.insert(out.end(), around.begin(), around.end());
   return out;
 }

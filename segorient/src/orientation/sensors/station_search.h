@@ -33,7 +33,10 @@ struct Extent {
 };
 Extent extentOf(const DensityPatches& patches);
 
-/// Places in a regular grid inside the extent, `inside` or a few more, and on shells around it.
+/// Places in a regular grid inside the extent, `count` or a few more.
+std::vector<std::array<double, 3>> placesInside(const Extent& extent, int count);
+
+/// The same and places on shells around the extent.
 std::vector<std::array<double, 3>> placesAround(const Extent& extent, int inside);
 
 }  // namespace segorient::detail
