@@ -5,11 +5,44 @@
 #include "io/readers.h"
 #include "render/scene.h"
 #include "support/command_line.h"
-#include "support/hard_segments.h"
+#include "support/report_facts.h"
 #include "support/stage_options.h"
 
 namespace segorient::program {
 namespace po = boost::program_options;
+namespace {
+
+// What is known of the cloud beyond its points.
+class KnownOptions {
+ public:
+  void add(CommandLine& line) {
+    line.options()("report", po::value(&report_),
+                   "of orient: hard segments are violet, dark where they face away (colour "
+                   "orientation); confidences of segments; contradictions are ringed")(
+        "sensors", po::value(&sensors_),
+        "places of sensors to mark: JSON of segorient sensors, or a cloud; else as the file says "
+        "(its place, or fields vp_x, vp_y, vp_z)");
+  }
+  Facts read(const CloudTable& table) const {
+    Facts facts;
+    if (!report_.empty()) facts = readReport(report_);
+    const std::array<double, 3> own{table.viewpoint[0], table.viewpoint[1], table.viewpoint[2]};
+    if (!sensors_.empty()) {
+      facts.sensors = readSensors(sensors_);
+    } else if (own != std::array<double, 3>{0.0, 0.0, 0.0}) {
+      facts.sensors = {own};
+    } else {
+      facts.sensors = sensorsOfPoints(table);
+    }
+    return facts;
+  }
+
+ private:
+  std::string report_;
+  std::string sensors_;
+};
+
+}  // namespace
 
 int runRender(const std::vector<std::string>& words) {
   CommandLine line(
@@ -23,19 +56,20 @@ int runRender(const std::vector<std::string>& words) {
       "segorient render oriented.pcd oriented.png --color normal");
   View view;
   std::string color;
-  std::string report;
+  KnownOptions known;
   bool single = false;
   CommonOptions common;
   line.arguments({"IN", "OUT.png"});
-  line.options()("color", po::value(&color)->default_value("auto"),
-                 "auto, normal, segment (field label), orientation, rgb")(
-      "report", po::value(&report),
-      "of orient: hard segments are violet, dark where they face away (colour orientation)")(
+  line.options()(
+      "color", po::value(&color)->default_value("auto"),
+      "auto, normal, orientation, segment (field label), confidence (field confidence, or "
+      "--report), height, scan (field scan), rgb")(
       "azimuth", po::value(&view.azimuth)->default_value(view.azimuth), "degrees about the z axis")(
       "elevation", po::value(&view.elevation)->default_value(view.elevation),
       "degrees above the horizon")("single", po::bool_switch(&single), "one side only")(
       "width", po::value<std::size_t>(&view.width)->default_value(1600), "pixels")(
       "height", po::value<std::size_t>(&view.height)->default_value(800), "pixels");
+  known.add(line);
   takeSharedOptions(line);
   common.add(line);
   if (!line.parse(words)) return 0;
@@ -48,11 +82,13 @@ int runRender(const std::vector<std::string>& words) {
   const std::string path = line.argument("IN");
   const CloudTable table = readUsableCloud(path);
   const LocalPoints points(table);
-  const Coloring coloring = parseColoring(color, table, path);
-  std::vector<std::uint32_t> hard;
-  if (!report.empty()) hard = readHardSegments(report);
-  const Scene scene = makeScene(table, points, nullptr, coloring, common.threads, hard);
-  writePng(drawViews(scene, view, !single), out);
+  const Facts facts = known.read(table);
+  const Coloring coloring = parseColoring(color, table, path, facts);
+  const Scene scene = makeScene(table, points, nullptr, coloring, common.threads, facts);
+  view.threads = common.threads;
+  Picture picture = drawViews(scene, view, !single);
+  drawLegend(Palette(table, coloring, facts).legend(), picture);
+  writePng(picture, out);
   out.commit();
   return 0;
 }

@@ -2,19 +2,27 @@
 // Copyright (c) 2026, the segorient authors
 #include "render/rasterizer.h"
 
+#include <segorient/common/threads.h>
+
 #include <algorithm>
 #include <cmath>
-#include <limits>
+
+#include "render/canvas.h"
+#include "render/projection.h"
+#include "render/visibility.h"
 
 namespace segorient::program {
 namespace {
 
 using Vec = std::array<float, 3>;
+using Color = std::array<std::uint8_t, 3>;
 
-constexpr double kMargin = 0.04;     // of the picture, left free on each side
 constexpr float kAmbient = 0.45F;    // light from everywhere; the rest comes from beside the viewer
 constexpr float kLeastSlope = 0.1F;  // discs seen from the edge stay visible
-constexpr double kRadians = 0.017453292519943295;
+constexpr float kLeastRadius = 0.8F;  // pixels
+constexpr float kCutSlack = 0.05F;    // of the radius; closes the gap along the edge
+constexpr float kCutRadius = 1.5F;    // pixels; ends of smaller discs are not seen
+constexpr int kBand = 32;             // rows that one thread draws at a time
 
 float dot(const Vec& a, const Vec& b) {
   return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
@@ -25,107 +33,7 @@ Vec normalized(const Vec& v) {
   return {v[0] / length, v[1] / length, v[2] / length};
 }
 
-// World to picture: right, down and towards the viewer, in pixels.
-class Projection {
- public:
-  Projection(const View& view, const Scene& scene) {
-    const double a = view.azimuth * kRadians;
-    const double e = view.elevation * kRadians;
-    const double ca = std::cos(a), sa = std::sin(a), ce = std::cos(e), se = std::sin(e);
-    axes_[0] = {static_cast<float>(-sa), static_cast<float>(ca), 0.F};
-    axes_[1] = {static_cast<float>(se * ca), static_cast<float>(se * sa), static_cast<float>(-ce)};
-    axes_[2] = {static_cast<float>(ce * ca), static_cast<float>(ce * sa), static_cast<float>(se)};
-    fit(view, scene);
-  }
-  float scale() const { return static_cast<float>(scale_); }
-  Vec direction(const Vec& d) const {
-    return {dot(axes_[0], d), dot(axes_[1], d), dot(axes_[2], d)};
-  }
-  Vec point(const Vec& p) const {
-    const std::array<double, 3> d = turned(p);
-    return {static_cast<float>(d[0] * scale_ + shift_[0]),
-            static_cast<float>(d[1] * scale_ + shift_[1]), static_cast<float>(d[2] * scale_)};
-  }
-
- private:
-  // In double, as sums of the largest floats overflow.
-  std::array<double, 3> turned(const Vec& p) const {
-    std::array<double, 3> out{0.0, 0.0, 0.0};
-    for (std::size_t c = 0; c < 3; ++c) {
-      for (std::size_t a = 0; a < 3; ++a) {
-        out[c] += static_cast<double>(axes_[c][a]) * static_cast<double>(p[a]);
-      }
-    }
-    return out;
-  }
-  void fit(const View& view, const Scene& scene) {
-    std::array<double, 2> low;
-    std::array<double, 2> high;
-    low.fill(std::numeric_limits<double>::max());
-    high.fill(std::numeric_limits<double>::lowest());
-    const auto extend = [&](const Vec& p) {
-      const std::array<double, 3> d = turned(p);
-      for (std::size_t c = 0; c < 2; ++c) {
-        low[c] = std::min(low[c], d[c]);
-        high[c] = std::max(high[c], d[c]);
-      }
-    };
-    for (const Splat& s : scene.splats) extend(s.position);
-    for (const Vec& v : scene.vertices) extend(v);
-    const std::array<double, 2> room{static_cast<double>(view.width),
-                                     static_cast<double>(view.height)};
-    scale_ = std::numeric_limits<double>::max();
-    for (std::size_t c = 0; c < 2; ++c) {
-      const double extent = std::max(1e-30, high[c] - low[c]);
-      scale_ = std::min(scale_, room[c] * (1.0 - 2.0 * kMargin) / extent);
-    }
-    for (std::size_t c = 0; c < 2; ++c) shift_[c] = 0.5 * (room[c] - scale_ * (low[c] + high[c]));
-  }
-
-  std::array<Vec, 3> axes_;
-  double scale_ = 1.0;
-  std::array<double, 2> shift_{0.0, 0.0};
-};
-
-class Canvas {
- public:
-  Canvas(std::size_t width, std::size_t height)
-      : picture_(width, height),
-        depth_(width * height, std::numeric_limits<float>::lowest()),
-        width_(static_cast<int>(width)),
-        height_(static_cast<int>(height)) {}
-
-  // A range of pixels, cut to the picture.
-  struct Range {
-    int begin;
-    int end;
-  };
-  Range columns(float from, float to) const { return cut(from, to, width_); }
-  Range rows(float from, float to) const { return cut(from, to, height_); }
-
-  void put(int x, int y, float depth, const std::array<std::uint8_t, 3>& color) {
-    const auto at = static_cast<std::size_t>(y) * static_cast<std::size_t>(width_) +
-                    static_cast<std::size_t>(x);
-    if (depth <= depth_[at]) return;
-    depth_[at] = depth;
-    std::copy(color.begin(), color.end(),
-              picture_.rgb.begin() + static_cast<std::ptrdiff_t>(3 * at));
-  }
-  const Picture& picture() const { return picture_; }
-
- private:
-  static Range cut(float from, float to, int end) {
-    const auto limit = static_cast<float>(end);
-    return {static_cast<int>(std::clamp(std::floor(from), 0.F, limit)),
-            static_cast<int>(std::clamp(std::ceil(to) + 1.F, 0.F, limit))};
-  }
-  Picture picture_;
-  std::vector<float> depth_;
-  int width_;
-  int height_;
-};
-
-std::array<std::uint8_t, 3> shade(std::uint32_t rgb, const Vec& normal) {
+Color shade(std::uint32_t rgb, const Vec& normal) {
   static const Vec kLight = normalized({-0.35F, -0.45F, 1.F});
   const float light = kAmbient + (1.F - kAmbient) * std::abs(dot(normal, kLight));
   const auto channel = [&](unsigned shift) {
@@ -134,51 +42,110 @@ std::array<std::uint8_t, 3> shade(std::uint32_t rgb, const Vec& normal) {
   return {channel(16), channel(8), channel(0)};
 }
 
-// The half spaces that end a splat, in the picture's frame, relative to its centre.
+// The planes that end a splat, in the picture, relative to its centre.
 class Cuts {
  public:
-  Cuts(const Scene& scene, const Splat& splat, const Projection& projection) {
-    for (std::uint32_t i = 0; i < splat.cuts && i < planes_.size(); ++i) {
-      const HalfSpace& cut = scene.cuts[splat.first_cut + i];
-      planes_[i].normal = projection.direction(cut.normal);
-      planes_[i].offset = (cut.offset - dot(cut.normal, splat.position)) * projection.scale();
-      ++size_;
+  Cuts(const std::vector<FlatSplat>& flat, const FlatSplat& own, const Splat& splat) {
+    if (own.radius < kCutRadius) return;
+    for (; size_ < splat.cuts; ++size_) {
+      const FlatSplat& other = flat[splat.cutters[size_]];
+      Plane& plane = planes_[size_];
+      plane.normal = other.normal;
+      plane.offset =
+          dot(other.normal, {other.center[0] - own.center[0], other.center[1] - own.center[1],
+                             other.center[2] - own.center[2]});
+      // The splat's own side, whatever the signs of normals are.
+      if (plane.offset > 0.F) {
+        for (float& v : plane.normal) v = -v;
+        plane.offset = -plane.offset;
+      }
+      plane.offset -= kCutSlack * own.radius;
     }
   }
   bool contain(const Vec& d) const {
-    return std::all_of(planes_.begin(), planes_.begin() + size_,
-                       [&](const HalfSpace& h) { return dot(h.normal, d) >= h.offset; });
+    return std::all_of(planes_.begin(), planes_.begin() + static_cast<std::ptrdiff_t>(size_),
+                       [&](const Plane& p) { return dot(p.normal, d) >= p.offset; });
   }
 
  private:
-  std::array<HalfSpace, 4> planes_;
-  std::ptrdiff_t size_ = 0;
+  struct Plane {
+    Vec normal;
+    float offset = 0.F;
+  };
+  std::array<Plane, Splat::kMostCutters> planes_;
+  std::size_t size_ = 0;
 };
 
-void drawSplat(const Scene& scene, const Splat& splat, const Projection& projection,
-               Canvas& canvas) {
-  const Vec c = projection.point(splat.position);
-  Vec n = projection.direction(splat.normal);
-  if (!std::isfinite(dot(n, n))) n = {0.F, 0.F, 1.F};
-  const bool front = n[2] >= 0.F;
-  const auto color = shade(front ? splat.front : splat.back, n);
-  const float nz = std::copysign(std::max(std::abs(n[2]), kLeastSlope), front ? 1.F : -1.F);
-  const float r = std::max(0.8F, splat.radius * projection.scale());
-  const Cuts cuts(scene, splat, projection);
-  const auto columns = canvas.columns(c[0] - r, c[0] + r);
-  const auto rows = canvas.rows(c[1] - r, c[1] + r);
-  for (int y = rows.begin; y < rows.end; ++y) {
-    const float dy = static_cast<float>(y) + 0.5F - c[1];
-    for (int x = columns.begin; x < columns.end; ++x) {
-      const float dx = static_cast<float>(x) + 0.5F - c[0];
-      const Vec d{dx, dy, -(n[0] * dx + n[1] * dy) / nz};
-      const float d2 = dot(d, d);
-      if (d2 > r * r || !cuts.contain(d)) continue;
-      // The middle of a disc lies before its rim: neighbouring discs meet half way.
-      canvas.put(x, y, c[2] + d[2] - 0.15F * d2 / r, color);
+// All splats of one view.
+class SplatDrawing {
+ public:
+  SplatDrawing(const Scene& scene, const Projection& projection, const View& view)
+      : splats_(scene.splats), threads_(resolveThreads(view.threads)) {
+    const auto count = static_cast<std::ptrdiff_t>(splats_.size());
+    flat_.resize(splats_.size());
+#pragma omp parallel for num_threads(threads_)
+    for (std::ptrdiff_t i = 0; i < count; ++i) {
+      const Splat& s = splats_[static_cast<std::size_t>(i)];
+      FlatSplat& f = flat_[static_cast<std::size_t>(i)];
+      f.center = projection.point(s.position);
+      f.normal = projection.direction(s.normal);
+      if (!std::isfinite(dot(f.normal, f.normal))) f.normal = {0.F, 0.F, 1.F};
+      f.radius = std::max(kLeastRadius, s.radius * projection.scale());
+    }
+    sides_ = judgeSides(splats_, flat_, view, projection.scale());
+  }
+
+  // Band by band: each has one thread, and its splats come in their order.
+  void draw(Canvas& canvas) const {
+    const auto bands = static_cast<std::size_t>((canvas.height() + kBand - 1) / kBand);
+    std::vector<std::vector<std::uint32_t>> members(bands);
+    for (std::size_t i = 0; i < splats_.size(); ++i) {
+      if (sides_[i] == Side::Hidden) continue;
+      const FlatSplat& f = flat_[i];
+      const auto rows = canvas.rows(f.center[1] - f.radius, f.center[1] + f.radius);
+      for (int b = rows.begin / kBand; b * kBand < rows.end; ++b) {
+        members[static_cast<std::size_t>(b)].push_back(static_cast<std::uint32_t>(i));
+      }
+    }
+    const auto count = static_cast<std::ptrdiff_t>(bands);
+#pragma omp parallel for schedule(dynamic, 1) num_threads(threads_)
+    for (std::ptrdiff_t b = 0; b < count; ++b) {
+      const int top = static_cast<int>(b) * kBand;
+      for (const std::uint32_t i : members[static_cast<std::size_t>(b)]) {
+        drawOne(i, top, top + kBand, canvas);
+      }
     }
   }
-}
+
+ private:
+  void drawOne(std::size_t i, int top, int bottom, Canvas& canvas) const {
+    const FlatSplat& f = flat_[i];
+    const Vec& c = f.center;
+    const Vec& n = f.normal;
+    const auto color = shade(sides_[i] == Side::Front ? splats_[i].front : splats_[i].back, n);
+    const float nz = std::copysign(std::max(std::abs(n[2]), kLeastSlope), n[2]);
+    const float r = f.radius;
+    const Cuts cuts(flat_, f, splats_[i]);
+    const auto columns = canvas.columns(c[0] - r, c[0] + r);
+    const auto rows = canvas.rows(c[1] - r, c[1] + r);
+    for (int y = std::max(top, rows.begin); y < std::min(bottom, rows.end); ++y) {
+      const float dy = static_cast<float>(y) + 0.5F - c[1];
+      for (int x = columns.begin; x < columns.end; ++x) {
+        const float dx = static_cast<float>(x) + 0.5F - c[0];
+        const Vec d{dx, dy, -(n[0] * dx + n[1] * dy) / nz};
+        const float d2 = dot(d, d);
+        if (d2 > r * r || !cuts.contain(d)) continue;
+        // The middle of a disc lies before its rim: neighbouring discs meet half way.
+        canvas.put(x, y, c[2] + d[2] - 0.15F * d2 / r, color);
+      }
+    }
+  }
+
+  const std::vector<Splat>& splats_;
+  int threads_;
+  std::vector<FlatSplat> flat_;
+  std::vector<Side> sides_;
+};
 
 void drawTriangle(const Scene& scene, std::size_t i, const Projection& projection, Canvas& canvas) {
   const Triangle& t = scene.triangles[i];
@@ -207,6 +174,25 @@ void drawTriangle(const Scene& scene, std::size_t i, const Projection& projectio
   }
 }
 
+void drawMarker(const Marker& marker, const Projection& projection, Canvas& canvas) {
+  const float size = 0.015F * static_cast<float>(std::min(canvas.width(), canvas.height()));
+  const Vec c = projection.point(marker.position);
+  const auto columns = canvas.columns(c[0] - size, c[0] + size);
+  const auto rows = canvas.rows(c[1] - size, c[1] + size);
+  for (int y = rows.begin; y < rows.end; ++y) {
+    const float dy = std::abs(static_cast<float>(y) + 0.5F - c[1]) / size;
+    for (int x = columns.begin; x < columns.end; ++x) {
+      const float dx = std::abs(static_cast<float>(x) + 0.5F - c[0]) / size;
+      if (marker.kind == Marker::Kind::Sensor) {
+        if (dx + dy <= 1.F)
+          canvas.cover(x, y, dx + dy > 0.7F ? Color{255, 255, 255} : kSensorColor);
+      } else if (const float d = std::hypot(dx, dy); d <= 1.F && d >= 0.7F) {
+        canvas.cover(x, y, kWrongColor);
+      }
+    }
+  }
+}
+
 }  // namespace
 
 Picture drawScene(const Scene& scene, const View& view) {
@@ -216,9 +202,10 @@ Picture drawScene(const Scene& scene, const View& view) {
   large.height *= 2;
   const Projection projection(large, scene);
   Canvas canvas(large.width, large.height);
-  for (const Splat& s : scene.splats) drawSplat(scene, s, projection, canvas);
+  SplatDrawing(scene, projection, large).draw(canvas);
   for (std::size_t i = 0; i < scene.triangles.size(); ++i)
     drawTriangle(scene, i, projection, canvas);
+  for (const Marker& m : scene.markers) drawMarker(m, projection, canvas);
   return halved(canvas.picture());
 }
 

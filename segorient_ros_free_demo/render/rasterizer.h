@@ -11,33 +11,42 @@
 
 namespace segorient::program {
 
-/// Half of space: where dot (normal, x) >= offset.
-struct HalfSpace {
-  std::array<float, 3> normal;
-  float offset = 0.F;
-};
-
 /// A point as a small disc across its normal, so that a cloud looks like the surface it was taken
 /// from and its far side does not shine through.
 struct Splat {
+  static constexpr std::size_t kMostCutters = 4;
+
   std::array<float, 3> position;
   std::array<float, 3> normal;  ///< unit; NaN: the disc faces the viewer
   float radius = 0.F;
+  float turn = 0.F;         ///< sine of the angle by which the surface turns within the disc
+  float noise = 0.F;        ///< how far the points around lie off its plane
   std::uint32_t front = 0;  ///< packed rgb of the side that the normal points to
   std::uint32_t back = 0;
-  std::uint32_t first_cut = 0;  ///< the disc ends at Scene::cuts[first_cut, first_cut + cuts)
-  std::uint32_t cuts = 0;
+  /// Splats across sharp edges: the disc ends at their planes.
+  std::array<std::uint32_t, kMostCutters> cutters{};
+  std::uint32_t cuts = 0;  ///< how many of them there are
 };
 
-/// What is drawn: splats, and triangles over vertices. A triangle's front is where its corners turn
-/// counter-clockwise.
+/// A place that is marked, whatever lies before it.
+struct Marker {
+  enum class Kind {
+    Sensor,  ///< a filled square on its corner
+    Wrong    ///< a ring
+  };
+  std::array<float, 3> position;
+  Kind kind = Kind::Sensor;
+};
+
+/// What is drawn: splats, triangles over vertices, and markers. A triangle's front is where its
+/// corners turn counter-clockwise.
 struct Scene {
   std::vector<Splat> splats;
-  std::vector<HalfSpace> cuts;
   std::vector<std::array<float, 3>> vertices;
   std::vector<Triangle> triangles;
   std::vector<std::uint32_t> front;  ///< packed rgb of each triangle's front
   std::vector<std::uint32_t> back;
+  std::vector<Marker> markers;
 };
 
 /// Where the viewer is: parallel projection, the whole scene in the picture.
@@ -46,6 +55,7 @@ struct View {
   double elevation = 25.0;  ///< degrees above the horizon
   std::size_t width = 800;
   std::size_t height = 800;
+  int threads = 0;  ///< 0 = all cores; the picture does not depend on it
 };
 
 /// Draws with a depth buffer of its own: needs no screen, no graphics card and no OpenGL, and gives

@@ -2,6 +2,7 @@
 // Copyright (c) 2026, the segorient authors
 #include "support/colors.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 
@@ -21,6 +22,21 @@ std::uint32_t segmentColor(std::uint32_t label) {
     return static_cast<std::uint32_t>(255.0 * (value - value * saturation * t) + 0.5);
   };
   return channel(5.0) << 16 | channel(3.0) << 8 | channel(1.0);
+}
+
+std::uint32_t rampColor(double value) {
+  if (!std::isfinite(value)) return 0x909090U;
+  static constexpr std::array<std::array<double, 3>, 4> kStops{
+      {{48, 37, 107}, {43, 122, 155}, {88, 179, 104}, {242, 227, 90}}};
+  const double t = std::fmax(0.0, std::fmin(value, 1.0)) * (kStops.size() - 1);
+  const auto stop = std::min(static_cast<std::size_t>(t), kStops.size() - 2);
+  std::uint32_t out = 0;
+  for (std::size_t c = 0; c < 3; ++c) {
+    const double from = kStops[stop][c];
+    const double mixed = from + (kStops[stop + 1][c] - from) * (t - static_cast<double>(stop));
+    out = out << 8 | static_cast<std::uint32_t>(mixed + 0.5);
+  }
+  return out;
 }
 
 }  // namespace segorient::program

@@ -6,10 +6,14 @@
 
 namespace segorient::program {
 
-constexpr std::uint32_t kNoSegment = 0xffffffffU;  ///< label of a point that is in no segment
+/// The label of a point in no segment, as it is written.
+constexpr std::uint32_t kNoSegment = 0xffffffffU;
 
-/// Packed 0xRRGGBB of a segment: depends on the label only, neighbours in number are far apart in
-/// hue. Points of no segment are grey.
+/// Packed rgb of a segment: neighbouring labels get colours far apart; grey without a segment.
 std::uint32_t segmentColor(std::uint32_t label);
+
+/// Packed rgb of a number between 0 and 1, from dark blue over green to yellow: lighter is more,
+/// for colour-blind eyes as well. What is not finite is grey.
+std::uint32_t rampColor(double value);
 
 }  // namespace segorient::program

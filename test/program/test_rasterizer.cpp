@@ -13,7 +13,7 @@
 #include "render/scene.h"
 #include "scratch_directory.h"
 #include "support/colors.h"
-#include "support/hard_segments.h"
+#include "support/report_facts.h"
 
 namespace segorient::test {
 namespace {

@@ -1,0 +1,141 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the segorient authors
+#include "render/splats.h"
+
+#include <segorient/common/threads.h>
+#include <segorient/search/median_hash_index.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace segorient::program {
+namespace {
+
+// With eight neighbours within its radius, three in ten thousand spots of a randomly sampled
+// surface stay open.
+constexpr int kCover = 8;
+constexpr float kLargestSplat = 3.F;  // times the median: stray points stay small
+constexpr float kEdgeCosine = 0.82F;  // normals 35 degrees apart: an edge
+// The neighbours that turn least tell how the surface turns: along the edge of a face they are
+// those of the face, of a point on the edge itself, whose normal is between two faces', they are
+// not.
+constexpr std::size_t kAlike = 3;
+
+using Vec = std::array<float, 3>;
+
+float dot(const Vec& a, const Vec& b) {
+  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+// Radius of each row's splat: its last neighbour's distance.
+std::vector<float> splatRadii(const Neighborhoods& neighborhoods) {
+  std::vector<float> radii(neighborhoods.size(), 0.F);
+  std::vector<float> known;
+  for (std::size_t i = 0; i < radii.size(); ++i) {
+    const int count = neighborhoods.count(i);
+    if (count < 2) continue;
+    const float radius = std::sqrt(neighborhoods.sqrDistances(i)[count - 1]);
+    if (!std::isfinite(radius)) continue;  // its square overflows; a dot does
+    radii[i] = radius;
+    known.push_back(radius);
+  }
+  if (known.empty()) return radii;
+  const auto middle = known.begin() + static_cast<std::ptrdiff_t>(known.size() / 2);
+  std::nth_element(known.begin(), middle, known.end());
+  for (float& r : radii) r = std::min(r, kLargestSplat * *middle);
+  return radii;
+}
+
+// What the neighbours of a splat tell of the surface around. Signs of normals play no part.
+void lookAround(const std::vector<Splat>& splats, const std::vector<std::int32_t>& splat_of,
+                const pcl::index_t* neighbors, int count, Splat& s) {
+  std::array<float, kCover> cosines{};
+  std::array<float, kCover> heights{};
+  std::size_t seen = 0;
+  std::size_t same = 0;
+  for (int j = 1; j < count && j <= kCover; ++j) {
+    const std::int32_t other = splat_of[static_cast<std::size_t>(neighbors[j])];
+    if (other < 0) continue;
+    const Splat& o = splats[static_cast<std::size_t>(other)];
+    const float cosine = std::abs(dot(s.normal, o.normal));
+    if (!std::isfinite(cosine)) continue;
+    cosines[seen++] = cosine;
+    if (cosine < kEdgeCosine) {
+      // A neighbour's plane ends the splat: that is where the edge between the two runs.
+      if (s.cuts < Splat::kMostCutters) s.cutters[s.cuts++] = static_cast<std::uint32_t>(other);
+    } else {
+      // On a round surface the planes of both lie as far off the other point, in opposite
+      // directions.
+      const Vec d{o.position[0] - s.position[0], o.position[1] - s.position[1],
+                  o.position[2] - s.position[2]};
+      const float sign = dot(s.normal, o.normal) < 0.F ? -1.F : 1.F;
+      heights[same++] = 0.5F * std::abs(dot(s.normal, d) + sign * dot(o.normal, d));
+    }
+  }
+  if (same > 0) {
+    const auto middle = heights.begin() + static_cast<std::ptrdiff_t>(same / 2);
+    std::nth_element(heights.begin(), middle, heights.begin() + static_cast<std::ptrdiff_t>(same));
+    s.noise = std::isfinite(*middle) ? *middle : 0.F;
+  }
+  if (seen == 0) return;
+  const std::size_t rank = std::min(kAlike, seen) - 1;
+  const auto at = cosines.begin() + static_cast<std::ptrdiff_t>(rank);
+  std::nth_element(cosines.begin(), at, cosines.begin() + static_cast<std::ptrdiff_t>(seen),
+                   std::greater<>());
+  s.turn = std::sqrt(std::max(0.F, 1.F - *at * *at));
+}
+
+}  // namespace
+
+std::array<float, 3> NormalSource::at(std::size_t row) const {
+  if (!any()) return {NAN, NAN, NAN};
+  std::array<double, 3> n{};
+  if (normals_ == nullptr) {
+    n = table_.triple(columns_, row);
+  } else {
+    std::copy_n(normals_ + 4 * row, 3, n.begin());
+  }
+  const double length = std::hypot(n[0], n[1], n[2]);
+  return {static_cast<float>(n[0] / length), static_cast<float>(n[1] / length),
+          static_cast<float>(n[2] / length)};
+}
+
+std::vector<Splat> makeSplats(const PointView& points, const NormalSource& normals, int threads,
+                              std::vector<std::size_t>& rows) {
+  search::MedianHashIndex index;
+  search::MedianHashIndex::Options options;
+  options.threads = threads;
+  index.build(points, nullptr, options);
+  Neighborhoods neighborhoods;
+  index.nearestKAll(kCover + 1, neighborhoods);
+
+  const std::vector<float> radii = splatRadii(neighborhoods);
+  std::vector<std::int32_t> splat_of(points.size, -1);
+  rows.clear();
+  for (std::size_t i = 0; i < points.size; ++i) {
+    if (!isFinite(points[i])) continue;
+    splat_of[i] = static_cast<std::int32_t>(rows.size());
+    rows.push_back(i);
+  }
+  std::vector<Splat> splats(rows.size());
+  const auto count = static_cast<std::ptrdiff_t>(rows.size());
+  const int workers = resolveThreads(threads);
+#pragma omp parallel for num_threads(workers)
+  for (std::ptrdiff_t i = 0; i < count; ++i) {
+    const std::size_t row = rows[static_cast<std::size_t>(i)];
+    Splat& s = splats[static_cast<std::size_t>(i)];
+    s.position = {points[row][0], points[row][1], points[row][2]};
+    s.normal = normals.at(row);
+    s.radius = radii[row];
+  }
+  if (!normals.any()) return splats;
+#pragma omp parallel for schedule(static, 4096) num_threads(workers)
+  for (std::ptrdiff_t i = 0; i < count; ++i) {
+    const std::size_t row = rows[static_cast<std::size_t>(i)];
+    lookAround(splats, splat_of, neighborhoods.indices(row), neighborhoods.count(row),
+               splats[static_cast<std::size_t>(i)]);
+  }
+  return splats;
+}
+
+}  // namespace segorient::program

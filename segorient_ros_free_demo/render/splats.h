@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the segorient authors
+#pragma once
+
+#include <segorient/common/point_view.h>
+
+#include <vector>
+
+#include "render/rasterizer.h"
+
+namespace segorient::program {
+
+/// Unit normals of a table or of an array; NaN where there is none.
+class NormalSource {
+ public:
+  /// \param normals 4 floats a point, or null: those of the table
+  NormalSource(const CloudTable& table, const float* normals)
+      : columns_(table.normals()), table_(table), normals_(normals) {}
+  bool any() const { return normals_ != nullptr || table_.hasNormals(); }
+  std::array<float, 3> at(std::size_t row) const;
+
+ private:
+  std::array<const Field*, 3> columns_;
+  const CloudTable& table_;
+  const float* normals_;
+};
+
+/// A splat for each point with finite coordinates, without colours.
+/// \param rows of the splats in `points`
+std::vector<Splat> makeSplats(const PointView& points, const NormalSource& normals, int threads,
+                              std::vector<std::size_t>& rows);
+
+}  // namespace segorient::program

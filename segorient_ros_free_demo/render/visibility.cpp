@@ -1,0 +1,139 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the segorient authors
+#include "render/visibility.h"
+
+#include <segorient/common/threads.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace segorient::program {
+namespace {
+
+using Vec = std::array<float, 3>;
+
+// Discs of twice the radius have 32 points in them instead of 8: beside a straight edge, where half
+// of a disc is missing, that leaves one place in ten million uncovered.
+constexpr float kReach = 2.F;
+constexpr float kLeastReach = 1.5F;  // pixels: a point hides those in the pixels around
+// Sine of 6 degrees: what lies less high above the plane of a point may be of its own surface. Half
+// the slope of the plane where that is less: a surface that turns away from the viewer at its
+// outline lies before what is behind the outline at no larger angle.
+constexpr float kLift = 0.1F;
+constexpr float kSameSheet = 0.82F;   // cosine of 35 degrees, as for edges
+constexpr float kNoise = 6.F;         // standard deviations
+constexpr float kLeastSlope = 0.05F;  // a disc seen from its edge still ends somewhere
+constexpr int kTile = 8;              // pixels
+
+float dot(const Vec& a, const Vec& b) {
+  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+float reachOf(const FlatSplat& s) {
+  return std::max(kLeastReach, kReach * s.radius);
+}
+
+// The splats that face the viewer, by tiles of the picture.
+class Tiles {
+ public:
+  Tiles(const std::vector<FlatSplat>& flat, const std::vector<Side>& sides, const View& view)
+      : columns_(static_cast<int>(view.width) / kTile + 1),
+        rows_(static_cast<int>(view.height) / kTile + 1),
+        first_(static_cast<std::size_t>(columns_) * static_cast<std::size_t>(rows_) + 1, 0) {
+    const auto each = [&](const auto& visit) {
+      for (std::size_t i = 0; i < flat.size(); ++i) {
+        if (sides[i] != Side::Front) continue;
+        const FlatSplat& s = flat[i];
+        const float reach = reachOf(s);
+        const int left = tile(s.center[0] - reach, columns_);
+        const int right = tile(s.center[0] + reach, columns_);
+        const int bottom = tile(s.center[1] + reach, rows_);
+        for (int y = tile(s.center[1] - reach, rows_); y <= bottom; ++y) {
+          for (int x = left; x <= right; ++x) visit(at(x, y), i);
+        }
+      }
+    };
+    each([&](std::size_t t, std::size_t) { ++first_[t + 1]; });
+    for (std::size_t t = 1; t < first_.size(); ++t) first_[t] += first_[t - 1];
+    splats_.resize(first_.back());
+    std::vector<std::size_t> next(first_.begin(), first_.end() - 1);
+    each([&](std::size_t t, std::size_t i) { splats_[next[t]++] = static_cast<std::uint32_t>(i); });
+  }
+
+  // Whether any splat of the tile where p is satisfies the test.
+  template <typename Test>
+  bool any(const Vec& p, const Test& test) const {
+    const std::size_t t = at(tile(p[0], columns_), tile(p[1], rows_));
+    return std::any_of(splats_.begin() + static_cast<std::ptrdiff_t>(first_[t]),
+                       splats_.begin() + static_cast<std::ptrdiff_t>(first_[t + 1]), test);
+  }
+
+ private:
+  std::size_t at(int x, int y) const {
+    return static_cast<std::size_t>(y) * static_cast<std::size_t>(columns_) +
+           static_cast<std::size_t>(x);
+  }
+  static int tile(float pixel, int count) {
+    return static_cast<int>(std::clamp(pixel / kTile, 0.F, static_cast<float>(count - 1)));
+  }
+
+  int columns_;
+  int rows_;
+  std::vector<std::size_t> first_;
+  std::vector<std::uint32_t> splats_;
+};
+
+// Whether q, which faces the viewer, lies before p, which does not.
+bool hides(const FlatSplat& q, const FlatSplat& p, float noise) {
+  const float dx = p.center[0] - q.center[0];
+  const float dy = p.center[1] - q.center[1];
+  const float reach = reachOf(q);
+  if (dx * dx + dy * dy > reach * reach) return false;
+  const float slope = std::max(q.normal[2], kLeastSlope);
+  const float dz = -(q.normal[0] * dx + q.normal[1] * dy) / slope;
+  if (dx * dx + dy * dy + dz * dz > reach * reach) return false;
+  if (q.center[2] + dz <= p.center[2] - noise) return false;
+  // A surface that goes on beyond an edge lies before p as well, but without points there: those
+  // that it has are on the other side of p's plane than the viewer.
+  const Vec to{-dx, -dy, q.center[2] - p.center[2] + noise};
+  const float cosine = -dot(p.normal, q.normal);
+  float lift = -dot(p.normal, to);
+  float least = std::min(kLift, -0.5F * p.normal[2]);
+  if (cosine > kSameSheet) {
+    // Two sides of a wall, or one surface on which one of the two points the wrong way. There, the
+    // planes of both lie as far off the other point, in opposite directions, however it bends.
+    lift = 0.5F * (lift + dot(q.normal, to));
+    least = kLift;
+  }
+  return lift > least * std::sqrt(dot(to, to));
+}
+
+}  // namespace
+
+std::vector<Side> judgeSides(const std::vector<Splat>& splats, const std::vector<FlatSplat>& flat,
+                             const View& view, float scale) {
+  std::vector<Side> sides(splats.size(), Side::Front);
+  std::vector<std::uint32_t> backs;
+  for (std::size_t i = 0; i < splats.size(); ++i) {
+    if (flat[i].normal[2] >= 0.F) continue;
+    sides[i] = Side::Back;
+    backs.push_back(static_cast<std::uint32_t>(i));
+  }
+  if (backs.empty()) return sides;
+  const Tiles tiles(flat, sides, view);
+  const auto count = static_cast<std::ptrdiff_t>(backs.size());
+#pragma omp parallel for schedule(dynamic, 1024) num_threads(resolveThreads(view.threads))
+  for (std::ptrdiff_t b = 0; b < count; ++b) {
+    const std::size_t i = backs[static_cast<std::size_t>(b)];
+    const FlatSplat& p = flat[i];
+    const float noise = kNoise * splats[i].noise * scale;
+    if (tiles.any(p.center, [&](std::uint32_t q) { return hides(flat[q], p, noise); })) {
+      sides[i] = Side::Hidden;
+    } else if (-p.normal[2] < splats[i].turn) {
+      sides[i] = Side::Front;
+    }
+  }
+  return sides;
+}
+
+}  // namespace segorient::program
