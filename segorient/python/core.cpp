@@ -501,6 +501,10 @@ py::tuple knn(const FloatArray& points, int k, const py::object& queries, int th
 }  // namespace
 }  // namespace segorient
 
+namespace segorient {
+void definePage(py::module_& module);  // page.cpp
+}
+
 PYBIND11_MODULE(_core, module) {
   module.doc() = "What segorient/__init__.py calls; not meant to be used directly.";
   module.def("orient", &segorient::orient);
@@ -510,4 +514,5 @@ PYBIND11_MODULE(_core, module) {
   module.def("join_trajectory", &segorient::trajectoryViewpoints);
   module.def("sensors", &segorient::sensors);
   module.def("knn", &segorient::knn);
+  segorient::definePage(module);
 }

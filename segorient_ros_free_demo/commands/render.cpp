@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026, the segorient authors
 #include "commands/commands.h"
+#include "io/file_endings.h"
 #include "io/output_file.h"
 #include "io/readers.h"
+#include "render/cloud_page.h"
 #include "render/scene.h"
 #include "support/command_line.h"
 #include "support/report_facts.h"
@@ -42,24 +44,45 @@ class KnownOptions {
   std::string sensors_;
 };
 
+std::string baseName(const std::string& path) {
+  return path.substr(path.find_last_of('/') + 1);
+}
+
+void writeCloudPage(const PageCloud& cloud, const PageOptions& options, bool quiet,
+                    OutputFile& out) {
+  std::size_t bytes = 0;
+  const std::size_t shown = writePage(cloud, options, [&](std::string_view text) {
+    bytes += text.size();
+    out.write(text);
+  });
+  out.commit();
+  if (quiet) return;
+  std::printf("%zu of %zu points, %.1f MB: %s\n", shown, cloud.points.size,
+              static_cast<double>(bytes) / 1e6, out.path().c_str());
+}
+
 }  // namespace
 
 int runRender(const std::vector<std::string>& words) {
   CommandLine line(
-      "render IN OUT.png [options]",
-      "Draws a cloud as closed surfaces, from two opposite sides. Needs no screen.\n"
+      "render IN OUT.png|OUT.html [options]",
+      "OUT.png: a cloud as closed surfaces, from two opposite sides. Needs no screen.\n"
       "Colours by normal: light where normals point to the viewer, red where they point\n"
-      "away, blue where there is none; on a closed object all should be light. By\n"
+      "away, blue where there is none; a closed object that is right has no red. By\n"
       "orientation: the same with a tint for each segment, and hard ones marked: those\n"
-      "that the report lists as decided by no method. A PLY with faces is drawn as the\n"
-      "mesh that it is.",
+      "that the report lists as decided by no method. Where fields vp_x, vp_y, vp_z say\n"
+      "where points were seen from, red are those whose normal faces away from there,\n"
+      "from both sides, and brown is the back of the others. A PLY with faces is drawn\n"
+      "as the mesh that it is.\n"
+      "OUT.html: one file that any browser with WebGL 2 shows, to turn, cut and pick.",
       "segorient render oriented.pcd oriented.png --color normal");
   View view;
   std::string color;
   KnownOptions known;
   bool single = false;
+  std::size_t most = PageOptions().points;
   CommonOptions common;
-  line.arguments({"IN", "OUT.png"});
+  line.arguments({"IN", "OUT"});
   line.options()(
       "color", po::value(&color)->default_value("auto"),
       "auto, normal, orientation, segment (field label), confidence (field confidence, or "
@@ -68,7 +91,9 @@ int runRender(const std::vector<std::string>& words) {
       "elevation", po::value(&view.elevation)->default_value(view.elevation),
       "degrees above the horizon")("single", po::bool_switch(&single), "one side only")(
       "width", po::value<std::size_t>(&view.width)->default_value(1600), "pixels")(
-      "height", po::value<std::size_t>(&view.height)->default_value(800), "pixels");
+      "height", po::value<std::size_t>(&view.height)->default_value(800), "pixels")(
+      "points", po::value<std::size_t>(&most)->default_value(most),
+      "of OUT.html: at most so many, spread evenly");
   known.add(line);
   takeSharedOptions(line);
   common.add(line);
@@ -76,13 +101,19 @@ int runRender(const std::vector<std::string>& words) {
   require(view.width >= 2 && view.width <= 16384 && view.height >= 1 && view.height <= 16384,
           "--width and --height must be 2 to 16384");
   common.check();
-  requireEnding(line.argument("OUT.png"), {".png"});
+  require(most >= 1, "--points must be at least 1");
+  requireEnding(line.argument("OUT"), {".png", ".html"});
 
-  OutputFile out(line.argument("OUT.png"));
+  OutputFile out(line.argument("OUT"));
   const std::string path = line.argument("IN");
   const CloudTable table = readUsableCloud(path);
   const LocalPoints points(table);
   const Facts facts = known.read(table);
+  if (fileEnding(out.path()) == ".html") {
+    writeCloudPage(pageCloud(table, points, facts, baseName(path)), {most, common.threads},
+                   common.quiet, out);
+    return 0;
+  }
   const Coloring coloring = parseColoring(color, table, path, facts);
   const Scene scene = makeScene(table, points, nullptr, coloring, common.threads, facts);
   view.threads = common.threads;

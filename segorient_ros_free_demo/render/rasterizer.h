@@ -19,7 +19,8 @@ struct Splat {
   std::array<float, 3> position;
   std::array<float, 3> normal;  ///< unit; NaN: the disc faces the viewer
   float radius = 0.F;
-  float turn = 0.F;         ///< sine of the angle by which the surface turns within the disc
+  float turn =
+      0.F;  ///< sine of the angle by which the surface turns from the middle to its neighbours
   float noise = 0.F;        ///< how far the points around lie off its plane
   std::uint32_t front = 0;  ///< packed rgb of the side that the normal points to
   std::uint32_t back = 0;

@@ -14,6 +14,8 @@ namespace {
 // With eight neighbours within its radius, three in ten thousand spots of a randomly sampled
 // surface stay open.
 constexpr int kCover = 8;
+// Of so many, those across an edge end the disc: nearly all discs that reach an edge have one.
+constexpr int kAround = 16;
 constexpr float kLargestSplat = 3.F;  // times the median: stray points stay small
 constexpr float kEdgeCosine = 0.82F;  // normals 35 degrees apart: an edge
 // The neighbours that turn least tell how the surface turns: along the edge of a face they are
@@ -27,14 +29,14 @@ float dot(const Vec& a, const Vec& b) {
   return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
-// Radius of each row's splat: its last neighbour's distance.
+// Radius of each row's splat: the distance of its eighth neighbour.
 std::vector<float> splatRadii(const Neighborhoods& neighborhoods) {
   std::vector<float> radii(neighborhoods.size(), 0.F);
   std::vector<float> known;
   for (std::size_t i = 0; i < radii.size(); ++i) {
     const int count = neighborhoods.count(i);
     if (count < 2) continue;
-    const float radius = std::sqrt(neighborhoods.sqrDistances(i)[count - 1]);
+    const float radius = std::sqrt(neighborhoods.sqrDistances(i)[std::min(kCover, count - 1)]);
     if (!std::isfinite(radius)) continue;  // its square overflows; a dot does
     radii[i] = radius;
     known.push_back(radius);
@@ -53,17 +55,17 @@ void lookAround(const std::vector<Splat>& splats, const std::vector<std::int32_t
   std::array<float, kCover> heights{};
   std::size_t seen = 0;
   std::size_t same = 0;
-  for (int j = 1; j < count && j <= kCover; ++j) {
+  for (int j = 1; j < count; ++j) {
     const std::int32_t other = splat_of[static_cast<std::size_t>(neighbors[j])];
     if (other < 0) continue;
     const Splat& o = splats[static_cast<std::size_t>(other)];
     const float cosine = std::abs(dot(s.normal, o.normal));
     if (!std::isfinite(cosine)) continue;
-    cosines[seen++] = cosine;
+    if (j <= kCover) cosines[seen++] = cosine;
     if (cosine < kEdgeCosine) {
       // A neighbour's plane ends the splat: that is where the edge between the two runs.
       if (s.cuts < Splat::kMostCutters) s.cutters[s.cuts++] = static_cast<std::uint32_t>(other);
-    } else {
+    } else if (j <= kCover) {
       // On a round surface the planes of both lie as far off the other point, in opposite
       // directions.
       const Vec d{o.position[0] - s.position[0], o.position[1] - s.position[1],
@@ -82,7 +84,7 @@ void lookAround(const std::vector<Splat>& splats, const std::vector<std::int32_t
   const auto at = cosines.begin() + static_cast<std::ptrdiff_t>(rank);
   std::nth_element(cosines.begin(), at, cosines.begin() + static_cast<std::ptrdiff_t>(seen),
                    std::greater<>());
-  s.turn = std::sqrt(std::max(0.F, 1.F - *at * *at));
+  s.turn = std::sqrt(std::max(0.F, 0.5F * (1.F - *at)));  // half way, where the discs meet
 }
 
 }  // namespace
@@ -107,7 +109,7 @@ std::vector<Splat> makeSplats(const PointView& points, const NormalSource& norma
   options.threads = threads;
   index.build(points, nullptr, options);
   Neighborhoods neighborhoods;
-  index.nearestKAll(kCover + 1, neighborhoods);
+  index.nearestKAll(kAround + 1, neighborhoods);
 
   const std::vector<float> radii = splatRadii(neighborhoods);
   std::vector<std::int32_t> splat_of(points.size, -1);

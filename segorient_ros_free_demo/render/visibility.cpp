@@ -22,6 +22,7 @@ constexpr float kLeastReach = 1.5F;  // pixels: a point hides those in the pixel
 constexpr float kLift = 0.1F;
 constexpr float kSameSheet = 0.82F;   // cosine of 35 degrees, as for edges
 constexpr float kNoise = 6.F;         // standard deviations
+constexpr float kTouch = 0.1F;        // of a radius: so far before a surface, a point is on it
 constexpr float kLeastSlope = 0.05F;  // a disc seen from its edge still ends somewhere
 constexpr int kTile = 8;              // pixels
 
@@ -126,7 +127,7 @@ std::vector<Side> judgeSides(const std::vector<Splat>& splats, const std::vector
   for (std::ptrdiff_t b = 0; b < count; ++b) {
     const std::size_t i = backs[static_cast<std::size_t>(b)];
     const FlatSplat& p = flat[i];
-    const float noise = kNoise * splats[i].noise * scale;
+    const float noise = kNoise * splats[i].noise * scale + kTouch * p.radius;
     if (tiles.any(p.center, [&](std::uint32_t q) { return hides(flat[q], p, noise); })) {
       sides[i] = Side::Hidden;
     } else if (-p.normal[2] < splats[i].turn) {

@@ -47,6 +47,7 @@ TEST(Usage, WrongUsageIsStatus2AndOneLine) {
       {"normals", fandisk(), directory.file("out.vtk")},
       {"render", fandisk(), directory.file("out.jpg")},
       {"render", fandisk(), directory.file("out.png"), "--width", "0"},
+      {"render", fandisk(), directory.file("out.html"), "--points", "0"},
       {"render", fandisk(), directory.file("out.png"), "--color", "taste"},
       {"evaluate", fandisk()}};
   for (const auto& words : wrong) {

@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the segorient authors
+// The cloud in the page: arrays as the page writer packed them, and colours by what is wanted.
+
+const FRONT = 0xe6e2d8, BACK = 0xd03020, NONE = 0x3060c0, GREY = 0x909090;
+const RAMP = [[48, 37, 107], [43, 122, 155], [88, 179, 104], [242, 227, 90]];
+
+function decode(name) {  // five letters are four bytes
+  const element = document.getElementById(name);
+  if (!element) return null;
+  const text = element.textContent;
+  element.remove();  // its text is as large as the array
+  const words = new Uint32Array(text.length / 5);
+  for (let i = 0, at = 0; i < words.length; ++i) {
+    let word = 0;
+    for (let c = 0; c < 5; ++c) {
+      const letter = text.charCodeAt(at++);
+      word = word * 85 + letter - (letter > 92 ? 42 : letter > 60 ? 41 : 40);
+    }
+    words[i] = word;
+  }
+  return words.buffer;
+}
+
+function ramp(value) {  // 0 to 1, as rampColor of the program
+  if (!(value >= 0)) return GREY;
+  const t = Math.min(value, 1) * (RAMP.length - 1);
+  const stop = Math.min(Math.floor(t), RAMP.length - 2);
+  const mixed = RAMP[stop].map((from, c) => Math.round(from + (RAMP[stop + 1][c] - from) * (t - stop)));
+  return mixed[0] << 16 | mixed[1] << 8 | mixed[2];
+}
+
+function mix(color, other) {  // one part of the first and three of the other
+  let out = 0;
+  for (const shift of [16, 8, 0]) out |= ((color >> shift & 255) + 3 * (other >> shift & 255)) / 4 << shift;
+  return out;
+}
+
+class Cloud {
+  constructor() {
+    Object.assign(this, JSON.parse(document.getElementById("head").textContent));
+    const n = this.points;
+    const array = (name, Type, length) => {
+      const buffer = decode(name);
+      return buffer && new Type(buffer, 0, length);
+    };
+    this.positions = array("positions", Uint16Array, 3 * n);
+    this.normals = array("normals", Int8Array, 2 * n);
+    const Label = {1: Uint8Array, 2: Uint16Array, 4: Uint32Array}[this.labelBytes];
+    this.labels = Label ? array("labels", Label, n) : null;
+    this.confidences = array("confidences", Uint8Array, n);
+    this.colors = array("colors", Uint16Array, n);
+    this.ramps = Array.from({length: 256}, (_, i) => ramp(i / 255));
+  }
+
+  colorings() {  // what can be shown: [name, text]
+    const known = this.segments.some((s) => s.confidence !== undefined);
+    return [
+      ["orientation", "orientation", this.normals],
+      ["segment", "segments", this.labels],
+      ["normal", "direction of normals", this.normals],
+      ["confidence", "confidence", this.confidences || known],
+      ["rgb", "the input's colours", this.colors],
+      ["height", "height", true],
+    ].filter((c) => c[2]).map((c) => c.slice(0, 2));
+  }
+
+  normal(i) {  // unit, or null
+    if (!this.normals || this.normals[2 * i] === -128) return null;
+    let x = this.normals[2 * i] / 127, y = this.normals[2 * i + 1] / 127;
+    const z = 1 - Math.abs(x) - Math.abs(y);
+    if (z < 0) [x, y] = [(1 - Math.abs(y)) * (x < 0 ? -1 : 1), (1 - Math.abs(x)) * (y < 0 ? -1 : 1)];
+    const length = Math.hypot(x, y, z);
+    return [x / length, y / length, z / length];
+  }
+
+  position(i) {  // in the input's coordinates
+    return [0, 1, 2].map((a) => this.low[a] + this.extent * this.positions[3 * i + a] / 65535);
+  }
+
+  confidence(i) {  // undefined where it is not known
+    if (this.confidences) return this.confidences[i] === 255 ? undefined : this.confidences[i] / 254;
+    return this.labels ? this.segments[this.labels[i]].confidence : undefined;
+  }
+
+  colorOf(coloring, i) {  // packed rgb of the side that is seen, of the front in "orientation"
+    if (coloring === "segment") return this.segments[this.labels[i]].color;
+    if (coloring === "rgb") {
+      const c = this.colors[i];
+      return (c >> 11) * 255 / 31 << 16 | (c >> 5 & 63) * 255 / 63 << 8 | (c & 31) * 255 / 31;
+    }
+    if (coloring === "height") return this.ramps[this.positions[3 * i + 2] * 255 / this.high | 0];
+    if (coloring === "confidence") return ramp(this.confidence(i));
+    const n = this.normal(i);
+    if (!n) return NONE;
+    if (coloring === "normal") return n.reduce((rgb, v) => rgb << 8 | Math.round(127.5 * (1 + v)), 0);
+    return this.labels ? mix(this.segments[this.labels[i]].color, FRONT) : FRONT;
+  }
+
+  paint(coloring) {  // four bytes a point; the last: 1 where the back is red
+    if (coloring === "height" && !this.high) {
+      this.high = 1;
+      for (let i = 2; i < this.positions.length; i += 3) this.high = Math.max(this.high, this.positions[i]);
+    }
+    const out = new Uint8Array(4 * this.points);
+    const sided = coloring === "orientation";
+    for (let i = 0; i < this.points; ++i) {
+      const c = this.colorOf(coloring, i);
+      out[4 * i] = c >> 16;
+      out[4 * i + 1] = c >> 8;
+      out[4 * i + 2] = c;
+      out[4 * i + 3] = sided && this.normals[2 * i] !== -128 ? 255 : 0;
+    }
+    return out;
+  }
+}
