@@ -6,6 +6,7 @@
     >>> cloud = segorient.orient(points)      # points: an (n, 3) array
     >>> cloud.normals                         # (n, 3), outward where there is an outside
     >>> cloud.labels                          # (n,), the segment of each point
+    >>> cloud.show()                          # a page that turns; cloud.save_html("cloud.html")
 
 Keywords are named as the options of the program ``segorient``, angles are in degrees, and what is
 left out is chosen from the cloud. Row i of every result belongs to row i of the points. Points with
@@ -18,7 +19,12 @@ that own their memory; the interpreter's lock is released while the library work
 threads go on. Ctrl-C ends the work at the next stage.
 """
 
+import html
+import os
+import pathlib
+import tempfile
 import warnings
+import webbrowser
 from typing import Any, Callable, Dict, List, NamedTuple, Optional, Sequence, Tuple, Union
 
 import numpy as np
@@ -47,15 +53,93 @@ Progress = Callable[[str, float], object]
 _Origin = npt.NDArray[np.float64]
 
 
-class Orientation(NamedTuple):
-    """What :func:`orient` found."""
-
+class _Found(NamedTuple):
     normals: Floats  #: (n, 3) oriented unit normals; NaN where there is none
     curvatures: Floats  #: (n,) smallest variance in the sum of all three, as in PCL
     labels: npt.NDArray[np.int32]  #: (n,) segment, the largest first; -1 without a normal
     confidences: Floats  #: (n,) of the orientation: 0 a guess, 1 all evidence agrees
     components: npt.NDArray[np.int32]  #: (n,) connected component, the largest first; -1 as above
     report: Dict[str, Any]  #: what was done, as ``--report`` of the program has it, but for memory by stage
+
+
+class Orientation(_Found):
+    """What :func:`orient` found: a tuple, and a page that shows it (:meth:`show`, :meth:`save_html`)."""
+
+    _points: Floats
+    _origin: _Origin
+    _sensors: Optional[npt.NDArray[Any]]
+
+    def _html(self, points: int, title: str) -> bytes:
+        most = _whole("points", points, 1, (1 << 31) - 1)
+        report = self.report
+        sides = [component["oriented_by"] for component in report["components"]]
+        texts = []
+        for segment in report["segments"]:
+            text = f"{segment['kind']}, by {segment['oriented_by']}"
+            if 0 <= segment["component"] < len(sides):
+                text += f", side by {sides[segment['component']]}"
+            texts.append(text + (", hard" if segment["hard"] else ""))
+        given = {
+            "title": _word("title", title),
+            "origin": self._origin,
+            "normals": self.normals,
+            "labels": self.labels.astype(np.uint32),  # -1 becomes the program's 4294967295
+            "confidences": self.confidences,
+            "segments": texts,
+            "contradictions": np.array(
+                [[place[axis] for axis in "xyz"] for place in report["contradictions"]], np.float64
+            ),
+        }
+        if self._sensors is not None:
+            given["sensors"] = self._sensors
+        return _core.page(self._points, given, most or 1, 0)
+
+    def save_html(self, path: Union[str, "os.PathLike[str]"], *, points: int = 1_000_000, title: str = "segorient") -> None:
+        """Writes a page that shows the cloud in any browser with WebGL 2: one file, no network.
+
+        :param path: of the file
+        :param points: at most so many, spread evenly; a million take some 13 MB
+        :param title: of the page
+        :raises OSError: if it cannot be written; what was there before then stays
+        """
+        page = self._html(points, title)
+        target = os.path.realpath(os.fspath(path))
+        handle, temporary = tempfile.mkstemp(dir=os.path.dirname(target), suffix=".html")
+        try:
+            with os.fdopen(handle, "wb") as file:
+                file.write(page)
+            umask = os.umask(0)
+            os.umask(umask)
+            os.chmod(temporary, 0o666 & ~umask)
+            os.replace(temporary, target)
+        except BaseException:
+            os.unlink(temporary)
+            raise
+
+    def _repr_html_(self) -> str:
+        """The page in a frame, as notebooks show it; at most 200,000 points, which a notebook keeps."""
+        page = html.escape(self._html(200_000, "segorient").decode(errors="replace"))
+        return (
+            '<iframe title="segorient: the oriented cloud, to be turned" style="width:100%;height:560px;border:0" '
+            f'sandbox="allow-scripts" srcdoc="{page}"></iframe>'
+        )
+
+    def show(self) -> None:
+        """Shows the page: in a notebook below the cell, elsewhere in the browser."""
+        try:
+            from IPython import get_ipython  # type: ignore
+            from IPython.display import HTML, display  # type: ignore
+
+            notebook = get_ipython() is not None and hasattr(get_ipython(), "kernel")
+        except ImportError:
+            notebook = False
+        if notebook:
+            display(HTML(self._repr_html_()))
+            return
+        # The browser reads it after this returns, so it stays until the system clears such files.
+        path = os.path.join(tempfile.mkdtemp(prefix="segorient_"), "cloud.html")
+        self.save_html(path)
+        webbrowser.open(pathlib.Path(path).as_uri())
 
 
 class Check(NamedTuple):
@@ -298,6 +382,16 @@ def _sensors(
     return options
 
 
+def _sensor_places(viewpoint: Any, viewpoints: Any) -> Optional[npt.NDArray[Any]]:
+    """The different places of sensors, a sample of them where they are many."""
+    given = [np.reshape(np.asarray(v, np.float64), (-1, 3)) for v in (viewpoint, viewpoints) if v is not None]
+    if not given:
+        return None
+    places = np.concatenate(given)
+    places = np.unique(places[np.isfinite(places).all(axis=1)], axis=0)
+    return places[:: len(places) // 200 + 1]
+
+
 def orient(
     points: npt.ArrayLike,
     *,
@@ -385,8 +479,12 @@ def orient(
             raise ValueError(f"seeds have {len(places)} points and {len(directions)} normals")
         options["seeds"] = np.hstack([_moved(places, origin), _moved(directions, np.zeros(3))])
     result = Orientation(*_core.orient(array, options, progress))
-    _to_world(result.report["contradictions"], origin)
-    _to_world(result.report["sensors"], origin)
+    # As it is now: the caller may go on to change what was given.
+    result._points = array.copy()
+    result._origin = origin
+    result._sensors = _sensor_places(viewpoint, viewpoints)
+    for places in ("contradictions", "known_sensors", "sensors"):
+        _to_world(result.report[places], origin)
     return result
 
 
@@ -428,9 +526,7 @@ def check(
     if closed is not None:
         options["closed"] = _flag("closed", closed)
     result = Check(*_core.check(array, given, options, progress))
-    for place in result.report["places"]:
-        for axis, name in enumerate("xyz"):
-            place[name] += origin[axis]
+    _to_world(result.report["places"], origin)
     return result
 
 

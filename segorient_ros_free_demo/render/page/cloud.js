@@ -50,6 +50,7 @@ class Cloud {
     this.labels = Label ? array("labels", Label, n) : null;
     this.confidences = array("confidences", Uint8Array, n);
     this.colors = array("colors", Uint16Array, n);
+    for (const segment of this.segments) segment.tint = mix(segment.color, FRONT);
     this.ramps = Array.from({length: 256}, (_, i) => ramp(i / 255));
   }
 
@@ -74,6 +75,18 @@ class Cloud {
     return [x / length, y / length, z / length];
   }
 
+  box() {  // lower and upper corner in the cube
+    const low = [65535, 65535, 65535], high = [0, 0, 0], p = this.positions;
+    for (let i = 0; i < p.length; i += 3) {
+      for (let k = 0; k < 3; ++k) {
+        if (p[i + k] < low[k]) low[k] = p[i + k];
+        if (p[i + k] > high[k]) high[k] = p[i + k];
+      }
+    }
+    this.height = [low[2], Math.max(1, high[2] - low[2])];
+    return [low, high].map((corner) => corner.map((v) => v / 65535));
+  }
+
   position(i) {  // in the input's coordinates
     return [0, 1, 2].map((a) => this.low[a] + this.extent * this.positions[3 * i + a] / 65535);
   }
@@ -89,19 +102,16 @@ class Cloud {
       const c = this.colors[i];
       return (c >> 11) * 255 / 31 << 16 | (c >> 5 & 63) * 255 / 63 << 8 | (c & 31) * 255 / 31;
     }
-    if (coloring === "height") return this.ramps[this.positions[3 * i + 2] * 255 / this.high | 0];
+    if (coloring === "height") {
+      return this.ramps[(this.positions[3 * i + 2] - this.height[0]) * 255 / this.height[1] | 0];
+    }
     if (coloring === "confidence") return ramp(this.confidence(i));
-    const n = this.normal(i);
-    if (!n) return NONE;
-    if (coloring === "normal") return n.reduce((rgb, v) => rgb << 8 | Math.round(127.5 * (1 + v)), 0);
-    return this.labels ? mix(this.segments[this.labels[i]].color, FRONT) : FRONT;
+    if (this.normals[2 * i] === -128) return NONE;
+    if (coloring === "orientation") return this.labels ? this.segments[this.labels[i]].tint : FRONT;
+    return this.normal(i).reduce((rgb, v) => rgb << 8 | Math.round(127.5 * (1 + v)), 0);
   }
 
   paint(coloring) {  // four bytes a point; the last: 1 where the back is red
-    if (coloring === "height" && !this.high) {
-      this.high = 1;
-      for (let i = 2; i < this.positions.length; i += 3) this.high = Math.max(this.high, this.positions[i]);
-    }
     const out = new Uint8Array(4 * this.points);
     const sided = coloring === "orientation";
     for (let i = 0; i < this.points; ++i) {

@@ -26,6 +26,7 @@ in vec4 color;
 uniform float radius;   // of discs, in the cube
 uniform float pixels;   // for the cube's side
 uniform bool numbers;
+uniform int part;       // 0 all, 1 without backs, 2 a shield before the backs, 3 the backs
 out vec3 shown;
 flat out vec3 across;   // the normal as seen
 flat out float size;
@@ -34,11 +35,13 @@ void main() {
   vec3 n = direction(normal / 127.0) * axes;
   bool none = dot(n, n) == 0.0;
   across = none ? vec3(0.0, 0.0, 1.0) : n;
-  // A disc that is seen from behind may stick out from behind what hides its point: it is smaller
-  // and farther off. Nearly from the edge either side may be seen.
+  // Nearly from the edge either side may be seen.
   bool back = color.a > 0.5 && across.z < -0.15;
-  size = radius * (back ? 0.65 : 1.0);
-  if (back) gl_Position.z += 0.25 * radius;
+  size = radius * (back ? 0.75 : 1.0);
+  // A disc that is seen from behind may stick out from behind what hides its point, or be seen through
+  // a gap there. So the backs come last, and behind spots without colour for all that faces the viewer.
+  if (part == 2) gl_Position.z += 0.25 * radius / max(across.z, 0.5);
+  if (part == 3) gl_Position.z += 0.25 * 3.0 * radius;
   gl_PointSize = max(2.0, 2.0 * size * pixels);
   vec3 base = back ? vec3(208.0, 48.0, 32.0) / 255.0 : color.rgb;
   const vec3 light = normalize(vec3(-0.35, 0.45, 1.0));
@@ -47,7 +50,8 @@ void main() {
     int id = gl_VertexID + 1;
     shown = vec3(float(id & 255), float(id >> 8 & 255), float(id >> 16 & 255)) / 255.0;
   }
-  if (dot(cut.xyz, position) > cut.w) gl_Position = vec4(2.0, 2.0, 2.0, 1.0);
+  bool left = part == 1 ? back : part == 2 ? none || across.z < 0.15 : part == 3 && !back;
+  if (left || dot(cut.xyz, position) > cut.w) gl_Position = vec4(2.0, 2.0, 2.0, 1.0);
 }`;
 const DISC = `#version 300 es
 precision highp float;
@@ -176,7 +180,7 @@ class Drawing {
   }
 
   // fine: all points as discs; else `count` of them as squares, for pictures that move.
-  draw(camera, {cut, fine, count, strokes, marks, numbers}) {
+  draw(camera, {cut, fine, count, sided, strokes, marks, numbers}) {
     const gl = this.gl, cloud = this.cloud, all = cloud.points;
     const n = fine ? all : Math.min(count, all);
     // Fewer points stand for more surface each. Squares cover with less.
@@ -184,9 +188,15 @@ class Drawing {
     gl.viewport(0, 0, this.canvas.width, this.canvas.height);
     if (numbers) gl.clearColor(0, 0, 0, 0); else gl.clearColor(1, 1, 1, 1);
     gl.clear(gl.COLOR_BUFFER_BIT | gl.DEPTH_BUFFER_BIT);
-    this.use(fine ? this.discs : this.squares, camera, cut, radius, numbers);
     gl.bindVertexArray(this.points);
-    gl.drawArrays(gl.POINTS, 0, n);
+    // [part, program]
+    const discs = fine ? this.discs : this.squares;
+    for (const [part, program] of sided ? [[1, discs], [2, this.squares], [3, discs]] : [[0, discs]]) {
+      this.use(program, camera, cut, radius, numbers);
+      gl.uniform1i(program.places.part, part);
+      gl.colorMask(part !== 2, part !== 2, part !== 2, part !== 2);
+      gl.drawArrays(gl.POINTS, 0, n);
+    }
     if (numbers) return;
     if (strokes && cloud.normals) {
       const shown = Math.min(STROKES, all);

@@ -4,6 +4,7 @@
 
 const FRAME = 45;        // milliseconds that a moving picture may take
 const LEAST = 20000;     // points that it has at least
+const FIRST = 200000;    // and at first
 const REST = 160;        // milliseconds without a movement until all points are drawn
 const element = (id) => document.getElementById(id);
 
@@ -11,16 +12,11 @@ class Page {
   constructor() {
     this.canvas = element("view");
     this.cloud = new Cloud();
-    this.count = this.cloud.points;
+    this.count = Math.min(this.cloud.points, FIRST);
     this.coloring = "";
     this.drawing = new Drawing(this.canvas, this.cloud);
-    const low = [1, 1, 1], high = [0, 0, 0], p = this.cloud.positions;
-    for (let i = 0; i < p.length; ++i) {
-      low[i % 3] = Math.min(low[i % 3], p[i] / 65535);
-      high[i % 3] = Math.max(high[i % 3], p[i] / 65535);
-    }
-    const size = Math.hypot(...high.map((h, k) => h - low[k])) || 1;
-    this.camera = new Camera(high.map((h, k) => (h + low[k]) / 2), size);
+    this.camera = new Camera(this.cloud.positions);
+    this.box = this.cloud.box();
     this.canvas.setAttribute("aria-label", `${this.cloud.title}: ${this.counts()}, to be turned`);
     this.controls();
     this.pointers();
@@ -73,29 +69,23 @@ class Page {
       span.append(low, box, high);
       return span;
     };
-    const {low, extent, high} = this.cloud, count = key(0xffffff, this.counts());
+    const {low, extent} = this.cloud, heights = this.box.map((b) => (low[2] + extent * b[2]).toPrecision(4));
+    const count = key(0xffffff, this.counts());
     element("legend").replaceChildren(...{
       orientation: [key(FRONT, "front"), key(BACK, "back"), key(NONE, "no normal")],
       normal: [key(0xff8080, "+x"), key(0x80ff80, "+y"), key(0x8080ff, "+z")],
       confidence: [bar("0", "1 confidence"), key(GREY, "not known")],
-      height: [bar(low[2].toPrecision(4), (low[2] + extent * high / 65535).toPrecision(4) + " height (z)")],
+      height: [bar(heights[0], heights[1] + " height (z)")],
     }[this.coloring] || [], count);
   }
 
   options() {
-    const cut = [0, 0, 0, element("cut").value / 1000];
-    cut[element("axis").value] = 1;
-    if (cut[3] === 1) cut[3] = 2;
-    const low = this.camera.home.center;  // the slider covers the cloud, not the cube
-    const axis = cut.indexOf(1), half = this.half || (this.half = this.halves());
-    if (cut[3] <= 1) cut[3] = low[axis] + (2 * cut[3] - 1) * half[axis];
-    return {cut, strokes: element("strokes").checked, marks: element("marks").checked, count: this.count};
-  }
-
-  halves() {  // of the cloud's sides
-    const out = [0, 0, 0], {center} = this.camera.home, p = this.cloud.positions;
-    for (let i = 0; i < p.length; ++i) out[i % 3] = Math.max(out[i % 3], Math.abs(p[i] / 65535 - center[i % 3]));
-    return out;
+    const axis = Number(element("axis").value), share = element("cut").value / 1000, cut = [0, 0, 0, 2];
+    const [low, high] = this.box;
+    cut[axis] = 1;
+    if (share < 1) cut[3] = low[axis] + share * (high[axis] - low[axis]);
+    return {cut, strokes: element("strokes").checked, marks: element("marks").checked, count: this.count,
+      sided: this.coloring === "orientation"};
   }
 
   draw(fine) {
@@ -104,19 +94,20 @@ class Page {
 
   // Coarsely now, all of it once nothing moves.
   redraw() {
-    if (!this.wanted) this.wanted = requestAnimationFrame(() => this.frame());
+    if (!this.wanted) this.wanted = requestAnimationFrame((now) => this.frame(now));
     clearTimeout(this.rest);
     this.rest = setTimeout(() => requestAnimationFrame(() => this.draw(true)), REST);
   }
 
-  frame() {
+  frame(now) {
     this.wanted = 0;
-    const start = performance.now();
     this.draw(false);
-    this.drawing.gl.finish();
-    // As many points as a frame has time for.
-    const share = FRAME / Math.max(1, performance.now() - start);
-    this.count = Math.round(Math.max(LEAST, Math.min(this.cloud.points, this.count * Math.min(1.5, share))));
+    // As many points as a frame has time for, by what the last ones took while the picture moved.
+    const took = now - (this.last || 0);
+    this.last = now;
+    if (took > 4 * REST) return;
+    const count = this.count * Math.max(0.5, Math.min(1.2, FRAME / took));
+    this.count = Math.round(Math.max(Math.min(LEAST, this.cloud.points), Math.min(this.cloud.points, count)));
   }
 
   resize() {
@@ -197,7 +188,7 @@ class Page {
 
   pick(x, y) {  // in the page's pixels
     const ratio = this.canvas.width / this.canvas.clientWidth;
-    const i = this.drawing.pick(this.camera, this.options(), Math.floor(x * ratio), Math.floor(y * ratio));
+    const i = this.drawing.pick(this.camera, {...this.options(), sided: false}, Math.floor(x * ratio), Math.floor(y * ratio));
     const facts = i < 0 ? [] : this.facts(i), list = document.createElement("dl");
     for (const [name, value] of facts) {
       const term = document.createElement("dt"), text = document.createElement("dd");
