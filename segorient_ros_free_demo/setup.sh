@@ -67,4 +67,5 @@ build() {
 # python3-dev and pybind11-dev are for the Python package, which is left out without them.
 BUILD_PACKAGES=(g++ cmake ninja-build libpcl-dev libeigen3-dev libflann-dev libboost-dev
   libboost-program-options-dev python3-dev pybind11-dev python3-numpy)
-TEST_PACKAGES=(libgtest-dev doxygen dpkg-dev pkg-config)
+# chromium: pages are tested in it, where it is there.
+TEST_PACKAGES=(libgtest-dev doxygen dpkg-dev pkg-config chromium)

@@ -110,8 +110,11 @@ TEST(Rasterizer, OrientationShowsSegmentsWrongPatchesAndHardOnes) {
   view.width = view.height = 300;
   const auto violet = [&](const std::vector<std::uint32_t>& hard, double elevation) {
     view.elevation = elevation;
+    program::Facts facts;
+    facts.segments.resize(2);
+    for (const std::uint32_t label : hard) facts.segments[label].hard = true;
     const Picture picture =
-        program::drawScene(program::makeScene(table, points, nullptr, coloring, 1, hard), view);
+        program::drawScene(program::makeScene(table, points, nullptr, coloring, 1, facts), view);
     std::size_t count = 0;
     std::size_t drawn = 0;
     for (std::size_t i = 0; i < picture.rgb.size(); i += 3) {
@@ -195,16 +198,40 @@ TEST(Rasterizer, PointsFartherApartThanFloatsCanSquareAreDots) {
   EXPECT_LT(shares(picture).drawn, 0.01);
 }
 
-TEST(HardSegments, AreReadFromAReport) {
+TEST(Report, TellsSegmentsAndContradictions) {
   const ScratchDirectory directory;
-  const std::string report =
-      directory.write("a.json", "{\n \"points\": 3,\n \"hard_segments\": [ 17, 4 ]\n}\n");
-  EXPECT_EQ(program::readHardSegments(report), (std::vector<std::uint32_t>{4, 17}));
-  for (const std::string text : {"", "{}", "[1, 2]", "{\"hard_segments\": [\"x\"]}", "{"}) {
-    EXPECT_THROW(program::readHardSegments(directory.write("b.json", text)), program::FileError)
-        << text;
+  const program::Facts facts = program::readReport(directory.write(
+      "a.json",
+      "{\"components\": [{\"oriented_by\": \"global\"}], \"contradictions\": [{\"x\": 1, \"y\": 2,"
+      " \"z\": 3.5}], \"segments\": [{\"label\": 0, \"kind\": \"regular\", \"confidence\": 0.25,"
+      " \"oriented_by\": \"seed\", \"component\": 0}, {\"label\": 99}], \"hard_segments\": [ 4 "
+      "]}"));
+  ASSERT_EQ(facts.segments.size(), 5U);
+  EXPECT_FLOAT_EQ(facts.segments[0].confidence, 0.25F);
+  EXPECT_EQ(facts.segments[0].component_by, "global");
+  EXPECT_LT(facts.segments[1].confidence, 0.F);
+  EXPECT_TRUE(facts.segments[4].hard && !facts.segments[0].hard);
+  EXPECT_EQ(facts.contradictions, (std::vector<std::array<double, 3>>{{1.0, 2.0, 3.5}}));
+  for (const std::string text :
+       {"", "{}", "[1, 2]", "{\"hard_segments\": [\"x\"]}", "{\"hard_segments\": [-1]}", "{",
+        "{\"hard_segments\": [], \"contradictions\": [{\"x\": 1}]}"}) {
+    EXPECT_THROW(program::readReport(directory.write("b.json", text)), program::FileError) << text;
   }
-  EXPECT_THROW(program::readHardSegments(directory.file("none.json")), program::FileError);
+  EXPECT_THROW(program::readReport(directory.file("none.json")), program::FileError);
+}
+
+TEST(Sensors, AreReadFromJsonOrACloud) {
+  const ScratchDirectory directory;
+  const std::vector<std::array<double, 3>> expected{{1.0, 2.0, 3.0}, {4.0, 5.0, 6.0}};
+  EXPECT_EQ(
+      program::readSensors(directory.write(
+          "a.json", "{\"sensors\": [{\"x\": 1, \"y\": 2, \"z\": 3}, {\"position\": [4, 5, 6]}]}")),
+      expected);
+  EXPECT_EQ(program::readSensors(directory.write("a.xyz", "1 2 3\n4 5 6\n")), expected);
+  for (const std::string text : {"", "{}", "{\"sensors\": [{\"position\": [1, 2]}]}",
+                                 "{\"sensors\": [{\"x\": 1, \"y\": \"nan\", \"z\": 2}]}"}) {
+    EXPECT_THROW(program::readSensors(directory.write("b.json", text)), program::FileError) << text;
+  }
 }
 
 TEST(Colors, SegmentsNextInNumberAreFarApart) {

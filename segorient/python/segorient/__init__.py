@@ -483,8 +483,8 @@ def orient(
     result._points = array.copy()
     result._origin = origin
     result._sensors = _sensor_places(viewpoint, viewpoints)
-    for places in ("contradictions", "known_sensors", "sensors"):
-        _to_world(result.report[places], origin)
+    for kind in ("contradictions", "known_sensors", "sensors"):
+        _to_world(result.report[kind], origin)
     return result
 
 

@@ -50,7 +50,7 @@ void main() {
     int id = gl_VertexID + 1;
     shown = vec3(float(id & 255), float(id >> 8 & 255), float(id >> 16 & 255)) / 255.0;
   }
-  bool left = part == 1 ? back : part == 2 ? none || across.z < 0.15 : part == 3 && !back;
+  bool left = part == 1 ? back : part == 2 ? none || across.z < 0.02 : part == 3 && !back;
   if (left || dot(cut.xyz, position) > cut.w) gl_Position = vec4(2.0, 2.0, 2.0, 1.0);
 }`;
 const DISC = `#version 300 es
@@ -184,7 +184,7 @@ class Drawing {
     const gl = this.gl, cloud = this.cloud, all = cloud.points;
     const n = fine ? all : Math.min(count, all);
     // Fewer points stand for more surface each. Squares cover with less.
-    const radius = cloud.radius * Math.sqrt(all / Math.max(1, n)) * (fine ? 1 : 0.5);
+    const radius = cloud.radius * Math.sqrt(all / Math.max(1, n)) * (fine ? 1.1 : 0.55);
     gl.viewport(0, 0, this.canvas.width, this.canvas.height);
     if (numbers) gl.clearColor(0, 0, 0, 0); else gl.clearColor(1, 1, 1, 1);
     gl.clear(gl.COLOR_BUFFER_BIT | gl.DEPTH_BUFFER_BIT);
