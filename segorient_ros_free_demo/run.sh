@@ -33,6 +33,7 @@ orient() {
   build/bin/segorient orient "$1" "${name}_oriented.pcd" --report "${name}_report.json"
   build/bin/segorient render "${name}_oriented.pcd" "${name}_segments.png" --color segment
   build/bin/segorient render "${name}_oriented.pcd" "${name}_normals.png" --color normal
+  build/bin/segorient render "${name}_oriented.pcd" "${name}.html" --report "${name}_report.json"
 }
 
 mkdir -p build/demo
@@ -53,6 +54,7 @@ for name in "${results[@]}"; do
   echo "  ${name}_oriented.pcd   the cloud with oriented normals, segment labels and colours"
   echo "  ${name}_segments.png   segments in colours, from two sides"
   echo "  ${name}_normals.png    shaded by normal; what faces the wrong way is red"
+  echo "  ${name}.html           open it in a browser: turns, cuts, tells what is picked"
   echo "  to look at it:  build/bin/segorient view build/demo/${name}_oriented.pcd"
   if command -v pcl_viewer >/dev/null; then
     echo "            or:   pcl_viewer -normals 10 -normals_scale 0.1 $PWD/build/demo/${name}_oriented.pcd"

@@ -225,6 +225,7 @@ int runCompare(const std::vector<std::string>& words) {
   StageOptions stages;
   HintOptions hints;
   std::string picture_path;
+  View view;
   std::string truth_path;
   std::string poisson_prefix;
   int depth = 0;
@@ -232,6 +233,8 @@ int runCompare(const std::vector<std::string>& words) {
   stages.add(line, true);
   hints.add(line);
   line.options()("picture", po::value(&picture_path), "PNG: PCL left, ours right")(
+      "azimuth", po::value(&view.azimuth)->default_value(view.azimuth), "of the picture, degrees")(
+      "elevation", po::value(&view.elevation)->default_value(view.elevation), "above the horizon")(
       "poisson", po::value(&poisson_prefix),
       "surfaces of pcl::Poisson from both: writes NAME_pcl.ply, NAME_ours.ply, NAME.png")(
       "depth", po::value(&depth)->default_value(8), "of pcl::Poisson's octree")(
@@ -288,7 +291,6 @@ int runCompare(const std::vector<std::string>& words) {
     printSensors(points.view(), *options.orientation.hints, pcl_result.normals, ours.normals);
   }
   if (picture) {
-    View view;
     writePng(beside({drawScene(sceneOf(table, points, pcl_result.normals, common.threads), view),
                      drawScene(sceneOf(table, points, ours.normals, common.threads), view)}),
              *picture);

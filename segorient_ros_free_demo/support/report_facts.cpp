@@ -70,7 +70,8 @@ void readSegments(const Tree& report, Facts& facts) {
   }
   for (const auto& [key, label] : report.get_child("hard_segments")) {
     const auto number = label.get_value<std::size_t>();
-    if (number < kMostSegments) of(number).hard = true;
+    if (number >= kMostSegments) throw boost::property_tree::ptree_error("no label");
+    of(number).hard = true;
   }
 }
 
@@ -94,7 +95,8 @@ std::vector<std::array<double, 3>> readSensors(const std::string& path) {
   std::vector<std::array<double, 3>> out;
   if (fileEnding(path) == ".json") {
     try {
-      for (const auto& [key, s] : readTree(path).get_child("sensors")) out.push_back(place(s));
+      const Tree tree = readTree(path);
+      for (const auto& [key, s] : tree.get_child("sensors")) out.push_back(place(s));
     } catch (const boost::property_tree::ptree_error&) {
       throw FileError(path, "has no list of sensors");
     }

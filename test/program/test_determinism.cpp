@@ -52,7 +52,8 @@ INSTANTIATE_TEST_SUITE_P(
         Run{"ldt_recomputed", {"normals", "--normals", "ldt", "--recompute", "2"}, "out.pcd"},
         Run{"awas3", {"normals", "--normals", "awas3"}, "out.pcd"},
         Run{"segment", {"segment"}, "out.pcd"}, Run{"triangulate", {"triangulate"}, "out.vtk"},
-        Run{"knn", {"knn"}, "out.csv"}, Run{"render", {"render"}, "out.png"}),
+        Run{"knn", {"knn"}, "out.csv"}, Run{"render", {"render"}, "out.png"},
+        Run{"page", {"render", "--points", "5000"}, "out.html"}),
     [](const testing::TestParamInfo<Run>& run) { return std::string(run.param.name); });
 
 // The shipped cloud with its rows in another order, as text.

@@ -5,6 +5,7 @@
 import inspect
 import json
 import os
+import re
 import signal
 import subprocess
 import sys
@@ -12,6 +13,9 @@ import tempfile
 import threading
 import time
 import unittest
+import urllib.request
+from pathlib import Path
+from unittest import mock
 
 import numpy as np
 
@@ -73,6 +77,46 @@ class Orient(unittest.TestCase):
         self.assertEqual(set(np.unique(result.components)), {0})
         normals, *_ = result  # a plain tuple as well
         self.assertIs(normals, result.normals)
+
+    def test_the_result_shows_itself_as_one_page(self):
+        points, _, _ = cube()
+        cloud = segorient.orient(points + MAP, viewpoints=np.tile(MAP + [0.0, 0.0, 9.0], (len(points), 1)))
+        with tempfile.TemporaryDirectory() as directory:
+            path = Path(directory) / "cloud.html"
+            cloud.save_html(path, points=500, title="<a cube>")
+            page = path.read_text()
+            self.assertEqual(os.listdir(directory), ["cloud.html"])
+            head = json.loads(re.search('id="head">(.*?)</script>', page, re.DOTALL).group(1))
+            self.assertEqual(head["title"], "<a cube>")
+            self.assertEqual((head["points"], head["all"]), (500, len(points)))
+            self.assertLess(np.abs(np.array(head["low"]) - (points + MAP).min(axis=0)).max(), 0.01)
+            self.assertEqual(len(head["sensors"]), 1)
+            self.assertIn("by ", head["segments"][0]["text"])
+            for name in ("positions", "normals", "labels", "confidences"):
+                self.assertIn(f'id="{name}"', page)
+            self.assertNotRegex(page.replace("http://www.w3.org", ""), "https?://")
+            missing = Path(directory) / "none" / "cloud.html"
+            with self.assertRaises(OSError):
+                cloud.save_html(missing)
+            for wrong in (0, -1):
+                with self.assertRaises(ValueError):
+                    cloud.save_html(path, points=wrong)
+            with self.assertRaises(TypeError):
+                cloud.save_html(path, points="many")
+            self.assertEqual(path.read_text(), page)  # what was there stays
+        frame = cloud._repr_html_()
+        self.assertTrue(frame.startswith("<iframe") and frame.endswith("</iframe>"))
+        self.assertIn("&lt;canvas", frame)
+        with mock.patch("webbrowser.open") as opened:
+            cloud.show()
+        shown = Path(urllib.request.url2pathname(opened.call_args.args[0][len("file://"):]))
+        self.assertIn("<canvas", shown.read_text())
+        shown.unlink()
+        shown.parent.rmdir()
+
+    def test_a_page_of_nothing_and_of_broken_points(self):
+        for points in (np.zeros((0, 3)), np.zeros((1, 3)), np.full((3, 3), np.nan)):
+            self.assertIn("iframe", segorient.orient(points)._repr_html_())
 
     def test_a_cube_far_from_the_origin_loses_nothing_in_float64(self):
         points, outward, face = cube()
