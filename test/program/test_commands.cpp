@@ -2,7 +2,8 @@
 // Copyright (c) 2026, the segorient authors
 // triangulate, knn, compare and view on the shipped Fandisk.
 #include <gtest/gtest.h>
-#include <boost/property_tree/json_parser.hpp>#include <boost/property_tree/ptree.hpp>
+#include <boost/property_tree/json_parser.hpp>
+#include <boost/property_tree/ptree.hpp>
 
 #include <cmath>
 #include <cstdlib>

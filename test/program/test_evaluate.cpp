@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026, the segorient authors
 // The whole program on the shipped Fandisk, and evaluate on results whose score is known.
-#include <boost/property_tree/json_parser.hpp>#include <gtest/gtest.h>
+#include <gtest/gtest.h>
+#include <boost/property_tree/json_parser.hpp>
 
 #include <cmath>
 #include <set>

@@ -3,6 +3,7 @@
 // Options that all commands share, warnings, hints, the report's page, and Ctrl-C.
 #include <gtest/gtest.h>
 #include <sys/wait.h>
+
 #include <boost/property_tree/json_parser.hpp>
 
 #include <signal.h>
