@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "common/median.h"
+#include "features/scan_scale.h"
 #include "features/sheet_fit.h"
 
 namespace segorient {
@@ -225,6 +226,15 @@ SheetNormals estimateSheetNormals(const PointView& points, const Neighborhoods& 
     out.spacing[i] = detail::meanDistance(points, nb, i, 6);
     const Offsets o = gatherOffsets(points, nb, i, out.spacing[i]);
     store(fitPoint(o, smallest, noise, options), i, out, lopsided);
+  }
+  if (options.scan_scales && !noise.thin &&
+      detail::needsScanScales(points, nb, out.scale, options.threads)) {
+    const std::vector<detail::ScanPlane> planes =
+        detail::fitScanPlanes(points, out.spacing, out.scale, options.threads);
+    for (std::size_t i = 0; i < n; ++i) {
+      if (planes[i].scale == 0) continue;
+      store({planes[i].plane, planes[i].plane.variation(), {}}, i, out, lopsided);
+    }
   }
   judgeReliability(lopsided, out);
   return out;

@@ -18,6 +18,9 @@ struct SheetNormalOptions {
   bool split_walls = true;     ///< keep the points of a parallel wall nearby out of the fit
   bool dominant_plane = true;  ///< at edges, fit the plane that most neighbours lie on
   int threads = 0;             ///< see resolveThreads()
+  /// For what sensors saw: where noise and rings ask for larger neighbourhoods than the cloud's
+  /// median does, up to 60. Not for solids, whose thin walls it takes for noise.
+  bool scan_scales = false;
 };
 
 /// Normals that each come from one sheet of the surface (one wall of a plate, one face at an edge),
@@ -46,6 +49,9 @@ struct SheetNormals {
 /// lie on; then twice: Otsu's threshold on the offsets along the normal tells two walls apart, and
 /// the plane is fitted again to the point's own. Walls more than 1.25 spacings apart (2 in thin
 /// clouds, see NoiseLevel) are no walls to it.
+///
+/// With scan_scales, points that ask for clearly larger neighbourhoods than that, as in scans near
+/// their sensor and between rings, have planes of up to 60 neighbours, if there are many of them.
 ///
 /// \param points distinct finite points
 /// \param neighborhoods their neighbours: kSheetNeighbors beside the point itself, or as many as

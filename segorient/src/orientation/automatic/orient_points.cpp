@@ -19,7 +19,8 @@ AutoNormals orientPoints(const PointView& points, const Neighborhoods& neighborh
                          const std::function<void(const char*, double)>& begin) {
   AutoNormals out;
   if (begin) begin("normals", 0.3);
-  const SheetNormalOptions normal_options{settings.split_walls, settings.dominant_plane, threads};
+  SheetNormalOptions normal_options{settings.split_walls, settings.dominant_plane, threads};
+  normal_options.scan_scales = hints.has_viewpoint || !hints.sensors.empty();
   SheetNormals sheets = estimateSheetNormals(points, neighborhoods, normal_options);
   out.spacing = median(sheets.spacing);
   if (begin) begin("segmentation", 0.48);

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the segorient authors
+#pragma once
+
+#include <segorient/common/neighborhoods.h>
+#include <segorient/common/point_view.h>
+
+#include <vector>
+
+#include "features/sheet_fit.h"
+
+namespace segorient::detail {
+
+/// Whether a cloud has many points whose noise asks for clearly larger neighbourhoods than the
+/// cloud's median does: scans have, whose spacing falls far below the noise near the sensor, and
+/// whose nearest neighbours are of one ring or one step of depth.
+/// \param smallest neighbourhood that the cloud's noise allows
+/// \param neighborhoods kSheetNeighbors of each point
+bool needsScanScales(const PointView& points, const Neighborhoods& neighborhoods, int smallest,
+                     int threads);
+
+struct ScanPlane {
+  Plane plane;        ///< offsets in spacings of the point
+  int scale = 0;      ///< neighbours; 0 where `smallest` will do and there is no plane
+  float noise = 0.F;  ///< standard deviation, in spacings of the point
+};
+
+/// Planes at the scale that the noise around each point asks for.
+///
+/// Noise saturates as neighbourhoods grow, what curvature and edges do goes on growing: of the
+/// residuals of 8 to 60 neighbours, medians over the points around, the first from which they stay
+/// flat is the noise. The scale is the smallest at which that noise turns a plane's normal by less
+/// than 3.5 degrees, and at which the neighbours spread in two directions.
+/// \param spacing one a point: mean distance to the 6 nearest
+/// \return one a point
+std::vector<ScanPlane> fitScanPlanes(const PointView& points, const std::vector<float>& spacing,
+                                     int smallest, int threads);
+
+}  // namespace segorient::detail

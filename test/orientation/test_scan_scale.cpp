@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the segorient authors
+// Normals where the nearest neighbours are of one ring, or below the noise: planes are the oracle.
+#include <gtest/gtest.h>
+
+#include <random>
+
+#include "features/scan_scale.h"
+#include "sheet_fixture.h"
+
+namespace segorient::test {
+namespace {
+
+// A plane of lines ten times as far apart as points along them, with noise across it of as much as
+// these are apart.
+std::vector<float> ringPlane(unsigned seed) {
+  std::mt19937 rng(seed);
+  std::normal_distribution<float> gauss(0.F, 0.02F);
+  std::vector<float> xyz;
+  for (int line = 0; line < 20; ++line) {
+    for (int i = 0; i < 200; ++i) {
+      const float x = 0.02F * static_cast<float>(i) + gauss(rng);
+      const float y = 0.2F * static_cast<float>(line);
+      xyz.insert(xyz.end(), {x, y, 0.3F * x + 0.5F * y + gauss(rng), 0.F});
+    }
+  }
+  return xyz;
+}
+
+double shareOfPlane(const std::vector<float>& xyz, bool scan_scales) {
+  SheetNormalOptions options;
+  options.scan_scales = scan_scales;
+  const SheetNormals sheets = estimateSheetNormals(viewOf(xyz), neighborsOf(xyz), options);
+  std::vector<float> truth;
+  const float length = std::sqrt(1.F + 0.3F * 0.3F + 0.5F * 0.5F);
+  for (std::size_t i = 0; i < xyz.size() / 4; ++i) {
+    truth.insert(truth.end(), {-0.3F / length, -0.5F / length, 1.F / length, 0.F});
+  }
+  return shareWithin(sheets.normals, truth, 15.0);
+}
+
+TEST(ScanScale, NeighboursSpanSeveralRings) {
+  const std::vector<float> xyz = ringPlane(80);
+  EXPECT_LT(shareOfPlane(xyz, false), 0.7) << "one ring has any normal";
+  EXPECT_GE(shareOfPlane(xyz, true), 0.95);
+}
+
+TEST(ScanScale, EvenCloudsKeepTheirNormals) {
+  for (const double noise : {0.0, 0.1}) {
+    const LabelledCloud cloud = sample("bracket", bracket(), 8000, 81, noise);
+    SheetNormalOptions with;
+    with.scan_scales = true;
+    const Neighborhoods table = neighborsOf(cloud.xyz);
+    EXPECT_EQ(estimateSheetNormals(viewOf(cloud.xyz), table).normals,
+              estimateSheetNormals(viewOf(cloud.xyz), table, with).normals);
+  }
+}
+
+TEST(ScanScale, NoiseIsWhatStaysAsScalesGrow) {
+  const std::vector<float> xyz = ringPlane(82);
+  std::vector<float> spacing;
+  const Neighborhoods table = neighborsOf(xyz);
+  for (std::size_t i = 0; i < table.size(); ++i) {
+    spacing.push_back(detail::meanDistance(viewOf(xyz), table, i, 6));
+  }
+  const std::vector<detail::ScanPlane> planes = detail::fitScanPlanes(viewOf(xyz), spacing, 8, 0);
+  std::size_t near = 0;
+  for (std::size_t i = 0; i < planes.size(); ++i) {
+    const float noise = planes[i].noise * spacing[i];
+    near += planes[i].scale >= 40 && noise > 0.012F && noise < 0.028F ? 1U : 0U;
+  }
+  EXPECT_GE(near, planes.size() * 9 / 10);
+}
+
+TEST(ScanScale, FewPointsAndLines) {
+  std::vector<float> line;
+  for (int i = 0; i < 40; ++i) line.insert(line.end(), {static_cast<float>(i), 0.F, 0.F, 0.F});
+  const std::vector<float> spacing(40, 1.F);
+  for (const detail::ScanPlane& p : detail::fitScanPlanes(viewOf(line), spacing, 8, 0)) {
+    EXPECT_EQ(p.scale, 0) << "a line has no plane";
+  }
+  EXPECT_TRUE(detail::fitScanPlanes({nullptr, 4, 0}, {}, 8, 0).empty());
+}
+
+}  // namespace
+}  // namespace segorient::test
