@@ -7,8 +7,8 @@
 
 #include "common/median.h"
 #include "features/sheet_normals.h"
+#include "orientation/automatic/sensor_signs.h"
 #include "orientation/automatic/sheet_filter.h"
-#include "orientation/sensors/sensor_signs.h"
 #include "orientation/winding/winding_normals.h"
 #include "segmentation/sheet_segmentation.h"
 

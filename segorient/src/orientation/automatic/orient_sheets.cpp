@@ -10,8 +10,8 @@
 #include "orientation/automatic/border_votes.h"
 #include "orientation/automatic/loose_parts.h"
 #include "orientation/automatic/segment_clusters.h"
+#include "orientation/automatic/sensor_signs.h"
 #include "orientation/sensors/hint_votes.h"
-#include "orientation/sensors/sensor_signs.h"
 #include "orientation/sensors/viewpoint_fit.h"
 #include "orientation/winding/winding_components.h"
 

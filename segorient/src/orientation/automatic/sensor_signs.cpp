@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026, the segorient authors
-#include "orientation/sensors/sensor_signs.h"
+#include "orientation/automatic/sensor_signs.h"
 
 #include <algorithm>
 #include <cmath>
