@@ -94,6 +94,8 @@ void addSensors(const OrientationHints& hints, const PreparedCloud& cloud,
       std::copy(place.begin(), place.end(), out);
     }
   }
+  const auto known = [](float v) { return std::isfinite(v); };
+  if (std::none_of(sensors.begin(), sensors.end(), known)) sensors.clear();
 }
 
 void addSeeds(const OrientationHints& hints, PreparedCloud& cloud,
