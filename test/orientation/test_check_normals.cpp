@@ -12,6 +12,7 @@
 namespace segorient::test {
 namespace {
 
+constexpr std::size_t kPoints = 2000;
 constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
 
 struct Sample {
@@ -41,7 +42,7 @@ void addSphere(float x, float radius, std::size_t count, unsigned seed, float no
 
 Sample sphere(unsigned seed = 5, float noise = 0.F) {
   Sample out;
-  addSphere(0.F, 1.F, 4000, seed, noise, out);
+  addSphere(0.F, 1.F, kPoints, seed, noise, out);
   return out;
 }
 
@@ -53,12 +54,12 @@ NormalCheck check(const Sample& sample, const OrientationHints& hints = {}) {
 }
 
 TEST(CheckNormals, RightOnesAreRightWithNoiseAsWell) {
-  for (const float noise : {0.F, 0.01F, 0.02F}) {
+  for (const float noise : {0.F, 0.02F}) {
     const NormalCheck found = check(sphere(7, noise));
     EXPECT_TRUE(found.places.empty()) << noise;
     EXPECT_EQ(found.at_fault, 0U);
-    EXPECT_GT(found.judged, 3900U);
-    EXPECT_EQ(found.faults.size(), 4000U);
+    EXPECT_GT(found.judged, kPoints - kPoints / 40);
+    EXPECT_EQ(found.faults.size(), kPoints);
   }
 }
 
@@ -89,23 +90,23 @@ TEST(CheckNormals, ScatteredOnesProveNothing) {
 
 TEST(CheckNormals, OneOfTwoBallsInsideOut) {
   Sample sample;
-  addSphere(0.F, 1.F, 4000, 1, 0.F, sample);
-  addSphere(5.F, 0.5F, 2000, 2, 0.F, sample);
-  for (std::size_t i = 4000; i < 6000; ++i) sample.turn(i);
+  addSphere(0.F, 1.F, kPoints, 1, 0.F, sample);
+  addSphere(5.F, 0.5F, 1000, 2, 0.F, sample);
+  for (std::size_t i = kPoints; i < kPoints + 1000; ++i) sample.turn(i);
   const NormalCheck found = check(sample);
   ASSERT_EQ(found.places.size(), 1U);
   EXPECT_EQ(found.places[0].fault, NormalFault::INSIDE_OUT);
-  EXPECT_EQ(found.places[0].points, 2000U);
+  EXPECT_EQ(found.places[0].points, 1000U);
   EXPECT_NEAR(found.places[0].center[0], 5.0, 0.05);
 }
 
 // The walls of a cavity point into it.
 TEST(CheckNormals, ACavityIsRight) {
   Sample sample;
-  addSphere(0.F, 1.F, 6000, 1, 0.F, sample);
-  addSphere(0.F, 0.5F, 2000, 2, 0.F, sample);
+  addSphere(0.F, 1.F, 3000, 1, 0.F, sample);
+  addSphere(0.F, 0.5F, 1000, 2, 0.F, sample);
   EXPECT_EQ(check(sample).places.size(), 1U) << "no cavity if both point away from the middle";
-  for (std::size_t i = 6000; i < 8000; ++i) sample.turn(i);
+  for (std::size_t i = 3000; i < 4000; ++i) sample.turn(i);
   EXPECT_TRUE(check(sample).places.empty());
 }
 

@@ -79,6 +79,7 @@ const std::map<std::string, std::set<std::string>>& below() {
       {"orientation", {"common", "search", "features", "segmentation", "surface"}},
       {"orientation/winding", {"common", "search", "segmentation", "orientation"}},
       {"orientation/sensors", {"common", "search", "features", "segmentation", "orientation"}},
+      {"orientation/checks", {"common", "search", "segmentation", "orientation"}},
       {"orientation/paper", {"common", "search", "segmentation", "surface", "orientation"}},
       {"orientation/automatic",
        {"common", "search", "features", "segmentation", "orientation", "orientation/winding",

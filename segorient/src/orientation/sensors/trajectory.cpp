@@ -20,10 +20,13 @@ bool isFinite(const Trajectory::Pose& p) {
          std::isfinite(p.position[2]);
 }
 
-// Whether the points' times would meet the trajectory if they were scaled and shifted.
+// Whether the trajectory would cover at least half of the points' time if that were scaled and
+// shifted; less is no explanation, as long spans meet many others.
 bool meet(const Trajectory& trajectory, const TrajectoryJoin& join, double factor, double shift) {
-  return factor * join.first_time + shift <= trajectory.end() &&
-         factor * join.last_time + shift >= trajectory.begin();
+  const double first = factor * join.first_time + shift;
+  const double last = factor * join.last_time + shift;
+  const double common = std::min(last, trajectory.end()) - std::max(first, trajectory.begin());
+  return common >= 0.5 * (last - first) && common >= 0.0;
 }
 
 // One of the known differences between time bases, or nothing.
