@@ -119,10 +119,9 @@ bool readScan(InputFile& file, std::size_t number, std::size_t& numbers_a_point,
       file.fail("is cut short: it ends within scan " + std::to_string(number));
     }
     const bool known = row.size() == 3 || row.size() == 4 || row.size() == 7;
-    if (!known || (numbers_a_point != 0 && row.size() > 3 && row.size() != numbers_a_point)) {
-      file.failLine("is no point: x y z, intensity, and perhaps red green blue");
-    }
-    if (row.size() > 3) numbers_a_point = row.size();
+    if (!known) file.failLine("is no point: x y z, intensity, and perhaps red green blue");
+    // Scans with colours and without may stand in one file.
+    numbers_a_point = std::max(numbers_a_point, row.size());
     p.intensity = row.size() > 3 ? static_cast<float>(row[3]) : 0.F;
     p.rgb = row.size() == 7 ? colorOf(row) : 0;
     if (row[0] == 0.0 && row[1] == 0.0 && row[2] == 0.0) continue;  // nothing was seen
