@@ -318,7 +318,7 @@ class OtherStages(unittest.TestCase):
             self.assertEqual((camera["kind"], camera["sure"]), ("camera", True))
             np.testing.assert_allclose([camera[a] for a in "xyz"], shift, atol=0.05)
             np.testing.assert_array_equal(found.sensor_of, np.zeros(len(points), np.int32))
-        self.assertEqual(segorient.sensors(sphere()).sensors, [])
+        self.assertEqual(segorient.sensors(sphere()[0]).sensors, [])
         self.assertRaises(ValueError, segorient.sensors, points, width=-1)
         self.assertRaises(ValueError, segorient.sensors, points, suggestions=[1.0, 2.0, 3.0])
         self.assertRaises(TypeError, segorient.orient, points, find_sensors=1)

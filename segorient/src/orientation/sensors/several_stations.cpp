@@ -47,19 +47,39 @@ class Sum {
 
   // Each station in turn to where the cost is least, what it can see left as it was meanwhile.
   void refine(double step) {
-    for (std::size_t j = 0; j < positions_.size(); ++j) {
-      const std::vector<float> others = sumWithout(j);
-      const auto cost = [&](const std::vector<double>& v) {
-        densityAt({v[0], v[1], v[2]}, seen_[j], trial_);
-        for (std::size_t i = 0; i < trial_.size(); ++i) trial_[i] += others[i];
-        return static_cast<double>(costOfSum(trial_));
-      };
-      std::vector<double> values(positions_[j].begin(), positions_[j].end());
-      minimize(cost, {step, step, step}, kEvaluations, values);
-      positions_[j] = {values[0], values[1], values[2]};
-      densityAt(positions_[j], seen_[j], densities_[j]);
-    }
+    for (std::size_t j = 0; j < positions_.size(); ++j) refineOne(j, step);
     look();
+  }
+
+  // Tries each station on the other side of the floor or wall that is nearest to it, where what
+  // lies in that plane has the same density: walls and floors beyond have not.
+  void unmirror(double step) {
+    for (std::size_t j = 0; j < positions_.size(); ++j) {
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        const float before = cost();
+        const Position old = positions_[j];
+        if (!mirror(axis, positions_[j])) continue;
+        look();
+        refineOne(j, step);
+        look();
+        if (cost() < before) continue;
+        positions_[j] = old;
+        look();
+      }
+    }
+  }
+
+  void refineOne(std::size_t j, double step) {
+    const std::vector<float> others = sumWithout(j);
+    const auto cost = [&](const std::vector<double>& v) {
+      densityAt({v[0], v[1], v[2]}, seen_[j], trial_);
+      for (std::size_t i = 0; i < trial_.size(); ++i) trial_[i] += others[i];
+      return static_cast<double>(costOfSum(trial_));
+    };
+    std::vector<double> values(positions_[j].begin(), positions_[j].end());
+    minimize(cost, {step, step, step}, kEvaluations, values);
+    positions_[j] = {values[0], values[1], values[2]};
+    densityAt(positions_[j], seen_[j], densities_[j]);
   }
 
   // Places that a station might be put to, all at once.
@@ -133,6 +153,29 @@ class Sum {
   }
 
  private:
+  // In the plane of the nearest piece that is across the axis. \return false if there is none
+  bool mirror(std::size_t axis, Position& position) const {
+    constexpr float kAcross = 0.95F;
+    const std::vector<float>& normal =
+        axis == 0 ? patches_.nx : (axis == 1 ? patches_.ny : patches_.nz);
+    const std::vector<float>& center =
+        axis == 0 ? patches_.x : (axis == 1 ? patches_.y : patches_.z);
+    double least = -1.0;
+    double plane = 0.0;
+    for (std::size_t i = 0; i < patches_.size(); ++i) {
+      if (std::fabs(normal[i]) < kAcross) continue;
+      const double dx = static_cast<double>(patches_.x[i]) - position[0];
+      const double dy = static_cast<double>(patches_.y[i]) - position[1];
+      const double dz = static_cast<double>(patches_.z[i]) - position[2];
+      const double squared = dx * dx + dy * dy + dz * dz;
+      if (least >= 0.0 && squared >= least) continue;
+      least = squared;
+      plane = static_cast<double>(center[i]);
+    }
+    position[axis] = 2.0 * plane - position[axis];
+    return least >= 0.0;
+  }
+
   void look() {
     for (std::size_t j = 0; j < positions_.size(); ++j) {
       seen_[j].resize(patches_.size());
@@ -208,6 +251,7 @@ Stations searchStations(const DensityPatches& patches, const Occupancy& occupanc
   }
   const DensityPatches fine = patches.thinned(kFinePieces);
   Sum found(fine, occupancy, axis, out.positions);
+  found.unmirror(kStep * diagonal);
   for (int round = 0; round < kFineRounds; ++round) found.refine(kFineStep * diagonal);
   out.positions = found.positions();
   out.cost = found.cost();
