@@ -25,7 +25,8 @@ constexpr double kStep = 0.02;             // of the extent
 constexpr double kFineStep = 0.005;
 constexpr int kEvaluations = 50;
 constexpr int kFineRounds = 2;
-constexpr int kRelocations = 3;  // at most, for each number of stations
+constexpr int kRelocations = 3;   // at most, for each number of stations
+constexpr float kClearly = 0.9F;  // of the cost: a mirror image differs by chance, too
 constexpr int kAlternatives = 200;
 constexpr std::size_t kMostRelocated = 6;  // more stations than that find places by their number
 // Of the constant's cost: stations that gain less than this are not there.
@@ -62,7 +63,7 @@ class Sum {
         look();
         refineOne(j, step);
         look();
-        if (cost() < before) continue;
+        if (cost() < kClearly * before) continue;
         positions_[j] = old;
         look();
       }
