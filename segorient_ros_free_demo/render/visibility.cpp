@@ -24,7 +24,9 @@ constexpr float kSameSheet = 0.82F;   // cosine of 35 degrees, as for edges
 constexpr float kNoise = 6.F;         // standard deviations
 constexpr float kTouch = 0.1F;        // of a radius: so far before a surface, a point is on it
 constexpr float kLeastSlope = 0.05F;  // a disc seen from its edge still ends somewhere
-constexpr int kTile = 8;              // pixels
+constexpr float kFarBehind = 4.F;     // reaches
+constexpr std::uint32_t kNone = 0xffffffffU;
+constexpr int kTile = 8;  // pixels
 
 float dot(const Vec& a, const Vec& b) {
   return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
@@ -37,20 +39,27 @@ float reachOf(const FlatSplat& s) {
 // The splats that face the viewer, by tiles of the picture.
 class Tiles {
  public:
-  Tiles(const std::vector<FlatSplat>& flat, const std::vector<Side>& sides, const View& view)
+  // Only those tiles are filled in which one of `asked` lies, and with the nearest of each pixel: a
+  // dense cloud in a small picture would take for ever.
+  Tiles(const std::vector<FlatSplat>& flat, const std::vector<std::uint32_t>& nearest,
+        const std::vector<std::uint32_t>& asked, const View& view)
       : columns_(static_cast<int>(view.width) / kTile + 1),
         rows_(static_cast<int>(view.height) / kTile + 1),
         first_(static_cast<std::size_t>(columns_) * static_cast<std::size_t>(rows_) + 1, 0) {
+    std::vector<char> wanted(first_.size(), 0);
+    for (const std::uint32_t i : asked) wanted[tileOf(flat[i].center)] = 1;
     const auto each = [&](const auto& visit) {
-      for (std::size_t i = 0; i < flat.size(); ++i) {
-        if (sides[i] != Side::Front) continue;
+      for (const std::uint32_t i : nearest) {
+        if (i == kNone) continue;
         const FlatSplat& s = flat[i];
         const float reach = reachOf(s);
         const int left = tile(s.center[0] - reach, columns_);
         const int right = tile(s.center[0] + reach, columns_);
         const int bottom = tile(s.center[1] + reach, rows_);
         for (int y = tile(s.center[1] - reach, rows_); y <= bottom; ++y) {
-          for (int x = left; x <= right; ++x) visit(at(x, y), i);
+          for (int x = left; x <= right; ++x) {
+            if (wanted[at(x, y)] != 0) visit(at(x, y), i);
+          }
         }
       }
     };
@@ -64,12 +73,13 @@ class Tiles {
   // Whether any splat of the tile where p is satisfies the test.
   template <typename Test>
   bool any(const Vec& p, const Test& test) const {
-    const std::size_t t = at(tile(p[0], columns_), tile(p[1], rows_));
+    const std::size_t t = tileOf(p);
     return std::any_of(splats_.begin() + static_cast<std::ptrdiff_t>(first_[t]),
                        splats_.begin() + static_cast<std::ptrdiff_t>(first_[t + 1]), test);
   }
 
  private:
+  std::size_t tileOf(const Vec& p) const { return at(tile(p[0], columns_), tile(p[1], rows_)); }
   std::size_t at(int x, int y) const {
     return static_cast<std::size_t>(y) * static_cast<std::size_t>(columns_) +
            static_cast<std::size_t>(x);
@@ -109,6 +119,44 @@ bool hides(const FlatSplat& q, const FlatSplat& p, float noise) {
   return lift > least * std::sqrt(dot(to, to));
 }
 
+float tolerance(const Splat& splat, const FlatSplat& flat, float scale) {
+  return kNoise * splat.noise * scale + kTouch * flat.radius;
+}
+
+// Most points of a dense cloud are hidden by one that lies in the same pixel and so far before them
+// that nothing else need be asked; these leave `backs`.
+// Returns the nearest that faces the viewer in each pixel, or kNone.
+std::vector<std::uint32_t> hideFarBehind(const std::vector<Splat>& splats,
+                                         const std::vector<FlatSplat>& flat, const View& view,
+                                         float scale, std::vector<Side>& sides,
+                                         std::vector<std::uint32_t>& backs) {
+  std::vector<std::uint32_t> nearest(view.width * view.height, kNone);
+  const auto pixelOf = [&](const Vec& c) {
+    const auto x = std::clamp(c[0], 0.F, static_cast<float>(view.width - 1));
+    const auto y = std::clamp(c[1], 0.F, static_cast<float>(view.height - 1));
+    return static_cast<std::size_t>(y) * view.width + static_cast<std::size_t>(x);
+  };
+  for (std::size_t i = 0; i < flat.size(); ++i) {
+    if (sides[i] != Side::Front) continue;
+    std::uint32_t& first = nearest[pixelOf(flat[i].center)];
+    if (first == kNone || flat[i].center[2] > flat[first].center[2]) {
+      first = static_cast<std::uint32_t>(i);
+    }
+  }
+  const auto isHidden = [&](std::uint32_t i) {
+    const std::uint32_t q = nearest[pixelOf(flat[i].center)];
+    if (q == kNone) return false;
+    const float before = flat[q].center[2] - flat[i].center[2];
+    if (!(before > kFarBehind * std::max(reachOf(flat[q]), tolerance(splats[i], flat[i], scale)))) {
+      return false;
+    }
+    sides[i] = Side::Hidden;
+    return true;
+  };
+  backs.erase(std::remove_if(backs.begin(), backs.end(), isHidden), backs.end());
+  return nearest;
+}
+
 }  // namespace
 
 std::vector<Side> judgeSides(const std::vector<Splat>& splats, const std::vector<FlatSplat>& flat,
@@ -121,13 +169,14 @@ std::vector<Side> judgeSides(const std::vector<Splat>& splats, const std::vector
     backs.push_back(static_cast<std::uint32_t>(i));
   }
   if (backs.empty()) return sides;
-  const Tiles tiles(flat, sides, view);
+  const auto nearest = hideFarBehind(splats, flat, view, scale, sides, backs);
+  const Tiles tiles(flat, nearest, backs, view);
   const auto count = static_cast<std::ptrdiff_t>(backs.size());
 #pragma omp parallel for schedule(dynamic, 1024) num_threads(resolveThreads(view.threads))
   for (std::ptrdiff_t b = 0; b < count; ++b) {
     const std::size_t i = backs[static_cast<std::size_t>(b)];
     const FlatSplat& p = flat[i];
-    const float noise = kNoise * splats[i].noise * scale + kTouch * p.radius;
+    const float noise = tolerance(splats[i], p, scale);
     if (tiles.any(p.center, [&](std::uint32_t q) { return hides(flat[q], p, noise); })) {
       sides[i] = Side::Hidden;
     } else if (-p.normal[2] < splats[i].turn) {
