@@ -13,6 +13,7 @@
 #include <mutex>
 #include <vector>
 
+#include "search/box_tree.h"
 #include "search/kernels.h"
 #include "search/layout.h"
 
@@ -57,6 +58,11 @@ struct MedianHashIndex::Impl {
                     Workspace& work) const;
   int nearestWithin(const float* q, float limit, std::size_t most,
                     std::vector<pcl::index_t>& indices, std::vector<float>& distances) const;
+  /// The k nearest through boxes, for queries away from the points.
+  /// \param keys work space
+  /// \return false if that is no way to find them
+  bool searchBoxes(const float* q, std::size_t k, float prune, std::vector<std::uint64_t>& keys,
+                   pcl::index_t* indices, float* distances) const;
   void addUnreachable(std::size_t k, Workspace& work) const;
 
   /// All ids in ascending order, made when first needed.
@@ -64,6 +70,15 @@ struct MedianHashIndex::Impl {
   mutable std::once_flag ids_made;
   mutable std::vector<std::uint32_t> ids;
   mutable std::atomic<std::size_t> ids_memory{0};
+
+  /// Whether searchBoxes() finds k nearest, unless distances overflow. Of points in one place, none
+  /// can be left out by boxes.
+  bool boxesServe(std::size_t k) const { return k <= kMostNeighborsInBoxes && layout.flat.empty(); }
+  /// Made by the first query that is away from the points.
+  BoxTree& boxTree() const;
+  std::size_t boxesMemory() const;
+  mutable std::atomic<BoxTree*> boxes{nullptr};
+  ~Impl();
 };
 
 /// Moves an index to the front of a row, in place of the last if it is not there since so many

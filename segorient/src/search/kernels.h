@@ -14,6 +14,7 @@
 #include <limits>
 #include <vector>
 
+#include "search/box_tree.h"
 #include "search/layout.h"
 
 namespace segorient::search {
@@ -160,6 +161,9 @@ struct Guess {
   float limit;    ///< output: the candidates are nearer than this
 };
 
+/// Most neighbours that are kept in order while boxes are searched.
+constexpr std::size_t kMostNeighborsInBoxes = 256;
+
 /// Everything that an all-points search of a region reads and writes besides the layout.
 struct GroupTask {
   std::uint32_t k;  ///< how many neighbours: at most the number of points, or of a radius search
@@ -209,6 +213,8 @@ struct Kernels {
   void (*nearestInRegion)(const LayoutView&, std::size_t region, GroupTask&);
   /// Everything within the radius of every point of a region.
   void (*withinInRegion)(const LayoutView&, std::size_t region, GroupTask&);
+  /// The k nearest through the boxes below a node.
+  void (*nearestInBoxes)(BoxSearch&, const BoxNode* root);
 };
 
 /// The kernels for instructionSet().

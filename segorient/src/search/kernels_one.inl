@@ -9,5 +9,8 @@
 
 #include "search/kernels_all_points.inl"
 
-constexpr Kernels kKernels{kName,          collect,     collectRegion,   gatherAround,
-                           nearestInBlock, sortNearest, nearestInRegion, withinInRegion};
+#include "search/kernels_boxes.inl"
+
+constexpr Kernels kKernels{kName,           collect,        collectRegion,
+                           gatherAround,    nearestInBlock, sortNearest,
+                           nearestInRegion, withinInRegion, nearestInBoxes};

@@ -20,13 +20,39 @@ struct LastQuery {
   std::size_t k = 0;
   float point[3] = {0.0F, 0.0F, 0.0F};
   float limit = 0.0F;  ///< squared distance to the k-th neighbour
+  /// Squared distance from a point to its 16th neighbour, typically, where that was looked up last.
+  float spacing16 = 0.0F;
 
   bool isNear(const float* q) const {
+    // From a place that is away from the points, the k nearest are all about equally far: what is
+    // nearer than a bit more than that are many. On a surface, the shell of kShell of the squared
+    // distance cuts a disc of as many points out.
+    constexpr float kShell = 0.3F;
+    constexpr float kMostInShell = 64.0F;
+    const float most = kMostInShell + 4.0F * static_cast<float>(k);
+    if (!(16.0F * kShell * limit <= most * spacing16)) return false;
     const float dx = q[0] - point[0];
     const float dy = q[1] - point[1];
     const float dz = q[2] - point[2];
     return dx * dx + dy * dy + dz * dz < limit;
   }
+};
+
+/// Whether queries are likely to be away from the points: as long as guesses fail, fewer and fewer
+/// queries begin with one.
+class AwayFromPoints {
+ public:
+  bool isLikely() { return waited_ < wait_ && ++waited_ > 0; }
+  void was(bool away) {
+    wait_ = away ? std::min(2 * wait_ + 1, kLongestWait) : 0;
+    waited_ = 0;
+  }
+  void reset() { was(false); }
+
+ private:
+  static constexpr int kLongestWait = 63;
+  int wait_ = 0;    // queries to begin without a guess
+  int waited_ = 0;  // how many there were
 };
 
 /// The last query whose neighbours are all equally far, as where more points are in one place than
@@ -143,6 +169,14 @@ class SharedBlock {
   Block block_{};
   std::vector<float> floats_;
   std::vector<std::uint32_t> ids_;
+};
+
+/// All of it, about one structure.
+struct Recent {
+  LastQuery last;
+  AwayFromPoints away;
+  CrowdedPlace crowded;
+  SharedBlock shared;
 };
 
 }  // namespace segorient::search

@@ -31,12 +31,20 @@ class Workspace {
   }
   SortScratch sort() { return sort_.scratch(); }
   std::vector<std::pair<float, std::uint32_t>> pairs;
-  LastQuery last;
-  CrowdedPlace crowded;
-  SharedBlock shared;
+  std::vector<std::uint64_t> keys;
+  // Of the two structures that were searched last: some programs ask two in turn.
+  Recent& recent(std::uint64_t index) {
+    if (recent_[latest_].last.index != index) {
+      latest_ = 1 - latest_;
+      if (recent_[latest_].last.index != index) recent_[latest_].away.reset();
+    }
+    return recent_[latest_];
+  }
 
  private:
   static constexpr std::size_t kMostKept = std::size_t{1} << 18;
+  Recent recent_[2];
+  std::size_t latest_ = 0;
   std::vector<float> distance_;
   std::vector<std::uint32_t> id_;
   SortRoom sort_;
@@ -47,6 +55,8 @@ namespace {
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 constexpr float kLeast = std::numeric_limits<float>::denorm_min();
+// Room for what the kernels look at in one go, see VectorList.
+constexpr std::size_t kAtOnce = 1280;
 constexpr std::uint32_t kAll = std::numeric_limits<std::uint32_t>::max();
 
 float squaredGap(const Box& box, const float* q) {
@@ -97,8 +107,8 @@ float keepBest(std::vector<std::pair<float, std::uint32_t>>& best, std::size_t k
 bool MedianHashIndex::Impl::searchShared(const float* q, std::size_t k, Workspace& work,
                                          pcl::index_t* indices, float* distances) const {
   if (k > kMostNeighborsShared) return false;
-  SharedBlock& shared = work.shared;
-  const LastQuery& last = work.last;
+  SharedBlock& shared = work.recent(number).shared;
+  const LastQuery& last = work.recent(number).last;
   if (!shared.covers(number, q, k)) {
     if (last.index != number || last.k != k || !last.isNear(q)) return false;
     if (!shared.refill(*kernels, layout, number, q, last.limit, k)) return false;
@@ -113,22 +123,31 @@ Candidates* MedianHashIndex::Impl::guess(const LayoutView& view, const float* q,
                                          float epsilon, Workspace& work, float& limit) const {
   const float prune = pruneFactor(epsilon);
   // Not where results are approximate: they must not depend on what was asked before.
-  const LastQuery& last = work.last;
+  LastQuery& last = work.recent(number).last;
   const bool near = last.index == number && last.k == k && prune == 1.0F && last.isNear(q);
   const Path path(view, q);
   const Region& region = view.regions[path.region];
+  last.spacing16 = region.spacing16;
   const float outside = squaredGap(view.boxes[view.region_count + path.region], q);
   // Not 0, where many points are in one place.
   float step = std::max(1.3F * region.spacing16 * static_cast<float>(k) / 16.0F, kLeast);
+  // From afar, a sphere that reaches the region cuts all of it at a grazing angle.
+  constexpr float kFar = 16.0F;
+  if (boxesServe(k) && outside > kFar * step) return nullptr;
   limit = near ? 1.3F * last.limit : outside + step;
-  const std::size_t capacity = 4 * k + 4096;
-  for (int attempt = 0; attempt < 8; ++attempt) {
+  // More than these are many equally far, or the place is much denser.
+  const std::size_t most = 4 * k + 64;
+  const std::size_t capacity = most + (boxesServe(k) ? kAtOnce : 4096);
+  // Away from the points, or where they get much sparser, boxes lead there sooner.
+  const int attempts = boxesServe(k) ? 2 : 8;
+  for (int attempt = 0; attempt < attempts; ++attempt) {
     if (!(limit > 0.0F && limit < kInfinity)) return nullptr;
     Candidates& found = work.candidates(capacity);
     const Sphere sphere{{q[0], q[1], q[2]}, limit, limit * prune, static_cast<std::uint32_t>(k)};
     if (!kernels->collect(view, path, sphere, found)) return nullptr;
     if (found.count >= k) {
-      if (found.count > 4 * k + 64) {  // many are equally far, or the place is much denser
+      if (found.count > most) {
+        if (boxesServe(k)) return nullptr;
         keepNearest(found.distance, found.id, found.count, k);
         found.count = k;
       }
@@ -138,8 +157,9 @@ Candidates* MedianHashIndex::Impl::guess(const LayoutView& view, const float* q,
     }
     // Added, not multiplied: the part that leads to the surface does not grow.
     const float missing = 1.4F * static_cast<float>(k) / static_cast<float>(found.count + 1);
-    const float most = attempt < 2 ? 4.0F : 64.0F;  // the spacing may be that of a denser place
-    step = std::max(step, 1e-3F * limit) * std::min(std::max(missing, 1.3F), most);
+    // The spacing may be that of a denser place.
+    const float growth = attempt < 2 ? 4.0F : 64.0F;
+    step = std::max(step, 1e-3F * limit) * std::min(std::max(missing, 1.3F), growth);
     limit += step;
   }
   return nullptr;
@@ -217,16 +237,19 @@ void MedianHashIndex::Impl::addUnreachable(std::size_t k, Workspace& work) const
 void MedianHashIndex::Impl::search(const float* q, std::size_t k, float epsilon,
                                    pcl::index_t* indices, float* distances) const {
   Workspace& work = workspace();
+  Recent& recent = work.recent(number);
   // What is approximate must not depend on what was asked before.
   if (pruneFactor(epsilon) != 1.0F && !in_order) {
     searchAlone(q, k, epsilon, work, indices, distances);
+  } else if (recent.away.isLikely() && searchBoxes(q, k, 1.0F, work.keys, indices, distances)) {
+    // The queries before were away from the points.
   } else if (!searchShared(q, k, work, indices, distances) &&
-             !work.crowded.answer(number, q, k, indices, distances)) {
+             !recent.crowded.answer(number, q, k, indices, distances)) {
     searchAlone(q, k, 0.0F, work, indices, distances);
     const bool crowded = k <= kMostNeighborsShared && distances[0] == distances[k - 1];
-    if (crowded) work.crowded.remember(number, q, k, indices, *distances);
+    if (crowded) recent.crowded.remember(number, q, k, indices, *distances);
   }
-  work.last = {number, k, {q[0], q[1], q[2]}, distances[k - 1]};
+  recent.last = {number, k, {q[0], q[1], q[2]}, distances[k - 1], recent.last.spacing16};
 }
 
 void MedianHashIndex::Impl::searchAlone(const float* q, std::size_t k, float epsilon,
@@ -234,12 +257,14 @@ void MedianHashIndex::Impl::searchAlone(const float* q, std::size_t k, float eps
                                         float* distances) const {
   const LayoutView view(layout);
   float limit = 0.0F;
-  if (Candidates* found = guess(view, q, k, epsilon, work, limit)) {
+  Candidates* const found = guess(view, q, k, epsilon, work, limit);
+  work.recent(number).away.was(found == nullptr);
+  if (found != nullptr) {
     const SortScratch sort = work.sort();
     kernels->sortNearest(found->distance, found->id, found->count, k, limit, sort);
     for (std::size_t i = 0; i < k; ++i) indices[i] = static_cast<pcl::index_t>(sort.id[i]);
     std::copy(sort.distance, sort.distance + k, distances);
-  } else {
+  } else if (!searchBoxes(q, k, pruneFactor(epsilon), work.keys, indices, distances)) {
     nearestFirst(view, q, k, epsilon, work);
     for (std::size_t i = 0; i < k; ++i) {
       distances[i] = work.pairs[i].first;
