@@ -2,6 +2,8 @@
 // Copyright (c) 2026, the segorient authors
 #include "io/cloud_table.h"
 
+#include <segorient/common/bulk_bounds.h>
+
 #include <algorithm>
 #include <cmath>
 #include <cstring>
@@ -23,6 +25,11 @@ bool viewable(const CloudTable& table, const std::array<const Field*, 3>& xyz) {
                                   [](const Field* f) { return f->type == 'F' && f->size == 4; });
   return floats && xyz[1]->offset == xyz[0]->offset + 4 && xyz[2]->offset == xyz[0]->offset + 8 &&
          table.row_bytes % sizeof(float) == 0 && xyz[0]->offset % sizeof(float) == 0;
+}
+
+double farthestCoordinate(const std::array<double, 3>& p, const std::array<double, 3>& origin) {
+  return std::max(
+      {std::abs(p[0] - origin[0]), std::abs(p[1] - origin[1]), std::abs(p[2] - origin[2])});
 }
 
 }  // namespace
@@ -142,28 +149,27 @@ void CloudTable::makeReal(const std::vector<std::string>& names) {
 
 LocalPoints::LocalPoints(const CloudTable& table) {
   const auto xyz = table.xyz();
-  constexpr double kMax = std::numeric_limits<double>::max();
-  std::array<double, 3> low{kMax, kMax, kMax};
-  std::array<double, 3> high{-kMax, -kMax, -kMax};
+  const auto position = [&](std::size_t i) { return table.triple(xyz, i); };
+  const Bounds bulk = bulkBounds(table.size, position);
+  extent_ = bulk.extent();
+  reach_ = bulk.reach();
+  const bool move = bulk.isFar();
+  if (move) origin_ = bulk.middle();
+  // To a neighbourhood that holds a point so far away, floats make the bulk one place.
+  constexpr double kFloatSteps = 16777216.0;  // 2^24
+  const double most = kFloatSteps * extent_ + reach_;
+  bool has_strays = false;
   for (std::size_t i = 0; i < table.size; ++i) {
-    const auto p = table.triple(xyz, i);
-    if (!std::isfinite(p[0]) || !std::isfinite(p[1]) || !std::isfinite(p[2])) continue;
-    ++finite_;
-    for (std::size_t a = 0; a < 3; ++a) {
-      low[a] = std::min(low[a], p[a]);
-      high[a] = std::max(high[a], p[a]);
-    }
+    const auto p = position(i);
+    const bool finite = std::isfinite(p[0]) && std::isfinite(p[1]) && std::isfinite(p[2]);
+    const bool near = finite && farthestCoordinate(p, origin_) <= most;
+    finite_ += near ? 1 : 0;
+    has_strays = has_strays || (finite && !near);
   }
-  for (std::size_t a = 0; a < 3 && finite_ > 0; ++a) {
-    extent_ = std::max(extent_, high[a] - low[a]);
-    reach_ = std::max({reach_, std::abs(low[a]), std::abs(high[a])});
-  }
-  const bool move = reach_ > 2.0 * extent_;
-  for (std::size_t a = 0; a < 3 && move; ++a) origin_[a] = low[a] + 0.5 * (high[a] - low[a]);
 
   view_.size = table.size;
   if (table.size == 0) return;
-  if (!move && viewable(table, xyz)) {
+  if (!move && !has_strays && viewable(table, xyz)) {
     view_.data = reinterpret_cast<const float*>(table.at(*xyz[0], 0));
     view_.stride = table.row_bytes / sizeof(float);
     return;
@@ -171,7 +177,11 @@ LocalPoints::LocalPoints(const CloudTable& table) {
   copy_.resize(3 * table.size);
   for (std::size_t i = 0; i < table.size; ++i) {
     const auto p = table.triple(xyz, i);
-    for (std::size_t a = 0; a < 3; ++a) copy_[3 * i + a] = static_cast<float>(p[a] - origin_[a]);
+    const bool near = farthestCoordinate(p, origin_) <= most;
+    for (std::size_t a = 0; a < 3; ++a) {
+      copy_[3 * i + a] =
+          near ? static_cast<float>(p[a] - origin_[a]) : std::numeric_limits<float>::quiet_NaN();
+    }
   }
   view_.data = copy_.data();
   view_.stride = 3;

@@ -96,16 +96,18 @@ double loadNumber(const std::uint8_t* data, char type, std::uint32_t size);
 ///
 /// Floats hold seven digits. Where a cloud lies further from the origin than twice its extent (map
 /// coordinates, say) it is moved, in double, so that they resolve 1e-7 of its extent; otherwise
-/// `origin` is zero and float fields are viewed in place, without a copy.
+/// `origin` is zero and float fields are viewed in place, without a copy. Strays, such as points at
+/// 0,0,0 among map coordinates, have no say in that (see bulkBounds()); those at more than 2^24
+/// times the extent, where floats end, become NaN.
 class LocalPoints {
  public:
   explicit LocalPoints(const CloudTable& table);  ///< `table` must outlive this object
 
   const PointView& view() const { return view_; }
   const std::array<double, 3>& origin() const { return origin_; }
-  double extent() const { return extent_; }       ///< longest side of the bounding box
-  double reach() const { return reach_; }         ///< largest absolute coordinate
-  std::size_t finite() const { return finite_; }  ///< points without NaN or infinite coordinates
+  double extent() const { return extent_; }       ///< longest side of the bulk's bounding box
+  double reach() const { return reach_; }         ///< largest absolute coordinate of the bulk
+  std::size_t finite() const { return finite_; }  ///< points of the view that are not NaN
 
  private:
   std::vector<float> copy_;

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026, the segorient authors
+#include <segorient/common/bulk_bounds.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -20,24 +22,16 @@ struct Numbers {
 };
 
 // Floats resolve 1e-7 of a range only near 0; text far from it (map coordinates, times) stays in
-// double. The longest range and the largest number of these columns are compared.
+// double. Up to three columns are looked at together.
 bool needsDouble(const Numbers& numbers, const std::vector<std::size_t>& columns) {
-  double extent = 0.0;
-  double reach = 0.0;
-  for (const std::size_t c : columns) {
-    double low = INFINITY;
-    double high = -INFINITY;
-    for (std::size_t i = 0; i < numbers.rows(); ++i) {
-      const double v = numbers.at(i, c);
-      if (!std::isfinite(v)) continue;
-      low = std::min(low, v);
-      high = std::max(high, v);
+  const Bounds bulk = bulkBounds(numbers.rows(), [&](std::size_t row) {
+    std::array<double, 3> p{0.0, 0.0, 0.0};
+    for (std::size_t c = 0; c < std::min<std::size_t>(columns.size(), 3); ++c) {
+      p[c] = numbers.at(row, columns[c]);
     }
-    if (low > high) continue;
-    extent = std::max(extent, high - low);
-    reach = std::max({reach, std::abs(low), std::abs(high)});
-  }
-  return extent > 0.0 && reach > 2.0 * extent;
+    return p;
+  });
+  return bulk.extent() > 0.0 && bulk.isFar();
 }
 
 // Six columns without names are taken for x y z and a normal if all those are of unit length.

@@ -2,6 +2,7 @@
 // Copyright (c) 2026, the segorient authors
 #include "common/compact_cloud.h"
 
+#include <segorient/common/bulk_bounds.h>
 #include <segorient/common/threads.h>
 
 #include <algorithm>
@@ -94,30 +95,26 @@ bool equalXyz(const float* a, const float* b) {
 }
 
 std::vector<Keyed> zOrder(const Source& source) {
-  std::array<double, 3> low;
-  std::array<double, 3> high;
-  low.fill(std::numeric_limits<double>::max());
-  high.fill(std::numeric_limits<double>::lowest());
+  constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
   std::vector<Keyed> items;
   items.reserve(source.size());
   for (std::size_t i = 0; i < source.size(); ++i) {
-    const float* p = source.at(i);
-    if (p == nullptr) continue;
-    for (std::size_t a = 0; a < 3; ++a) {
-      low[a] = std::min(low[a], static_cast<double>(p[a]));
-      high[a] = std::max(high[a], static_cast<double>(p[a]));
-    }
-    items.push_back({0, static_cast<pcl::index_t>(i)});
+    if (source.at(i) != nullptr) items.push_back({0, static_cast<pcl::index_t>(i)});
   }
+  // Strays must not make one cell of all others: what lies outside goes into the outermost cells.
+  const Bounds bulk = bulkBounds(source.size(), [&](std::size_t i) -> std::array<double, 3> {
+    const float* p = source.at(i);
+    if (p == nullptr) return {kNone, kNone, kNone};
+    return {static_cast<double>(p[0]), static_cast<double>(p[1]), static_cast<double>(p[2])};
+  });
   // One scale for all axes, so that cells are cubes.
-  double extent = 0.0;
-  for (std::size_t a = 0; a < 3 && !items.empty(); ++a) extent = std::max(extent, high[a] - low[a]);
-  const double scale = extent > 0.0 ? ((1 << 21) - 1) / extent : 0.0;
+  constexpr double kLastCell = (1 << 21) - 1;
+  const double scale = bulk.extent() > 0.0 ? kLastCell / bulk.extent() : 0.0;
   for (Keyed& item : items) {
     const float* p = source.known(item.row);
     for (std::size_t a = 0; a < 3; ++a) {
-      const auto cell = static_cast<std::uint64_t>((static_cast<double>(p[a]) - low[a]) * scale);
-      item.key |= spreadBits(cell) << a;
+      const double cell = (static_cast<double>(p[a]) - bulk.low[a]) * scale;
+      item.key |= spreadBits(static_cast<std::uint64_t>(std::clamp(cell, 0.0, kLastCell))) << a;
     }
   }
   return items;
