@@ -8,8 +8,11 @@
 #include <segorient/features/ldt_normal_estimation.h>
 #include <segorient/features/plane_normal_estimation.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
+#include <tuple>
+#include <utility>
 
 #include "feature_clouds.h"
 
@@ -111,6 +114,83 @@ TEST(PlaneNormalEstimation, SearchMethodOfAnotherCloudIsRebuilt) {
   ours.setSearchMethod(tree);
   expectSameAsPcl(computed(ours), expected);
   EXPECT_EQ(tree->getInputCloud(), cloud);
+}
+
+/// A search of somebody's own, as plain as it may be: writes into the room that PCL gives it.
+class PlainSearch : public pcl::search::Search<pcl::PointXYZ> {
+ public:
+  PlainSearch() : Search("PlainSearch") {}
+  int nearestKSearch(const pcl::PointXYZ& point, int k, pcl::Indices& indices,
+                     std::vector<float>& distances) const override {
+    EXPECT_GE(indices.size(), static_cast<std::size_t>(k));
+    EXPECT_GE(distances.size(), static_cast<std::size_t>(k));
+    std::vector<std::pair<float, pcl::index_t>> all;
+    for (std::size_t i = 0; i < input_->size(); ++i) {
+      const float d = (point.getVector3fMap() - (*input_)[i].getVector3fMap()).squaredNorm();
+      all.emplace_back(d, static_cast<pcl::index_t>(i));
+    }
+    std::sort(all.begin(), all.end());
+    const int found = std::min(k - missing, static_cast<int>(all.size()));
+    for (int i = 0; i < found; ++i) {
+      std::tie(distances[static_cast<std::size_t>(i)], indices[static_cast<std::size_t>(i)]) =
+          all[static_cast<std::size_t>(i)];
+    }
+    return found;
+  }
+  int radiusSearch(const pcl::PointXYZ&, double, pcl::Indices&, std::vector<float>&,
+                   unsigned int) const override {
+    return 0;
+  }
+  int missing = 0;  ///< finds so many less than it is asked for, and leaves the rest as it is
+};
+
+TEST(PlaneNormalEstimation, SearchThatNeedsRoom) {
+  const Cloud::Ptr cloud = Cloud(torus(400, 5).points).makeShared();
+  const auto plain = pcl::make_shared<PlainSearch>();
+  for (const int missing : {0, 3}) {
+    plain->missing = missing;
+    Plane ours(2);
+    ours.setInputCloud(cloud);
+    ours.setSearchMethod(plain);
+    ours.setKSearch(12);
+    PclPlane theirs;
+    theirs.setInputCloud(cloud);
+    theirs.setKSearch(12 - missing);
+    expectSameAsPcl(computed(ours), computed(theirs));
+  }
+  Plane more;
+  more.setInputCloud(cloud);
+  more.setSearchMethod(plain);
+  plain->missing = 0;
+  more.setKSearch(1000000000);  // all there are
+  EXPECT_EQ(computed(more).size(), cloud->size());
+  more.setKSearch(0);
+  more.setRadiusSearch(0.1);  // finds nothing
+  for (const auto& n : computed(more)) EXPECT_TRUE(std::isnan(n.normal_x));
+}
+
+TEST(NormalEstimation, ConstructorsTakeThreads) {
+  using Out = pcl::Normal;
+  EXPECT_EQ(Plane(4).getNumberOfThreads(), 4U);
+  EXPECT_EQ((LCTNormalEstimation<pcl::PointXYZ, Out>(3).getNumberOfThreads()), 3U);
+  EXPECT_EQ((LDTNormalEstimation<pcl::PointXYZ, Out>(2).getNumberOfThreads()), 2U);
+  EXPECT_EQ((AwASNormalEstimation<pcl::PointXYZ, Out>(1).getNumberOfThreads()), 1U);
+  EXPECT_EQ(Plane().getNumberOfThreads(), 0U);
+}
+
+TEST(PlaneNormalEstimation, AnyNumberOfThreadsGivesTheSame) {
+  const Cloud::Ptr cloud = Cloud(torus(3000, 2).points).makeShared();
+  Normals expected;
+  for (const unsigned int threads : {1U, 7U, 65536U, 4294967295U}) {
+    Plane ours(threads);
+    ours.setInputCloud(cloud);
+    ours.setKSearch(12);
+    const Normals normals = computed(ours);
+    if (threads == 1) expected = normals;
+    for (std::size_t i = 0; i < cloud->size(); ++i) {
+      EXPECT_EQ(normals[i].getNormalVector3fMap(), expected[i].getNormalVector3fMap());
+    }
+  }
 }
 
 TEST(PlaneNormalEstimation, OrganizedWithHoles) {

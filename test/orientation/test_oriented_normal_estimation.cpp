@@ -3,7 +3,9 @@
 #include <gtest/gtest.h>
 #include <pcl/console/print.h>
 #include <segorient/orientation/oriented_normal_estimation.h>
+#include <segorient/search/median_neighbors.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -66,6 +68,40 @@ TEST_F(OrientedNormalEstimationTest, KSearchCountsThePointItself) {
   pcl::PointCloud<pcl::Normal> normals;
   estimation.compute(normals);
   EXPECT_EQ(estimation.getReport().k, 14);
+}
+
+// The radius counts as the k that half of the points have within it.
+TEST_F(OrientedNormalEstimationTest, ARadiusIsAScale) {
+  const LabelledCloud cloud = sphere();
+  const auto points = test::toPcl(cloud);
+  const float radius = 0.15F;
+  std::vector<int> counts;
+  for (const auto& p : *points) {
+    int count = -1;
+    for (const auto& q : *points) {
+      count += (p.getVector3fMap() - q.getVector3fMap()).squaredNorm() < radius * radius ? 1 : 0;
+    }
+    counts.push_back(count);
+  }
+  std::nth_element(counts.begin(), counts.begin() + 1500, counts.end());
+  Estimation by_radius(2);
+  by_radius.setInputCloud(points);
+  by_radius.setRadiusSearch(radius);
+  pcl::PointCloud<pcl::Normal> normals;
+  by_radius.compute(normals);
+  ASSERT_EQ(normals.size(), cloud.size());
+  EXPECT_NEAR(by_radius.getReport().k, counts[1500], 1);
+  for (std::size_t i = 0; i < cloud.size(); ++i) EXPECT_TRUE(test::agrees(normals[i], cloud, i));
+  // As many as that, and no more than make sense.
+  by_radius.setRadiusSearch(10.0);
+  by_radius.compute(normals);
+  EXPECT_EQ(by_radius.getReport().k, search::kMostNeighborsWithin);
+  by_radius.setRadiusSearch(1e-9);
+  by_radius.compute(normals);
+  EXPECT_EQ(normals.size(), cloud.size());
+  by_radius.setKSearch(10);
+  by_radius.compute(normals);
+  EXPECT_TRUE(normals.empty()) << "either k or a radius";
 }
 
 TEST_F(OrientedNormalEstimationTest, OutputBelongsToTheIndices) {

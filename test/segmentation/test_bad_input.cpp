@@ -109,7 +109,7 @@ TEST_F(BadInput, CloudsIndicesAndNormals) {
       segmentation.setInputCloud(bad.cloud);
       segmentation.setIndices(index.indices);
       segmentation.setInputNormals(normals);
-      for (const unsigned int k : {0U, 5U, std::numeric_limits<unsigned int>::max()}) {
+      for (const unsigned int k : {1U, 5U, std::numeric_limits<unsigned int>::max()}) {
         segmentation.setNumberOfNeighbours(k);
         checkSegments(bad, index, c.labelled, segmentation);
       }

@@ -284,6 +284,93 @@ TEST(NormalSegmentation, ColorsAreOfTheLabel) {
   EXPECT_EQ((*rgb)[0].r, (*rgb)[0].g);
 }
 
+/// A quarter of a cylinder of radius 1, points in a grid, true normals.
+void cylinder(pcl::PointCloud<pcl::PointXYZ>& cloud, pcl::PointCloud<pcl::Normal>& normals) {
+  for (int i = 0; i < 60; ++i) {
+    for (int j = 0; j < 40; ++j) {
+      const float angle = 1.5F * static_cast<float>(i) / 59.F;
+      cloud.push_back({std::cos(angle), std::sin(angle), 0.025F * static_cast<float>(j)});
+      normals.push_back({std::cos(angle), std::sin(angle), 0.F});
+    }
+  }
+}
+
+std::size_t facesOf(Segmenter& s) {
+  std::vector<pcl::PointIndices> clusters;
+  s.extract(clusters);
+  return clusters.size();
+}
+
+TEST(NormalSegmentation, SmoothModeAndResidualAsInRegionGrowing) {
+  const auto cloud = pcl::make_shared<pcl::PointCloud<pcl::PointXYZ>>();
+  const auto normals = pcl::make_shared<pcl::PointCloud<pcl::Normal>>();
+  cylinder(*cloud, *normals);
+  Segmenter s;
+  s.setInputCloud(cloud);
+  s.setInputNormals(normals);
+  s.setReferenceThreshold(2.F);  // alpha alone
+  s.setSmoothnessThreshold(0.3F);
+  s.setUniteSmooth(false);
+  EXPECT_EQ(facesOf(s), 1U) << "from neighbour to neighbour it is one face";
+  s.setSmoothModeFlag(false);
+  std::vector<pcl::PointIndices> clusters;
+  s.extract(clusters);
+  EXPECT_GE(clusters.size(), 3U) << "1.5 in parts of at most .6";
+  for (const pcl::PointIndices& cluster : clusters) {
+    float low = 9.F;
+    float high = -9.F;
+    for (const pcl::index_t i : cluster.indices) {
+      const auto& p = (*cloud)[static_cast<std::size_t>(i)];
+      low = std::min(low, std::atan2(p.y, p.x));
+      high = std::max(high, std::atan2(p.y, p.x));
+    }
+    EXPECT_LE(high - low, 2.F * 0.3F + 1e-3F);
+  }
+  s.setSmoothModeFlag(true);
+  s.setResidualTestFlag(true);  // a neighbour is off the tangent plane by .0003 to .003
+  s.setResidualThreshold(0.1F);
+  EXPECT_EQ(facesOf(s), 1U);
+  s.setAbsorbSmall(false);
+  s.setExtractEdges(false);
+  s.setConnectSmall(false);
+  s.setSettleEdges(false);
+  s.setResidualThreshold(1e-5F);
+  EXPECT_GE(facesOf(s), 12U) << "no farther than to the next columns";
+}
+
+TEST(NormalSegmentation, SettingsWithoutAMeaningGiveNoSegments) {
+  const auto cloud = pcl::make_shared<pcl::PointCloud<pcl::PointXYZ>>();
+  const auto normals = pcl::make_shared<pcl::PointCloud<pcl::Normal>>();
+  cylinder(*cloud, *normals);
+  Segmenter s;
+  s.setInputCloud(cloud);
+  s.setInputNormals(normals);
+  s.setNumberOfNeighbours(0);
+  EXPECT_EQ(s.getNumberOfNeighbours(), 0U);
+  EXPECT_EQ(facesOf(s), 0U);
+  s.setNumberOfNeighbours(10);
+  EXPECT_GE(facesOf(s), 1U);
+  s.setResidualTestFlag(true);
+  for (const float bad : {0.F, -10.F, std::numeric_limits<float>::quiet_NaN()}) {
+    s.setResidualThreshold(bad);
+    EXPECT_EQ(facesOf(s), 0U);
+  }
+  s.setResidualTestFlag(false);
+  EXPECT_GE(facesOf(s), 1U);
+}
+
+TEST(NormalSegmentation, ExtractSeesWhatChangedInPlace) {
+  const auto cloud = pcl::make_shared<pcl::PointCloud<pcl::PointXYZ>>();
+  const auto normals = pcl::make_shared<pcl::PointCloud<pcl::Normal>>();
+  cylinder(*cloud, *normals);
+  Segmenter s;
+  s.setInputCloud(cloud);
+  s.setInputNormals(normals);
+  EXPECT_GE(facesOf(s), 1U);
+  for (auto& n : *normals) n.normal_x = std::numeric_limits<float>::quiet_NaN();
+  EXPECT_EQ(facesOf(s), 0U);
+}
+
 TEST(NormalSegmentation, SettersHaveGetters) {
   Segmenter s;
   s.setNumberOfNeighbours(9);
@@ -318,6 +405,16 @@ TEST(NormalSegmentation, SettersHaveGetters) {
   EXPECT_EQ(s.getMinClusterSize(), 3U);
   EXPECT_EQ(s.getMaxClusterSize(), 5U);
   EXPECT_EQ(s.getNumberOfThreads(), 2U);
+  EXPECT_TRUE(s.getSmoothModeFlag());
+  EXPECT_FALSE(s.getResidualTestFlag());
+  EXPECT_EQ(s.getResidualThreshold(),
+            (pcl::RegionGrowing<pcl::PointXYZ, pcl::Normal>().getResidualThreshold()));
+  s.setSmoothModeFlag(false);
+  s.setResidualTestFlag(true);
+  s.setResidualThreshold(0.5F);
+  EXPECT_FALSE(s.getSmoothModeFlag());
+  EXPECT_TRUE(s.getResidualTestFlag());
+  EXPECT_EQ(s.getResidualThreshold(), 0.5F);
   EXPECT_EQ(s.getSearchMethod(), nullptr);
   EXPECT_EQ(s.getNeighborhoods(), nullptr);
   EXPECT_EQ(s.getInputNormals(), nullptr);

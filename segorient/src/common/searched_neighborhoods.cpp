@@ -26,6 +26,19 @@ float squaredDistance(const float* p, const float* q) {
 
 }  // namespace
 
+void makeRoomForSearch(int k, pcl::Indices& indices, std::vector<float>& sqr_distances) {
+  const auto room = static_cast<std::size_t>(std::max(k, 0));
+  indices.assign(room, 0);
+  sqr_distances.assign(room, 0.F);
+}
+
+int keepFound(int count, pcl::Indices& indices, std::vector<float>& sqr_distances) {
+  const auto found = static_cast<std::size_t>(std::max(count, 0));
+  indices.resize(std::min(found, indices.size()));
+  sqr_distances.resize(indices.size(), 0.F);
+  return static_cast<int>(indices.size());
+}
+
 void searchNeighborhoods(const CompactCloud& cloud, const PointSearch& search, int k,
                          Neighborhoods& out) {
   out.reset(cloud.size(), k);
@@ -34,9 +47,10 @@ void searchNeighborhoods(const CompactCloud& cloud, const PointSearch& search, i
   pcl::Indices found;
   std::vector<float> distances;
   std::vector<Neighbor> neighbors;
+  const auto wanted = static_cast<int>(std::min(static_cast<std::size_t>(k), cloud.row_of.size()));
   for (std::size_t row = 0; row < cloud.size(); ++row) {
-    found.clear();
-    search(cloud.source[row], k, found, distances);
+    makeRoomForSearch(wanted, found, distances);
+    keepFound(search(cloud.source[row], wanted, found, distances), found, distances);
     neighbors.clear();
     for (const pcl::index_t point : found) {
       if (point < 0 || static_cast<std::size_t>(point) >= cloud.row_of.size()) continue;

@@ -120,6 +120,10 @@ class Grower {
         cos_beta_(options.beta < kRightAngle ? std::cos(options.beta) : -1.F),
         sqr_cos_beta_(static_cast<double>(cos_beta_) * static_cast<double>(cos_beta_)),
         max_curvature_(options.max_curvature),
+        max_residual_(options.max_residual < std::numeric_limits<float>::max()
+                          ? options.max_residual * state.scale
+                          : options.max_residual),
+        compare_with_seed_(options.compare_with_seed),
         nodes_(state.nodes.data()),
         labels_(state.labels.data()),
         signs_(state.signs.data()),
@@ -134,7 +138,8 @@ class Grower {
     label_ = static_cast<std::int32_t>(clusters_.size());
     cluster_ = Cluster{};
     tail_ = 0;
-    accept(seed, 1);
+    seed_ = nodes_[seed];
+    accept(seed, 1, true);
     for (std::size_t head = 0; head < tail_; ++head) {
       // Fetches ahead: rows, the labels of points in them unless they are likely to be here, and
       // the points in the farther half of a row, where growing has not been yet. Not in a function
@@ -171,7 +176,7 @@ class Grower {
     return full_ ? row_size_ : std::min(hood_.count(p), row_size_);
   }
 
-  void accept(std::size_t q, int sign) {
+  void accept(std::size_t q, int sign, bool flat) {
     Node& node = nodes_[q];
     if (sign < 0) {
       node.nx = -node.nx;
@@ -183,7 +188,7 @@ class Grower {
     cluster_.normal.add(node);
     ++cluster_.size;
     threshold_ = sqr_cos_beta_ * cluster_.normal.squaredNorm();
-    if (node.curvature > max_curvature_ && cluster_.size > 1) return;
+    if (!flat || (node.curvature > max_curvature_ && cluster_.size > 1)) return;
     queue_[tail_++] = static_cast<pcl::index_t>(q);
   }
 
@@ -223,13 +228,18 @@ class Grower {
   // normal within beta of the reference.
   bool tryAccept(const Node& p, std::size_t q) {
     const Node& candidate = nodes_[q];
-    const float cosine = dotNormals(p, candidate);
+    const float cosine = dotNormals(compare_with_seed_ ? seed_ : p, candidate);
     if (!(std::abs(cosine) >= cos_alpha_) || !limits_.admissible(p, candidate)) return false;
     const int sign = cosine < 0.F ? -1 : 1;
     const double along = sign * cluster_.normal.dot(candidate);
     if (cos_beta_ > 0.F && !(along > 0.0 && along * along >= threshold_)) return false;
-    accept(q, sign);
+    accept(q, sign, residual(p, candidate) <= max_residual_);
     return true;
+  }
+
+  // How far q is off the tangent plane of p.
+  static float residual(const Node& p, const Node& q) {
+    return std::abs((q.x - p.x) * p.nx + (q.y - p.y) * p.ny + (q.z - p.z) * p.nz);
   }
 
   const Neighborhoods& hood_;
@@ -241,6 +251,9 @@ class Grower {
   float cos_beta_;  ///< negative = no condition on the reference normal
   double sqr_cos_beta_;
   float max_curvature_;
+  float max_residual_;
+  bool compare_with_seed_;
+  Node seed_{};
   Node* nodes_;
   std::int32_t* labels_;
   std::int8_t* signs_;

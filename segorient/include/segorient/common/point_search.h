@@ -14,4 +14,12 @@ namespace segorient {
 using PointSearch = std::function<int(pcl::index_t point, int k, pcl::Indices& indices,
                                       std::vector<float>& sqr_distances)>;
 
+/// Before a user's search is asked for k neighbours: both vectors have k entries then, as they have
+/// when PCL's own estimators ask. Many searches write into them without making room.
+void makeRoomForSearch(int k, pcl::Indices& indices, std::vector<float>& sqr_distances);
+
+/// After it: leaves as many entries as the search says that it found, whether it resized the
+/// vectors or not. \return how many there are now
+int keepFound(int count, pcl::Indices& indices, std::vector<float>& sqr_distances);
+
 }  // namespace segorient

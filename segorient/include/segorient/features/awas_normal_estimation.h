@@ -18,9 +18,10 @@ class AwASNormalEstimation : public LocalNormalEstimation<PointInT, PointOutT> {
   using Ptr = pcl::shared_ptr<AwASNormalEstimation<PointInT, PointOutT>>;
   using ConstPtr = pcl::shared_ptr<const AwASNormalEstimation<PointInT, PointOutT>>;
 
-  AwASNormalEstimation()
+  /// \param threads as setNumberOfThreads()
+  explicit AwASNormalEstimation(unsigned int threads = 0)
       : LocalNormalEstimation<PointInT, PointOutT>("AwASNormalEstimation",
-                                                   NormalEstimator::AwASQuadratic) {}
+                                                   NormalEstimator::AwASQuadratic, threads) {}
 
   /// \param degree 2 (default) or 3; others are taken as the nearer of the two
   void setDegree(int degree) {

@@ -15,8 +15,10 @@ class LCTNormalEstimation : public LocalNormalEstimation<PointInT, PointOutT> {
   using Ptr = pcl::shared_ptr<LCTNormalEstimation<PointInT, PointOutT>>;
   using ConstPtr = pcl::shared_ptr<const LCTNormalEstimation<PointInT, PointOutT>>;
 
-  LCTNormalEstimation()
-      : LocalNormalEstimation<PointInT, PointOutT>("LCTNormalEstimation", NormalEstimator::LCT) {}
+  /// \param threads as setNumberOfThreads()
+  explicit LCTNormalEstimation(unsigned int threads = 0)
+      : LocalNormalEstimation<PointInT, PointOutT>("LCTNormalEstimation", NormalEstimator::LCT,
+                                                   threads) {}
 };
 
 }  // namespace segorient

@@ -15,8 +15,10 @@ class LDTNormalEstimation : public LocalNormalEstimation<PointInT, PointOutT> {
   using Ptr = pcl::shared_ptr<LDTNormalEstimation<PointInT, PointOutT>>;
   using ConstPtr = pcl::shared_ptr<const LDTNormalEstimation<PointInT, PointOutT>>;
 
-  LDTNormalEstimation()
-      : LocalNormalEstimation<PointInT, PointOutT>("LDTNormalEstimation", NormalEstimator::LDT) {}
+  /// \param threads as setNumberOfThreads()
+  explicit LDTNormalEstimation(unsigned int threads = 0)
+      : LocalNormalEstimation<PointInT, PointOutT>("LDTNormalEstimation", NormalEstimator::LDT,
+                                                   threads) {}
 };
 
 }  // namespace segorient

@@ -47,7 +47,7 @@ class LocalNormalEstimation : public pcl::NormalEstimation<PointInT, PointOutT> 
   NeighborhoodsConstPtr getNeighborhoods() const { return neighborhoods_; }
 
  protected:
-  LocalNormalEstimation(const char* name, NormalEstimator estimator);
+  LocalNormalEstimation(const char* name, NormalEstimator estimator, unsigned int threads);
 
   using Base::fake_surface_;
   using Base::feature_name_;

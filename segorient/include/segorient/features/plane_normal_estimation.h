@@ -21,9 +21,10 @@ class PlaneNormalEstimation : public LocalNormalEstimation<PointInT, PointOutT> 
   using Ptr = pcl::shared_ptr<PlaneNormalEstimation<PointInT, PointOutT>>;
   using ConstPtr = pcl::shared_ptr<const PlaneNormalEstimation<PointInT, PointOutT>>;
 
-  PlaneNormalEstimation()
-      : LocalNormalEstimation<PointInT, PointOutT>("PlaneNormalEstimation",
-                                                   NormalEstimator::Plane) {}
+  /// \param threads as setNumberOfThreads()
+  explicit PlaneNormalEstimation(unsigned int threads = 0)
+      : LocalNormalEstimation<PointInT, PointOutT>("PlaneNormalEstimation", NormalEstimator::Plane,
+                                                   threads) {}
 };
 
 }  // namespace segorient

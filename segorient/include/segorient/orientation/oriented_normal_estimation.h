@@ -31,7 +31,8 @@ namespace segorient {
 /// range image that it is.
 ///
 /// A point without a normal (NaN coordinates, or fewer than three distinct points around) gets NaN,
-/// and is_dense is cleared. No cloud, an empty one, or a negative k: PCL_ERROR and an empty output.
+/// and is_dense is cleared. No cloud, an empty one, a negative k or radius, or both: PCL_ERROR and
+/// an empty output.
 template <typename PointInT, typename PointOutT>
 class OrientedNormalEstimation : public pcl::NormalEstimation<PointInT, PointOutT> {
  public:
@@ -42,13 +43,18 @@ class OrientedNormalEstimation : public pcl::NormalEstimation<PointInT, PointOut
   using PointCloudConstPtr = typename Base::PointCloudConstPtr;
   using Method = OrientationMethod;
 
-  OrientedNormalEstimation() { feature_name_ = "OrientedNormalEstimation"; }
+  /// \param threads as setNumberOfThreads()
+  explicit OrientedNormalEstimation(unsigned int threads = 0) {
+    feature_name_ = "OrientedNormalEstimation";
+    setNumberOfThreads(threads);
+  }
 
   using Base::setInputCloud;
   void setInputCloud(const PointCloudConstPtr& cloud) override;
 
   // setKSearch() counts the point itself, as in PCL; 0 (default) = 33 for AUTO, for the others 13,
-  // 19 or 31 by the cloud's noise.
+  // 19 or 31 by the cloud's noise. setRadiusSearch() in its place: as many neighbours for all
+  // points as half of the points have within that radius, see medianNeighborsWithin().
 
   /// How segments are oriented; default AUTO, the best known.
   void setMethod(Method method) { options_.orientation.method = method; }

@@ -76,7 +76,8 @@ class NormalSegmentation : public pcl::PCLBase<PointT> {
   void setNeighborhoods(const std::shared_ptr<const Neighborhoods>& neighborhoods);
   std::shared_ptr<const Neighborhoods> getNeighborhoods() const { return neighborhoods_; }
 
-  /// Neighbours of a point, itself not counted; default 10, less than 1 means 1.
+  /// Neighbours of a point, itself not counted; default 10. With 0 there are no segments, as in
+  /// PCL.
   void setNumberOfNeighbours(unsigned int neighbors);
   unsigned int getNumberOfNeighbours() const { return neighbors_; }
 
@@ -97,9 +98,25 @@ class NormalSegmentation : public pcl::PCLBase<PointT> {
   void setCurvatureThreshold(float curvature);
   float getCurvatureThreshold() const { return options_.max_curvature; }
 
-  /// Whether the curvature threshold is used; default true.
+  /// Whether the curvature threshold is used; default true. Unlike in PCL, this does not switch the
+  /// residual test on when it is switched off, nor the other way round.
   void setCurvatureTestFlag(bool value);
   bool getCurvatureTestFlag() const { return curvature_test_; }
+
+  /// Points farther than this off the tangent plane of the point that they are reached from join a
+  /// segment but do not pass it on; in the cloud's unit of length, default 0.05. Not above 0 while
+  /// the test is on: no segments, as in PCL.
+  void setResidualThreshold(float residual);
+  float getResidualThreshold() const { return residual_; }
+
+  /// Whether the residual threshold is used; default false.
+  void setResidualTestFlag(bool value);
+  bool getResidualTestFlag() const { return residual_test_; }
+
+  /// True (default): a normal is compared with that of the neighbour that it is reached from,
+  /// false: with that of the segment's first point. Beta is looked at in any case.
+  void setSmoothModeFlag(bool value);
+  bool getSmoothModeFlag() const { return !options_.compare_with_seed; }
 
   /// Segments with fewer points are small: the clean-up works on them; default 20.
   void setSmallSegmentSize(std::size_t points);
@@ -155,7 +172,8 @@ class NormalSegmentation : public pcl::PCLBase<PointT> {
   }
   unsigned int getNumberOfThreads() const { return static_cast<unsigned int>(options_.threads); }
 
-  /// The faces by descending size, as indices into the cloud.
+  /// The faces by descending size, as indices into the cloud. Segments anew each time, as PCL does:
+  /// points may have changed in place.
   virtual void extract(std::vector<pcl::PointIndices>& clusters);
 
   /// The face that holds a point; empty if the point is in none.
@@ -191,6 +209,7 @@ class NormalSegmentation : public pcl::PCLBase<PointT> {
 
  private:
   bool segment();
+  bool settingsAreGood() const;
   void outdated();
   CloudSegmentation::Search searchFunction();
   template <typename ColoredT>
@@ -202,6 +221,8 @@ class NormalSegmentation : public pcl::PCLBase<PointT> {
   SegmentationOptions options_;
   unsigned int neighbors_ = 10;
   bool curvature_test_ = true;
+  bool residual_test_ = false;
+  float residual_ = 0.05F;
   bool unite_smooth_ = true;
   pcl::uindex_t min_size_ = 1;
   pcl::uindex_t max_size_ = std::numeric_limits<pcl::uindex_t>::max();

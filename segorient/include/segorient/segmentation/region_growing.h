@@ -33,6 +33,11 @@ struct SegmentationOptions {
   float max_offset = 0.5F;
   /// Points of higher curvature join a segment but do not pass it on. Default: no limit.
   float max_curvature = std::numeric_limits<float>::max();
+  /// Points farther than this off the tangent plane of the point that they were reached from join a
+  /// segment but do not pass it on; in the cloud's unit of length. Default: no limit.
+  float max_residual = std::numeric_limits<float>::max();
+  /// Alpha is between the normals of a point and of its segment's seed, not of two neighbours.
+  bool compare_with_seed = false;
   bool absorb_small = true;   ///< clean-up pass 1: small segments join a neighbouring segment
   bool extract_edges = true;  ///< clean-up pass 2: their points join regular ones one by one
   /// Beyond the paper, after pass 2: normals along a sharp edge are means over both faces, so a

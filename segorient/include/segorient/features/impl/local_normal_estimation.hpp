@@ -4,6 +4,7 @@
 
 #include <pcl/console/print.h>
 #include <segorient/common/cloud_access.h>
+#include <segorient/common/point_search.h>
 #include <segorient/features/local_normal_estimation.h>
 #include <segorient/features/searched_normals.h>
 
@@ -14,9 +15,11 @@ namespace segorient {
 
 template <typename PointInT, typename PointOutT>
 LocalNormalEstimation<PointInT, PointOutT>::LocalNormalEstimation(const char* name,
-                                                                  NormalEstimator estimator) {
+                                                                  NormalEstimator estimator,
+                                                                  unsigned int threads) {
   feature_name_ = name;
   options_.estimator = estimator;
+  setNumberOfThreads(threads);
 }
 
 template <typename PointInT, typename PointOutT>
@@ -60,9 +63,14 @@ bool LocalNormalEstimation<PointInT, PointOutT>::initCompute() {
                                              std::size_t index, double parameter,
                                              pcl::Indices& indices, std::vector<float>& distances) {
     const auto i = static_cast<pcl::index_t>(index);
-    return by_radius
-               ? tree_->radiusSearch(cloud, i, parameter, indices, distances)
-               : tree_->nearestKSearch(cloud, i, static_cast<int>(parameter), indices, distances);
+    if (by_radius) {
+      makeRoomForSearch(0, indices, distances);
+      return keepFound(tree_->radiusSearch(cloud, i, parameter, indices, distances), indices,
+                       distances);
+    }
+    const auto k = static_cast<int>(std::min(parameter, static_cast<double>(surface_->size())));
+    makeRoomForSearch(k, indices, distances);
+    return keepFound(tree_->nearestKSearch(cloud, i, k, indices, distances), indices, distances);
   };
   return true;
 }

@@ -5,8 +5,10 @@
 #include <pcl/console/print.h>
 #include <segorient/common/cloud_access.h>
 #include <segorient/orientation/oriented_normal_estimation.h>
+#include <segorient/search/median_neighbors.h>
 #include <segorient/orientation/impl/cloud_hints.hpp>
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <limits>
@@ -37,12 +39,10 @@ bool OrientedNormalEstimation<PointInT, PointOutT>::initCompute() {
               k_);
     return false;
   }
-  if (search_radius_ != 0.0) {
-    PCL_WARN(
-        "[segorient::%s::compute] The radius (%g) is not used: neighbourhoods follow the cloud's "
-        "own "
-        "spacing.\n",
-        getClassName().c_str(), search_radius_);
+  if (search_radius_ != 0.0 && (!(search_radius_ > 0.0) || k_ != 0)) {
+    PCL_ERROR("[segorient::%s::compute] Set k (%d), or a radius (%g) above 0, or neither.\n",
+              getClassName().c_str(), k_, search_radius_);
+    return false;
   }
   if (!pcl::PCLBase<PointInT>::initCompute()) return false;
   if (!surface_) {
@@ -91,6 +91,10 @@ void OrientedNormalEstimation<PointInT, PointOutT>::computeFeature(PointCloudOut
     options.orientation.hints = std::make_shared<OrientationHints>(gatherHints(cloud));
   }
   const CloudPoints<PointInT> points(cloud);
+  if (search_radius_ > 0.0) {
+    options.k =
+        std::max(1, search::medianNeighborsWithin(points.view(), search_radius_, options.threads));
+  }
   result_ = orientCloud(points.view(), nullptr, options, progress_);
   const bool whole = own_surface && this->fake_indices_;
   if (!whole) result_ = selectRows(result_, rows);

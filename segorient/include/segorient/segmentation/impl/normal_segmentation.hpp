@@ -74,7 +74,7 @@ void NormalSegmentation<PointT, NormalT>::setNeighborhoods(
 template <typename PointT, typename NormalT>
 void NormalSegmentation<PointT, NormalT>::setNumberOfNeighbours(unsigned int neighbors) {
   constexpr auto kMost = static_cast<unsigned int>(std::numeric_limits<int>::max() - 1);
-  neighbors_ = std::clamp(neighbors, 1U, kMost);
+  neighbors_ = std::min(neighbors, kMost);
   outdated();
 }
 
@@ -105,6 +105,24 @@ void NormalSegmentation<PointT, NormalT>::setCurvatureThreshold(float curvature)
 template <typename PointT, typename NormalT>
 void NormalSegmentation<PointT, NormalT>::setCurvatureTestFlag(bool value) {
   curvature_test_ = value;
+  outdated();
+}
+
+template <typename PointT, typename NormalT>
+void NormalSegmentation<PointT, NormalT>::setResidualThreshold(float residual) {
+  residual_ = residual;
+  outdated();
+}
+
+template <typename PointT, typename NormalT>
+void NormalSegmentation<PointT, NormalT>::setResidualTestFlag(bool value) {
+  residual_test_ = value;
+  outdated();
+}
+
+template <typename PointT, typename NormalT>
+void NormalSegmentation<PointT, NormalT>::setSmoothModeFlag(bool value) {
+  options_.compare_with_seed = !value;
   outdated();
 }
 
@@ -176,6 +194,20 @@ CloudSegmentation::Search NormalSegmentation<PointT, NormalT>::searchFunction() 
 }
 
 template <typename PointT, typename NormalT>
+bool NormalSegmentation<PointT, NormalT>::settingsAreGood() const {
+  if (neighbors_ == 0) {
+    PCL_ERROR("[segorient::NormalSegmentation] the number of neighbours is 0\n");
+    return false;
+  }
+  if (residual_test_ && !(residual_ > 0.F)) {
+    PCL_ERROR("[segorient::NormalSegmentation] the residual threshold (%g) is not above 0\n",
+              static_cast<double>(residual_));
+    return false;
+  }
+  return true;
+}
+
+template <typename PointT, typename NormalT>
 bool NormalSegmentation<PointT, NormalT>::segment() {
   result_.clear();
   done_ = false;
@@ -183,8 +215,11 @@ bool NormalSegmentation<PointT, NormalT>::segment() {
     PCL_ERROR("[segorient::NormalSegmentation] no input cloud\n");
     return false;
   }
-  bool good = false;
-  if (!normals_ || normals_->size() != input_->size()) {
+  bool good = settingsAreGood();
+  if (!good) {
+    // said already
+  } else if (!normals_ || normals_->size() != input_->size()) {
+    good = false;
     PCL_ERROR("[segorient::NormalSegmentation] %zu normals for %zu points\n",
               normals_ ? normals_->size() : std::size_t{0}, input_->size());
   } else {
@@ -200,6 +235,7 @@ bool NormalSegmentation<PointT, NormalT>::segment() {
     if (!neighborhoods_ && !input_->empty()) input.search = searchFunction();
     SegmentationOptions options = options_;
     if (!curvature_test_) options.max_curvature = std::numeric_limits<float>::max();
+    if (residual_test_) options.max_residual = residual_;
     good = result_.compute(input, options);
     if (!good)
       PCL_ERROR("[segorient::NormalSegmentation] empty cloud, or neighbourhoods of another\n");
@@ -212,7 +248,7 @@ bool NormalSegmentation<PointT, NormalT>::segment() {
 template <typename PointT, typename NormalT>
 void NormalSegmentation<PointT, NormalT>::extract(std::vector<pcl::PointIndices>& clusters) {
   clusters.clear();
-  if (!done_ && !segment()) return;
+  if (!segment()) return;
   const Segmentation& s = result_.faces();
   for (std::size_t i = 0; i < s.segments.size(); ++i) {
     if (s.segments[i].size < min_size_ || s.segments[i].size > max_size_) continue;
