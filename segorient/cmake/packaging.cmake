@@ -20,6 +20,23 @@ install(FILES ${PROJECT_BINARY_DIR}/segorient.pc DESTINATION ${CMAKE_INSTALL_LIB
 install(FILES ${PROJECT_SOURCE_DIR}/LICENSE ${PROJECT_SOURCE_DIR}/package.xml
   DESTINATION ${CMAKE_INSTALL_DATADIR}/segorient)
 
+# The manual page, and what Debian's policy wants beside it: compressed, without a time of its own.
+set(pages ${PROJECT_SOURCE_DIR}/segorient/packaging)
+find_program(SEGORIENT_GZIP gzip)
+mark_as_advanced(SEGORIENT_GZIP)
+if(SEGORIENT_GZIP)
+  foreach(page segorient.1 changelog)
+    add_custom_command(OUTPUT ${PROJECT_BINARY_DIR}/${page}.gz
+      COMMAND ${SEGORIENT_GZIP} -9nc ${pages}/${page} > ${PROJECT_BINARY_DIR}/${page}.gz
+      DEPENDS ${pages}/${page} VERBATIM)
+  endforeach()
+  add_custom_target(segorient_pages ALL
+    DEPENDS ${PROJECT_BINARY_DIR}/segorient.1.gz ${PROJECT_BINARY_DIR}/changelog.gz)
+  install(FILES ${PROJECT_BINARY_DIR}/segorient.1.gz DESTINATION ${CMAKE_INSTALL_MANDIR}/man1)
+  install(FILES ${PROJECT_BINARY_DIR}/changelog.gz ${pages}/copyright
+    DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/segorient)
+endif()
+
 if(NOT TARGET uninstall)
   add_custom_target(uninstall
     COMMAND ${CMAKE_COMMAND} -DMANIFEST=${PROJECT_BINARY_DIR}/install_manifest.txt
@@ -35,6 +52,15 @@ set(CPACK_RESOURCE_FILE_LICENSE ${PROJECT_SOURCE_DIR}/LICENSE)
 set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
 set(CPACK_STRIP_FILES ON)
 set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
+set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "segmented, consistently oriented point clouds for PCL")
+set(CPACK_PACKAGE_DESCRIPTION_FILE ${PROJECT_SOURCE_DIR}/segorient/packaging/description.txt)
+set(CPACK_DEBIAN_PACKAGE_PRIORITY optional)
+set(CPACK_DEBIAN_PACKAGE_GENERATE_SHLIBS ON)
+# lintian has no errors to tell. Its warnings: CPack writes scripts that call ldconfig beside the
+# trigger, and library, headers and program are in one package, which Debian itself would part.
+set(CPACK_DEBIAN_PACKAGE_CONTROL_EXTRA ${PROJECT_SOURCE_DIR}/segorient/packaging/triggers)
+set(CPACK_DEBIAN_PACKAGE_CONTROL_STRICT_PERMISSION TRUE)
+set(CPACK_PRE_BUILD_SCRIPTS ${PROJECT_SOURCE_DIR}/segorient/cmake/package_debian.cmake)
 set(CPACK_DEBIAN_PACKAGE_SECTION science)
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
 # Our own libraries are where the build put them.
