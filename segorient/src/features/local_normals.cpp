@@ -116,11 +116,12 @@ void estimateNormals(const PointView& queries, const PointView& points,
   job.curvatures = curvatures;
   job.residuals = residuals;
 
+  constexpr double kPointTime = 300.0;  // ns
   const Kernel kernel = chooseKernel(options.portable);
   const auto count = static_cast<std::ptrdiff_t>(rows ? rows->size() : neighborhoods.size());
   constexpr std::ptrdiff_t kBlock = 1024;
   const std::ptrdiff_t blocks = (count + kBlock - 1) / kBlock;
-  const int threads = resolveThreads(options.threads);
+  const int threads = resolveThreads(options.threads, static_cast<std::size_t>(count), kPointTime);
 #pragma omp parallel for schedule(dynamic) num_threads(threads)
   for (std::ptrdiff_t b = 0; b < blocks; ++b) {
     kernel(job, static_cast<std::size_t>(b * kBlock),

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026, the segorient authors
+#include <segorient/common/threads.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -201,7 +203,8 @@ struct Looks {
 std::vector<std::size_t> pointsAtBorders(const RecomputationScene& scene,
                                          std::vector<std::uint8_t>& state) {
   const auto size = static_cast<std::ptrdiff_t>(scene.size());
-#pragma omp parallel for schedule(static) num_threads(scene.threads)
+#pragma omp parallel for schedule(static) \
+    num_threads(resolveThreads(scene.threads, scene.size(), 20.0))
   for (std::ptrdiff_t i = 0; i < size; ++i) {
     const auto point = static_cast<std::size_t>(i);
     state[point] = scene.meetsBorder(point, kFlat) ? kExamined : kUntouched;
@@ -280,7 +283,7 @@ class Proposer {
   template <typename PatchAt>
   void run(std::size_t count, const PatchAt& patchAt) {
     const auto size = static_cast<std::ptrdiff_t>(count);
-#pragma omp parallel num_threads(scene_.threads)
+#pragma omp parallel num_threads(resolveThreads(scene_.threads, count, 20000.0))
     {
       OneSidedRule rule(scene_, options_);
 #pragma omp for schedule(dynamic, 16)

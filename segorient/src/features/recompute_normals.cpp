@@ -22,8 +22,8 @@ RecomputationReport recomputeNormals(const PointView& points, const Neighborhood
   }
   const int entries =
       options.k > 0 ? std::min(options.k, neighborhoods.k() - 1) + 1 : neighborhoods.k();
-  const detail::RecomputationScene scene{
-      points, neighborhoods, regular, labels, normals, entries, resolveThreads(options.threads)};
+  const detail::RecomputationScene scene{points,  neighborhoods, regular,        labels,
+                                         normals, entries,       options.threads};
   const std::vector<detail::Recomputed> results =
       options.rule == RecomputationRule::OneSided
           ? detail::applyOneSidedRule(scene, options)

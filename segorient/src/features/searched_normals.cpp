@@ -153,7 +153,7 @@ void searchAndEstimateNormals(const PointView& input, const pcl::Indices& indice
   block_options.threads = 1;
   constexpr std::size_t kBlock = 256;
   const auto blocks = static_cast<std::ptrdiff_t>((indices.size() + kBlock - 1) / kBlock);
-#pragma omp parallel num_threads(resolveThreads(options.threads))
+#pragma omp parallel num_threads(resolveThreads(options.threads, indices.size(), 1000.0))
   {
     TableBuilder builder;
     pcl::Indices found;

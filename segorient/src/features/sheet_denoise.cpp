@@ -20,7 +20,7 @@ bool needsDenoising(const NoiseLevel& noise) {
 std::vector<float> projectOnPlanes(const PointView& points, const search::MedianHashIndex& index,
                                    int k, int threads) {
   std::vector<float> out(4 * points.size, 0.F);
-  const int t = resolveThreads(threads);
+  const int t = resolveThreads(threads, points.size, 3000.0);
 #pragma omp parallel num_threads(t)
   {
     std::vector<pcl::index_t> indices(static_cast<std::size_t>(std::max(k, 1)));

@@ -176,7 +176,7 @@ NoiseLevel measureNoise(const PointView& points, const Neighborhoods& nb, int th
   constexpr float kThinShare = 0.1F;
   const std::size_t step = std::max<std::size_t>(1, points.size / kSamples);
   const std::size_t n = (points.size + step - 1) / step;
-  const int t = resolveThreads(threads);
+  const int t = resolveThreads(threads, n, 2000.0);
   // The median of what can be told of the samples.
   const auto medianOver = [&](const auto& residual, std::size_t& told) {
     std::vector<float> found(n);
@@ -220,7 +220,7 @@ SheetNormals estimateSheetNormals(const PointView& points, const Neighborhoods& 
   out.scale = kSizes[smallest];
 
   std::vector<float> lopsided(n, std::numeric_limits<float>::infinity());
-  const int threads = resolveThreads(options.threads);
+  const int threads = resolveThreads(options.threads, n, 2000.0);
 #pragma omp parallel for num_threads(threads) schedule(dynamic, 1024)
   for (std::size_t i = 0; i < n; ++i) {
     out.spacing[i] = detail::meanDistance(points, nb, i, 6);

@@ -14,6 +14,11 @@
 namespace segorient::search {
 namespace {
 
+// About how long it takes, in ns, to find one more neighbour of a point, and a row of a radius
+// search.
+constexpr double kNeighborTime = 20.0;
+constexpr double kRowTime = 500.0;
+
 // Most points that a group of a radius search shares.
 constexpr std::size_t kRadiusBlock = 8192;
 
@@ -143,9 +148,10 @@ void MedianHashIndex::Impl::nearestOfAll(std::size_t wanted, float epsilon,
   // A group has up to 31 points with up to some 3 k + 104 candidates each, in two halves.
   const std::size_t block = 2048 + 16 * shared;
   const std::size_t half = block + Layout::kPadding + 16 * (3 * shared + 112);
-  forAllRegions(
-      layout, resolveThreads(options.threads), task, block, 2 * wholeLines(half),
-      [&](std::size_t region, GroupTask& of_thread) { nearestOfRegion(region, of_thread, out); });
+  forAllRegions(layout, resolveThreads(options.threads, layout.size() * wanted, kNeighborTime),
+                task, block, 2 * wholeLines(half), [&](std::size_t region, GroupTask& of_thread) {
+                  nearestOfRegion(region, of_thread, out);
+                });
 }
 
 // Points that no group could search for are searched for one by one.
@@ -201,8 +207,8 @@ void MedianHashIndex::radiusAll(double radius, RadiusNeighborhoods& out, unsigne
   try {
     out.reset(self.rows, self.layout.regions.size(), with_distances);
     if (!(radius > 0.0) || !(limit > 0.0F)) return;
-    forAllRegions(self.layout, resolveThreads(self.options.threads), task, kRadiusBlock,
-                  4 * kRadiusBlock, search);
+    forAllRegions(self.layout, resolveThreads(self.options.threads, self.layout.size(), kRowTime),
+                  task, kRadiusBlock, 4 * kRadiusBlock, search);
   } catch (...) {
     out = RadiusNeighborhoods();
     throw;

@@ -29,6 +29,8 @@ std::vector<float> stepsOf(const BuildPoint* points, std::size_t count) {
   return steps;
 }
 
+constexpr double kQueryTime = 400.0;  // ns, see resolveThreads()
+
 float median(std::vector<float> values) {
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
   std::nth_element(values.begin(), middle, values.end());
@@ -72,9 +74,10 @@ void MedianHashIndex::build(const PointView& points, const std::vector<pcl::inde
   }
   const std::size_t region_size =
       std::min(std::max<std::size_t>(options.region_size, 8), kMostRegionSize);
+  constexpr double kBuildTime = 15.0;  // ns a point
   const std::vector<float> steps = stepsOf(finite.get(), count);
-  self.layout =
-      buildLayout(finite.get(), count, region_size, indices, resolveThreads(options.threads));
+  self.layout = buildLayout(finite.get(), count, region_size, indices,
+                            resolveThreads(options.threads, count, kBuildTime));
   self.in_order = areInOrder(steps, self.layout);
 }
 
@@ -83,7 +86,7 @@ std::size_t MedianHashIndex::size() const {
 }
 
 std::size_t MedianHashIndex::memory() const {
-  return sizeof(Impl) + impl_->layout.memory() + impl_->ids_memory;
+  return sizeof(Impl) + impl_->layout.memory() + impl_->ids_memory + impl_->boxesMemory();
 }
 
 const char* MedianHashIndex::instructionSet() const {
@@ -120,7 +123,7 @@ void MedianHashIndex::nearestKBatch(const PointView& queries, int k,
                                     std::vector<std::vector<float>>& sqr_distances,
                                     float epsilon) const {
   const auto count = static_cast<std::int64_t>(queries.size);
-  const int threads = resolveThreads(impl_->options.threads);
+  const int threads = resolveThreads(impl_->options.threads, queries.size, kQueryTime);
   const std::size_t wanted = std::min(static_cast<std::size_t>(std::max(k, 0)), size());
   indices.resize(queries.size);
   sqr_distances.resize(queries.size);
@@ -144,7 +147,7 @@ void MedianHashIndex::radiusBatch(const PointView& queries, double radius,
                                   std::vector<std::vector<float>>& sqr_distances,
                                   unsigned int max_nn, bool sorted) const {
   const auto count = static_cast<std::int64_t>(queries.size);
-  const int threads = resolveThreads(impl_->options.threads);
+  const int threads = resolveThreads(impl_->options.threads, queries.size, kQueryTime);
   indices.resize(queries.size);
   sqr_distances.resize(queries.size);
   ParallelError error;

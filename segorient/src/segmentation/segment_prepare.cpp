@@ -194,7 +194,7 @@ bool isScattered(const Neighborhoods& hood) {
 
 void prepare(const PointView& points, const NormalView& normals, const SegmentationOptions& options,
              GrowthState& state) {
-  const int threads = resolveThreads(options.threads);
+  const int threads = resolveThreads(options.threads, points.size, 20.0);
   const Scaling scaling = scalingOf(points);
   state.scale = scaling.scale;
   packNodes(points, normals, scaling, threads, state);

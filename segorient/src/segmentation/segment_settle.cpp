@@ -254,7 +254,7 @@ std::size_t settleOnce(const SegmentationOptions& options, const std::vector<pcl
   std::vector<std::int32_t> wanted(border.size());
   const Settler settler(options, state);
   const auto n = static_cast<std::ptrdiff_t>(border.size());
-#pragma omp parallel num_threads(resolveThreads(options.threads))
+#pragma omp parallel num_threads(resolveThreads(options.threads, border.size(), 1000.0))
   {
     DistinctPoints around;
 #pragma omp for schedule(dynamic, 256)

@@ -241,7 +241,7 @@ std::vector<Border> testBorders(const SegmentationOptions& options, const Growth
   std::vector<Border> borders(starts.size());
   starts.push_back(pairs.size());
   const auto count = static_cast<std::ptrdiff_t>(borders.size());
-#pragma omp parallel num_threads(resolveThreads(options.threads))
+#pragma omp parallel num_threads(resolveThreads(options.threads, pairs.size(), 200.0))
   {
     BorderTest border_test(options, state);
 #pragma omp for schedule(dynamic, 16)

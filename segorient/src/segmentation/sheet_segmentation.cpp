@@ -27,7 +27,7 @@ std::vector<std::uint32_t> admissibleEdges(const PointView& points, const Neighb
   // Offsets off the tangent plane that curvature and noise explain.
   const float kappa = std::clamp(0.25F + 2.2F * field.residual, 0.3F, 0.9F);
   std::vector<std::uint32_t> masks(points.size, 0);
-  const int t = resolveThreads(threads);
+  const int t = resolveThreads(threads, points.size, 60.0);
 #pragma omp parallel for num_threads(t) schedule(dynamic, 4096)
   for (std::size_t p = 0; p < points.size; ++p) {
     const float* n = field.normals + 4 * p;

@@ -162,7 +162,7 @@ std::vector<SegmentMesh> triangulateSegments(const PointView& points,
                                              const Segmentation& segmentation,
                                              const TriangulationOptions& options, bool all) {
   std::vector<SegmentMesh> meshes(segmentation.segments.size());
-  const int threads = resolveThreads(options.threads);
+  const int threads = resolveThreads(options.threads, segmentation.members.size(), 1500.0);
   const auto count = static_cast<std::ptrdiff_t>(meshes.size());
 #pragma omp parallel for num_threads(threads) schedule(dynamic, 1)
   for (std::ptrdiff_t i = 0; i < count; ++i) {

@@ -141,7 +141,7 @@ std::vector<RawVote> castVotes(const Voter& voter, std::size_t n, int threads) {
   constexpr std::size_t kChunk = 8192;
   const std::size_t chunks = (n + kChunk - 1) / kChunk;
   std::vector<std::vector<RawVote>> parts(chunks);
-  const int t = resolveThreads(threads);
+  const int t = resolveThreads(threads, n, 300.0);
 #pragma omp parallel for num_threads(t) schedule(dynamic, 1)
   for (std::size_t c = 0; c < chunks; ++c) {
     for (std::size_t p = c * kChunk; p < std::min(n, (c + 1) * kChunk); ++p)

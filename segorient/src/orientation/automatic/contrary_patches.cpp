@@ -2,6 +2,8 @@
 // Copyright (c) 2026, the segorient authors
 #include "orientation/automatic/contrary_patches.h"
 
+#include <segorient/common/threads.h>
+
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
@@ -165,7 +167,7 @@ std::size_t turnContraryPatches(const PointView& points, const Neighborhoods& ne
   if (!(residual < kMostResidual)) return 0;
   Patches patches(points, neighborhoods, spacing, filtered.normals);
   std::vector<std::uint8_t> contrary(points.size);
-#pragma omp parallel for num_threads(threads) schedule(static)
+#pragma omp parallel for num_threads(resolveThreads(threads, points.size, 100.0)) schedule(static)
   for (std::size_t p = 0; p < points.size; ++p) {
     const bool agreed = filtered.confidences[p] > kAgreed;
     contrary[p] = !agreed && patches.meetsContrary(p) ? 1 : 0;

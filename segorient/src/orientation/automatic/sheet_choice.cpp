@@ -2,6 +2,8 @@
 // Copyright (c) 2026, the segorient authors
 #include "orientation/automatic/sheet_choice.h"
 
+#include <segorient/common/threads.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -117,7 +119,8 @@ void chooseSheets(const PointView& points, const Neighborhoods& nb,
   // What has been told is a witness in the next pass: so they work their way into the wedge.
   constexpr int kPasses = 4;
   for (int pass = 0; pass < kPasses && !undecided.empty(); ++pass) {
-#pragma omp parallel for num_threads(threads) schedule(dynamic, 256)
+#pragma omp parallel for num_threads(resolveThreads(threads, undecided.size(), 3000.0)) \
+    schedule(dynamic, 256)
     for (std::size_t i = 0; i < undecided.size(); ++i) {
       const bool found = choice.choose(undecided[i], spacing[undecided[i]], chosen[i].data());
       chosen[i][3] = found ? 1.F : 0.F;

@@ -210,7 +210,7 @@ FilteredNormals filterOrientedNormals(const PointView& points, const Neighborhoo
   // Where the normals around agree to some degrees, another round would change nothing.
   constexpr float kSettled = 0.999F;
   std::vector<float> next;
-  const int t = resolveThreads(threads);
+  const int t = resolveThreads(threads, points.size, 500.0);
   for (int round = 0; round < rounds; ++round) {
     next = out.normals;
 #pragma omp parallel for num_threads(t) schedule(dynamic, 2048)
@@ -228,9 +228,9 @@ FilteredNormals filterOrientedNormals(const PointView& points, const Neighborhoo
       out.confidences[p] = static_cast<float>(std::min(l / total, 1.0));  // rounding may exceed 1
     }
     out.normals.swap(next);
-    if (wedges) detail::turnContraryPatches(points, nb, spacing, residual, t, out);
+    if (wedges) detail::turnContraryPatches(points, nb, spacing, residual, threads, out);
   }
-  if (wedges) detail::chooseSheets(points, nb, spacing, residual, t, out);
+  if (wedges) detail::chooseSheets(points, nb, spacing, residual, threads, out);
   return out;
 }
 

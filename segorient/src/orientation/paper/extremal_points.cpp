@@ -39,7 +39,7 @@ std::vector<ExtremalPoint> findExtremalPoints(const PointView& points, const Poi
   const auto boxes = static_cast<std::ptrdiff_t>(space.boxes().size());
   std::vector<std::array<pcl::index_t, 6>> found(space.boxes().size());  // by side, -1 = none
 #pragma omp parallel for schedule(dynamic, 256) \
-    num_threads(resolveThreads(threads)) if (boxes > 4096)
+    num_threads(resolveThreads(threads, space.boxes().size(), 500.0))
   for (std::ptrdiff_t b = 0; b < boxes; ++b) {
     const BoxSubdivision::Box& box = space.boxes()[static_cast<std::size_t>(b)];
     for (int side = 0; side < 6; ++side) {

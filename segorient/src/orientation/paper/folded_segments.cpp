@@ -133,7 +133,8 @@ std::vector<std::int32_t> findFoldedSegments(const PointView& points,
                                              float max_share) {
   const auto segments = static_cast<std::ptrdiff_t>(segmentation.segments.size());
   std::vector<std::uint8_t> folded(segmentation.segments.size());
-#pragma omp parallel for schedule(dynamic, 16) num_threads(resolveThreads(threads))
+#pragma omp parallel for schedule(dynamic, 16) \
+    num_threads(resolveThreads(threads, segmentation.members.size(), 300.0))
   for (std::ptrdiff_t i = 0; i < segments; ++i) {
     const auto s = static_cast<std::size_t>(i);
     folded[s] = isFolded(points, neighborhoods, segmentation, s, max_share) ? 1 : 0;

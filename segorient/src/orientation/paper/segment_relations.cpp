@@ -167,7 +167,8 @@ std::vector<float> segmentCosines(const PointView& points, const PointView& norm
                                   SegmentAngle angle, int threads) {
   std::vector<float> out(links.links.size());
   const auto count = static_cast<std::ptrdiff_t>(links.links.size());
-#pragma omp parallel for schedule(dynamic, 16) num_threads(resolveThreads(threads))
+#pragma omp parallel for schedule(dynamic, 16) \
+    num_threads(resolveThreads(threads, links.links.size(), 3000.0))
   for (std::ptrdiff_t i = 0; i < count; ++i) {
     const SegmentLink& link = links.links[static_cast<std::size_t>(i)];
     const float cosine = angle == SegmentAngle::REFERENCE_NORMALS
@@ -185,7 +186,8 @@ std::vector<BoundaryVote> localBoundaryVotes(const PointView& points, const Poin
   const LocalBoundary boundary(points, normals, neighborhoods, segmentation);
   std::vector<BoundaryVote> out(links.links.size());
   const auto count = static_cast<std::ptrdiff_t>(links.links.size());
-#pragma omp parallel for schedule(dynamic, 16) num_threads(resolveThreads(threads))
+#pragma omp parallel for schedule(dynamic, 16) \
+    num_threads(resolveThreads(threads, links.links.size(), 3000.0))
   for (std::ptrdiff_t i = 0; i < count; ++i) {
     const auto l = static_cast<std::size_t>(i);
     out[l] = boundary.vote(links, links.links[l]);

@@ -174,7 +174,7 @@ ViewpointFit fitViewpoint(const PointView& points, const std::vector<float>& nor
 
   const std::vector<std::array<float, 3>> places = candidates();
   std::vector<float> scores(places.size());
-  const int t = resolveThreads(threads);
+  const int t = resolveThreads(threads, places.size(), 3000.0);
 #pragma omp parallel for num_threads(t) schedule(static)
   for (std::size_t c = 0; c < places.size(); ++c) scores[c] = agreementAt(few, places[c]);
 

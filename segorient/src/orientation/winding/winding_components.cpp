@@ -120,7 +120,7 @@ class Solver {
       : points_(points),
         dipoles_(dipoles),
         spacing_(spacing),
-        threads_(resolveThreads(threads)),
+        threads_(threads),
         rows_(count),
         boxes_(count),
         reach_(count) {
@@ -209,7 +209,8 @@ class Solver {
     });
     std::sort(reach.begin(), reach.end(),
               [](const Reach& a, const Reach& b) { return a.sample < b.sample; });
-#pragma omp parallel for num_threads(threads_) schedule(dynamic, 64)
+#pragma omp parallel for num_threads(resolveThreads(threads_, reach.size(), 3000.0)) \
+    schedule(dynamic, 64)
     for (std::size_t r = 0; r < reach.size(); ++r) {
       const std::uint32_t i = samples_[reach[r].sample];
       reach[r].w = winding.evaluate(points_[i], spacing_[i]);

@@ -121,7 +121,7 @@ std::size_t refineByWinding(const PointView& points, const std::vector<float>& s
   WindingNumber field;
   field.build(points, dipoles, {});
   std::size_t changed = 0;
-#pragma omp parallel num_threads(resolveThreads(threads)) reduction(+ : changed)
+#pragma omp parallel num_threads(resolveThreads(threads, runs.size(), 50000.0)) reduction(+ : changed)
   {
     DipoleList seen;
 #pragma omp for schedule(dynamic, 16)

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the segorient authors
+#include <gtest/gtest.h>
+#include <segorient/common/threads.h>
+#include <segorient/search/median_hash_index.h>
+
+#include <limits>
+
+#include "brute_force.h"
+#include "search_clouds.h"
+
+namespace segorient::test {
+namespace {
+
+constexpr int kMost = std::numeric_limits<int>::max();
+
+TEST(Threads, NeverMoreThanASystemGives) {
+  EXPECT_EQ(resolveThreads(-1), 1);
+  EXPECT_GE(resolveThreads(0), 1);
+  EXPECT_EQ(resolveThreads(3), 3);
+  EXPECT_GE(resolveThreads(kMost), 64);
+  EXPECT_LE(resolveThreads(kMost), 4096);
+  EXPECT_EQ(resolveThreads(65536), resolveThreads(kMost));
+}
+
+TEST(Threads, AsManyAsTheWorkIsWorth) {
+  const int all = resolveThreads(0);
+  EXPECT_EQ(resolveThreads(0, 0, 1000.0), 1);
+  EXPECT_EQ(resolveThreads(0, 1000, 1000.0), 1) << "a millisecond";
+  EXPECT_EQ(resolveThreads(0, 1000000000, 1000.0), all);
+  EXPECT_LE(resolveThreads(0, 2000, 10000.0), 4) << "20 milliseconds";
+  EXPECT_EQ(resolveThreads(5, 1, 1.0), 5) << "who asks for them gets them";
+}
+
+TEST(Threads, AnyNumberFindsTheSame) {
+  const SearchCloud cloud = searchClouds(3000)[1];
+  Neighborhoods expected;
+  for (const int threads : {1, 2, 65, 65536, kMost}) {
+    search::MedianHashIndex index;
+    search::MedianHashIndex::Options options;
+    options.threads = threads;
+    options.region_size = 100;
+    index.build(cloud.view(), nullptr, options);
+    Neighborhoods table;
+    index.nearestKAll(7, table);
+    if (threads == 1) index.nearestKAll(7, expected);
+    for (std::size_t i = 0; i < cloud.size(); ++i) EXPECT_EQ(row(table, i), row(expected, i));
+  }
+}
+
+}  // namespace
+}  // namespace segorient::test
