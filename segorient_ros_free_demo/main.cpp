@@ -42,7 +42,7 @@ void printHelp(std::ostream& out) {
   for (const Command& c : kCommands) {
     out << "  " << c.name << std::string(13 - std::string(c.name).size(), ' ') << c.summary << "\n";
   }
-  out << "\nsegorient COMMAND --help tells the options of a command.\n"
+  out << "\nsegorient help COMMAND tells the options of a command.\n"
          "Input: PCD, PLY, LAS, OBJ, PTX, PTS, text (x y z a line). Output: PCD, PLY or LAS, by "
          "its "
          "ending.\n";
@@ -54,6 +54,7 @@ int run(const std::vector<std::string>& words) {
     return 2;
   }
   if (words[0] == "--help" || words[0] == "-h" || words[0] == "help") {
+    if (words.size() > 1) return run({words[1], "--help"});
     printHelp(std::cout);
     return 0;
   }

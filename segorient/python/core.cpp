@@ -230,7 +230,7 @@ py::dict reportOf(const OrientedCloud& cloud) {
   out["duplicates"] = report.duplicates;
   out["without_normal"] = report.without_normal;
   out["k"] = report.k;
-  out["normals"] = nameOf(report.estimator);
+  out["normals"] = report.method == OrientationMethod::AUTO ? "own" : nameOf(report.estimator);
   out["normals_chosen"] = report.normals_chosen;
   out["method"] = toString(report.method);
   out["spacing"] = report.spacing;

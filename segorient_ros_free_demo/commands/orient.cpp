@@ -124,7 +124,8 @@ std::string reportText(const OrientedCloud& cloud, const StageMemory& memory,
   json.field("duplicates", report.duplicates);
   json.field("without_normal", report.without_normal);
   json.field("k", report.k);
-  json.field("normals", estimatorName(report.estimator));
+  json.field("normals",
+             report.method == OrientationMethod::AUTO ? "own" : estimatorName(report.estimator));
   json.field("normals_chosen", report.normals_chosen);
   json.field("method", toString(report.method));
   json.field("spacing", report.spacing);
@@ -199,7 +200,7 @@ int runOrient(const std::vector<std::string>& words) {
   stages.add(line, true);
   hints.add(line);
   line.options()("report", po::value(&report_path), "what was done, as JSON");
-  common.add(line);
+  common.add(line, "a summary of all components");
   if (!line.parse(words)) return 0;
   common.check();
   PipelineOptions options;
@@ -235,6 +236,7 @@ int runOrient(const std::vector<std::string>& words) {
   writeResults(table, results, out);
   memory.end();
   if (report) report->write(reportText(cloud, memory, origin));
+  if (report) report->finish();
   out.commit();
   if (report) report->commit();
   if (!common.quiet) printSummary(cloud.report, memory, origin, out.path(), common.verbose);

@@ -83,7 +83,7 @@ int runView(const std::vector<std::string>& words) {
                  "auto (segment, else rgb), normal, segment, rgb")(
       "every", po::value(&every)->default_value(10), "a line at one of so many normals; 0 = none");
   takeSharedOptions(line);
-  common.add(line);
+  common.take(line);
   if (!line.parse(words)) return 0;
   common.check();
   require(every >= 0, "--every must not be negative");

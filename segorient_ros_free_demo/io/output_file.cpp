@@ -106,11 +106,16 @@ void OutputFile::write(const void* data, std::size_t bytes) {
   if (bytes > 0 && std::fwrite(data, 1, bytes, file_) != bytes) fail(errno);
 }
 
-void OutputFile::commit() {
+void OutputFile::finish() {
+  if (file_ == nullptr) return;
   if (std::fflush(file_) != 0 || fsync(fileno(file_)) != 0) fail(errno);
   std::FILE* file = file_;
   file_ = nullptr;
   if (std::fclose(file) != 0) fail(errno);
+}
+
+void OutputFile::commit() {
+  finish();
   if (std::rename(temporary_.c_str(), target_.c_str()) != 0) fail(errno);
   loseTrack(temporary_);
   temporary_.clear();

@@ -24,6 +24,11 @@ class OutputFile {
   const std::string& path() const { return path_; }
   void write(const void* data, std::size_t bytes);
   void write(std::string_view text) { write(text.data(), text.size()); }
+  /// Brings all of it onto the disk, still under the other name: whatever else may go wrong with
+  /// what was written does so here. Where two files belong together, both are finished before
+  /// either is committed.
+  void finish();
+  /// finish(), and moves it to its place.
   void commit();
 
  private:

@@ -88,10 +88,17 @@ void requireEnding(const std::string& path, const std::vector<std::string>& endi
           path + ": an output file must end in one of" + known);
 }
 
-void CommonOptions::add(CommandLine& line) {
-  line.options()("threads", po::value(&threads)->default_value(0), "threads; 0 = all cores")(
-      "quiet,q", po::bool_switch(&quiet), "no summary and no progress")(
-      "verbose,v", po::bool_switch(&verbose), "a summary of every detail (orient: all components)");
+void CommonOptions::add(CommandLine& line, const char* details) {
+  line.options()("threads", po::value(&threads)->default_value(0),
+                 "threads; 0 = as many as the work is worth, at most all cores")(
+      "quiet,q", po::bool_switch(&quiet), "no summary and no progress");
+  auto others = details != nullptr ? line.options() : line.unlisted();
+  others("verbose,v", po::bool_switch(&verbose), details != nullptr ? details : "");
+}
+
+void CommonOptions::take(CommandLine& line) {
+  line.unlisted()("threads", po::value(&threads)->default_value(0))(
+      "quiet,q", po::bool_switch(&quiet))("verbose,v", po::bool_switch(&verbose));
 }
 
 void CommonOptions::check() const {

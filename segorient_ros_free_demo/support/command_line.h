@@ -69,11 +69,14 @@ void requireEnding(const std::string& path, const std::vector<std::string>& endi
 
 /// What most commands take.
 struct CommonOptions {
-  int threads = 0;       ///< 0 = all cores
+  int threads = 0;       ///< see resolveThreads()
   bool quiet = false;    ///< no summary, no progress
   bool verbose = false;  ///< more of both
 
-  void add(CommandLine& line);
+  /// \param details what --verbose adds to the summary; null: nothing, and it is not listed
+  void add(CommandLine& line, const char* details = nullptr);
+  /// Takes them without listing any, for a command that they change nothing of.
+  void take(CommandLine& line);
   void check() const;
 };
 

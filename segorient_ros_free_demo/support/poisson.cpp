@@ -15,6 +15,7 @@
 #include "io/cloud_writer.h"
 #include "io/output_file.h"
 #include "render/scene.h"
+#include "support/silent_errors.h"
 
 namespace segorient::program {
 namespace {
@@ -37,7 +38,11 @@ CloudTable poissonSurface(const LocalPoints& points, const std::vector<float>& n
   poisson.setInputCloud(cloud);
   pcl::PointCloud<pcl::PointNormal> vertices;
   std::vector<pcl::Vertices> polygons;
-  poisson.performReconstruction(vertices, polygons);
+  {
+    // PCL's own remarks are no part of what this program says.
+    const SilentErrors silence;
+    poisson.performReconstruction(vertices, polygons);
+  }
   table.size = table.width = vertices.size();
   table.rows.resize(table.size * table.row_bytes);
   for (std::size_t i = 0; i < table.size; ++i) {

@@ -81,6 +81,46 @@ TEST(OutputFile, AFullDiskIsAnErrorAndLeavesWhatWasThere) {
   EXPECT_EQ(readFile(path), "before");
 }
 
+TEST(OutputFile, FinishedIsNotYetThere) {
+  const ScratchDirectory directory;
+  const std::string path = directory.write("out.pcd", "before");
+  OutputFile file(path);
+  file.write("after");
+  file.finish();
+  EXPECT_EQ(readFile(path), "before");
+  file.finish();
+  file.commit();
+  EXPECT_EQ(readFile(path), "after");
+  EXPECT_EQ(directory.entries(), 1U);
+}
+
+// Of two files that belong together, neither is there if one of them is too large for the disk.
+[[noreturn]] void writeTwo(const std::string& path, const std::string& other) {
+  program::installSignalHandlers();
+  const rlimit limit{1 << 12, 1 << 12};
+  setrlimit(RLIMIT_FSIZE, &limit);
+  try {
+    OutputFile file(path);
+    OutputFile report(other);
+    file.write("small");
+    // Less than the buffer that it waits in: the disk is asked for it when the file is finished.
+    report.write(std::string((1 << 12) - 1, 'x'));
+    report.write("xx");
+    report.finish();
+    file.commit();
+  } catch (const FileError&) {
+    std::_Exit(0);
+  }
+  std::_Exit(1);
+}
+
+TEST(OutputFile, BothOrNone) {
+  const ScratchDirectory directory;
+  EXPECT_EXIT(writeTwo(directory.file("out.pcd"), directory.file("report.json")),
+              testing::ExitedWithCode(0), "");
+  EXPECT_EQ(directory.entries(), 0U);
+}
+
 void interruptTwoFiles(const std::string& path, const std::string& other) {
   program::installSignalHandlers();
   OutputFile file(path);

@@ -23,6 +23,14 @@ TEST(Usage, HelpOfTheProgramAndOfEveryCommand) {
     EXPECT_TRUE(own.err.empty()) << command;
   }
   EXPECT_EQ(runProgram({"--version"}).out, "segorient 1.0.0\n");
+  const std::string orient = runProgram({"orient", "--help"}).out;
+  EXPECT_EQ(runProgram({"help", "orient"}).out, orient);
+  EXPECT_EQ(runProgram({"--help", "orient"}).out, orient);
+  EXPECT_EQ(runProgram({"help", "polish"}).status, 2);
+  // What a command makes no use of is not in its help.
+  EXPECT_NE(orient.find("--verbose"), std::string::npos);
+  EXPECT_EQ(runProgram({"segment", "--help"}).out.find("--verbose"), std::string::npos);
+  EXPECT_EQ(runProgram({"view", "--help"}).out.find("--threads"), std::string::npos);
 }
 
 TEST(Usage, WrongUsageIsStatus2AndOneLine) {

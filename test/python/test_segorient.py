@@ -449,6 +449,45 @@ class Running(unittest.TestCase):
             segorient.orient(sphere(1000)[0], progress=interrupt)
 
 
+class Inputs(unittest.TestCase):
+    def test_a_mask_hides_points(self):
+        points, outward = sphere(2000)
+        hidden = np.zeros(points.shape, bool)
+        hidden[::50, 1] = True
+        for dtype in (np.float64, np.float32):
+            spoilt = np.where(hidden, 77.0, points).astype(dtype)
+            cloud = segorient.orient(np.ma.masked_array(spoilt, hidden))
+            self.assertTrue(np.isnan(cloud.normals[::50]).all())
+            rest = ~hidden.any(axis=1)
+            self.assertTrue((np.sum(cloud.normals[rest] * outward[rest], axis=1) > 0.5).all())
+            plain = segorient.orient(points[rest].astype(dtype))
+            np.testing.assert_array_equal(cloud.normals[rest], plain.normals)
+        whole = np.ma.masked_array((100.0 * points).astype(np.int32), hidden)
+        self.assertTrue((segorient.knn(whole, 3).indices[::50] == -1).all())
+
+    def test_a_structured_array_gets_the_remedy(self):
+        fields = np.zeros(10, [("x", "f4"), ("y", "f4"), ("z", "f4")])
+        with self.assertRaisesRegex(TypeError, "structured_to_unstructured"):
+            segorient.orient(fields)
+
+    def test_strays_do_not_cost_precision(self):
+        points, outward = sphere(2000, MAP, 5.0)
+        for at in (0.0, 1e30, np.nan):
+            for count in (1, 10, 100):
+                with self.subTest(f"{count} at {at}"):
+                    spoilt = np.concatenate([np.full((count, 3), at), points])
+                    cloud = segorient.orient(spoilt)
+                    cosines = np.sum(cloud.normals[count:] * outward, axis=1)
+                    self.assertGreater(cosines.min(), 0.99)
+                    self.assertEqual(cloud.report["duplicates"], max(count - 1, 0) if at == 0.0 else 0)
+
+    def test_any_number_of_threads(self):
+        points = sphere(1000)[0]
+        expected = segorient.orient(points, threads=1).normals
+        for threads in (2, 7, 65536):
+            np.testing.assert_array_equal(segorient.orient(points, threads=threads).normals, expected)
+
+
 class Documentation(unittest.TestCase):
     def test_every_keyword_is_explained(self):
         for name in ("orient", "normals", "segment", "knn"):
@@ -456,6 +495,10 @@ class Documentation(unittest.TestCase):
             for keyword in inspect.signature(function).parameters:
                 with self.subTest(f"{name}: {keyword}"):
                     self.assertRegex(inspect.getdoc(function), rf":param [\w, ]*\b{keyword}\b")
+
+    def test_every_method_is_named(self):
+        for method in ("auto", "propagation", "boundary", "combined", "extremal", "hoppe"):
+            self.assertIn(f"``{method}``", inspect.getdoc(segorient.orient))
 
     def test_types_are_told(self):
         directory = os.path.dirname(segorient.__file__)

@@ -183,9 +183,24 @@ class Neighbors(NamedTuple):
     distances: Floats  #: (n, k) ascending; infinite where none is left
 
 
+def _unmasked(value: npt.ArrayLike) -> npt.NDArray[Any]:
+    """The same as an array; entries that a masked array hides are NaN, which no result comes from."""
+    if not isinstance(value, np.ma.MaskedArray) or value.dtype.kind not in "fiu":
+        return np.asarray(value)
+    if not np.ma.getmaskarray(value).any():
+        return np.asarray(value.data)
+    as_real = value if value.dtype.kind == "f" else value.astype(np.float64)
+    return np.asarray(as_real.filled(np.nan))
+
+
 def _rows(name: str, value: npt.ArrayLike) -> npt.NDArray[Any]:
     """Checks that this is an (n, 3) array of real numbers."""
-    array = np.asarray(value)
+    array = _unmasked(value)
+    if array.dtype.names is not None:
+        raise TypeError(
+            f"{name} must be an (n, 3) array of numbers, not one of fields {', '.join(array.dtype.names)}: "
+            f"numpy.lib.recfunctions.structured_to_unstructured({name}[['x', 'y', 'z']]) makes one of it"
+        )
     if array.dtype.kind not in "fiu":
         raise TypeError(f"{name} must be real numbers, not {array.dtype}")
     if array.ndim != 2 or array.shape[1] != 3:
@@ -213,6 +228,31 @@ def _moved(array: npt.NDArray[Any], origin: _Origin) -> Floats:
     return out
 
 
+def _is_far(low: _Origin, high: _Origin) -> bool:
+    """Floats resolve 1e-7 of the extent only near the origin."""
+    reach = max(np.abs(low).max(), np.abs(high).max())
+    with np.errstate(over="ignore"):
+        return bool(reach > 2.0 * (high - low).max())
+
+
+def _bulk_bounds(finite: npt.NDArray[Any]) -> Tuple[_Origin, _Origin]:
+    """Bounds of all but strays: of what is within 16 times the range between the quartiles."""
+    low = finite.min(axis=0).astype(np.float64)
+    high = finite.max(axis=0).astype(np.float64)
+    if not _is_far(low, high):
+        ranks = [len(finite) // 4, len(finite) // 2, min(3 * len(finite) // 4, len(finite) - 1)]
+        quarter, median, most = np.partition(finite, ranks, axis=0)[ranks].astype(np.float64)
+        width = (most - quarter).max()
+        if width > 0.0:
+            with np.errstate(over="ignore", invalid="ignore"):
+                inside = (np.abs(finite - median) <= 16.0 * width).all(axis=1)
+            # More than a quarter are no strays: half of a depth image may be at 0,0,0.
+            if 4 * np.count_nonzero(~inside) <= len(finite):
+                low = finite[inside].min(axis=0).astype(np.float64)
+                high = finite[inside].max(axis=0).astype(np.float64)
+    return low, high
+
+
 def _local(points: npt.ArrayLike) -> Tuple[Floats, _Origin]:
     """Points as float32 near the origin, and what they were moved by."""
     array = _rows("points", points)
@@ -222,11 +262,14 @@ def _local(points: npt.ArrayLike) -> Tuple[Floats, _Origin]:
     if array.dtype != np.float32 and len(array) > 0:
         finite = array[np.isfinite(array).all(axis=1)]
         if len(finite) > 0:
-            low = finite.min(axis=0).astype(np.float64)
-            high = finite.max(axis=0).astype(np.float64)
-            # Floats resolve 1e-7 of the extent only near the origin.
-            if max(np.abs(low).max(), np.abs(high).max()) > 2.0 * (high - low).max():
+            low, high = _bulk_bounds(finite)
+            if _is_far(low, high):
                 origin = low + 0.5 * (high - low)
+            moved = _moved(array, origin)
+            # To a neighbourhood that holds a point so far away, floats make the bulk one place.
+            most = 2.0**24 * (high - low).max() + max(np.abs(low).max(), np.abs(high).max())
+            moved[(np.abs(moved) > most).any(axis=1)] = np.nan
+            return moved, origin
     return _moved(array, origin), origin
 
 
@@ -425,7 +468,7 @@ def orient(
 
     :param points: (n, 3)
     :param method: of orientation: ``auto`` (the best known), ``propagation``, ``boundary``,
-        ``combined`` or ``extremal`` (the paper's)
+        ``combined`` or ``extremal`` (the paper's), ``hoppe`` (the classical tree over points)
     :param k: neighbours of a point; None: from the cloud's noise
     :param normals: estimator for the paper's methods: ``auto`` (chosen from the cloud itself),
         ``plane``, ``lct``, ``ldt``, ``awas``, ``awas3``; method ``auto`` has its own way
@@ -450,7 +493,7 @@ def orient(
     :param keep: (n, 3) normals whose signs say something; NaN or 0: none
     :param seeds: points and their normals, (m, 3) each, that are known
     :param find_sensors: where none is known, look for where the sensors stood, see :func:`sensors`
-    :param threads: 0 = all cores; results do not depend on it
+    :param threads: 0 = as many as the work is worth; results do not depend on it
     :param progress: called with a stage's name and the fraction that is done
     :raises TypeError, ValueError: for arguments that make no sense
     """
@@ -554,7 +597,7 @@ def normals(
     :param delta: degrees, what makes a border a sharp one for `recompute`, which then follows the
         paper's rule instead of fitting surfaces to one side
     :param recompute: rounds of finding normals at sharp edges again
-    :param threads: 0 = all cores; results do not depend on it
+    :param threads: 0 = as many as the work is worth; results do not depend on it
     :param progress: called with a stage's name and the fraction that is done
     :raises TypeError, ValueError: for arguments that make no sense
     """
@@ -587,7 +630,7 @@ def segment(
     :param delta: degrees, see :func:`normals`
     :param epsilon: degrees, by how much the clean-up may exceed `beta`; 10
     :param recompute: rounds of finding normals at sharp edges again before the segments are made anew
-    :param threads: 0 = all cores; results do not depend on it
+    :param threads: 0 = as many as the work is worth; results do not depend on it
     :param progress: called with a stage's name and the fraction that is done
     :raises TypeError, ValueError: for arguments that make no sense
     """
@@ -610,7 +653,7 @@ def knn(
     :param points: (n, 3)
     :param k: neighbours, the point included
     :param queries: (m, 3) places whose nearest points are wanted instead
-    :param threads: 0 = all cores; results do not depend on it
+    :param threads: 0 = as many as the work is worth; results do not depend on it
     :raises TypeError, ValueError: for arguments that make no sense
     """
     wanted = _whole("k", k, 1, 1000)
