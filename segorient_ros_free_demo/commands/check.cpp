@@ -171,7 +171,7 @@ int runCheck(const std::vector<std::string>& words) {
   line.options()("report", po::value(&report_path), "what was found, as JSON")(
       "picture", po::value(&picture_path), "PNG: from two sides, what is at fault in red");
   takeSharedOptions(line);
-  common.add(line);
+  common.add(line, "all places that contradict");
   if (!line.parse(words)) return 0;
   common.check();
   require(!line.given("keep-orientation") || !line.get<bool>("keep-orientation"),

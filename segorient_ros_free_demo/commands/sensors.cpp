@@ -103,7 +103,7 @@ int runSensors(const std::vector<std::string>& words) {
   CommonOptions common;
   line.arguments({"IN", "OUT.json"}, 1);
   takeSharedOptions(line, false);
-  common.add(line);
+  common.add(line, "a line for every sensor");
   if (!line.parse(words)) return 0;
   common.check();
   const std::string out = line.argument("OUT.json");

@@ -556,7 +556,7 @@ def check(
     :param points: (n, 3)
     :param normals: (n, 3), of any length; NaN or 0: none
     :param viewpoint, viewpoints, trajectory, times, up, scans, organized, closed: as of :func:`orient`
-    :param threads: 0 = all cores; results do not depend on it
+    :param threads: 0 = as many as the work is worth; results do not depend on it
     :param progress: called with a stage's name and the fraction that is done
     :raises TypeError, ValueError: for arguments that make no sense
     """
@@ -681,7 +681,7 @@ def sensors(
     :param points: (n, 3)
     :param suggestions: (m, 3) positions that are tried first; None: the origin
     :param width: pixels in a row of an organised cloud, row by row; 0: not organised
-    :param threads: 0 = all cores; results do not depend on it
+    :param threads: 0 = as many as the work is worth; results do not depend on it
     :raises TypeError, ValueError: for arguments that make no sense
     """
     cores = _whole("threads", threads, 0, 1 << 16)
