@@ -10,8 +10,8 @@
 #include <segorient/orientation/check_normals.h>
 #include <segorient/orientation/first_stages.h>
 #include <segorient/orientation/pipeline.h>
-#include <segorient/orientation/trajectory.h>
 #include <segorient/orientation/sensors.h>
+#include <segorient/orientation/trajectory.h>
 #include <segorient/search/median_hash_index.h>
 
 #include <array>
