@@ -69,8 +69,8 @@ TEST(Sensors, AMovingScannerIsFoundAlongItsWay) {
   EXPECT_EQ(points, scan.view().size);
 }
 
-// Hills 10 x 10 whose points are in strips more than twice as dense as what is between, as aircraft fly;
-// with a thickness, another such sheet below.
+// Hills 10 x 10 whose points are in strips more than twice as dense as what is between, as aircraft
+// fly; with a thickness, another such sheet below.
 std::vector<float> hills(std::size_t count, float thickness) {
   std::mt19937 random(5);
   std::uniform_real_distribution<float> unit(0.F, 1.F);
