@@ -70,8 +70,8 @@ void printSummary(const PipelineReport& report, const StageMemory& memory,
   std::printf("written         %s\n", out.c_str());
 }
 
-void addSensors(const PipelineReport& report, const std::array<double, 3>& origin,
-                JsonWriter& json) {
+void addKnownSensors(const PipelineReport& report, const std::array<double, 3>& origin,
+                     JsonWriter& json) {
   json.beginArray("known_sensors");
   for (const KnownSensor& s : report.known_sensors) {
     json.beginItem();
@@ -174,7 +174,7 @@ std::string reportText(const OrientedCloud& cloud, const StageMemory& memory,
     json.endObject();
   }
   json.endArray();
-  addSensors(report, origin, json);
+  addKnownSensors(report, origin, json);
   addTo(json, report.sensors, origin);
   addSegments(cloud, json);
   return json.finish();

@@ -102,7 +102,7 @@ int runSensors(const std::vector<std::string>& words) {
       "segorient sensors scan.pcd sensors.json");
   CommonOptions common;
   line.arguments({"IN", "OUT.json"}, 1);
-  takeSharedOptions(line, false);
+  takeSharedOptions(line);
   common.add(line, "a line for every sensor");
   if (!line.parse(words)) return 0;
   common.check();

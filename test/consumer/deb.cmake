@@ -17,12 +17,14 @@ foreach(needed libpcl-common libpcl-search libpcl-features libpcl-surface libpcl
   endif()
 endforeach()
 execute_process(COMMAND dpkg-deb -x ${package} ${WORK}/root COMMAND_ERROR_IS_FATAL ANY)
+# Installed, the libraries are where the loader looks.
+set(loader LD_LIBRARY_PATH=${WORK}/root/usr/lib)
 if(EXISTS ${WORK}/root/usr/lib/python3/dist-packages/segorient)
   if(NOT depends MATCHES "python3-numpy")
     message(FATAL_ERROR "the package does not ask for python3-numpy")
   endif()
   execute_process(COMMAND ${CMAKE_COMMAND} -E env PYTHONPATH=${WORK}/root/usr/lib/python3/dist-packages
-    PYTHONDONTWRITEBYTECODE=1 ${PYTHON} -c "import segorient" COMMAND_ERROR_IS_FATAL ANY)
+    PYTHONDONTWRITEBYTECODE=1 ${loader} ${PYTHON} -c "import segorient" COMMAND_ERROR_IS_FATAL ANY)
 endif()
-execute_process(COMMAND ${WORK}/root/usr/bin/segorient orient ${DATA} ${WORK}/oriented.pcd
+execute_process(COMMAND ${CMAKE_COMMAND} -E env ${loader} ${WORK}/root/usr/bin/segorient orient ${DATA} ${WORK}/oriented.pcd
   COMMAND_ERROR_IS_FATAL ANY)

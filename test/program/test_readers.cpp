@@ -196,7 +196,7 @@ TEST(Readers, TextWithNamesCountLineSeparatorsAndComments) {
   EXPECT_EQ(named.value(*named.find("t"), 0), 9.0);
   const CloudTable counted = readCloud(directory.write("a.pts", "2\n1 2 3 4\n5;6;7;8\n"));
   EXPECT_EQ(counted.size, 2U);
-  EXPECT_EQ(counted.value(*counted.find("column_4"), 1), 8.0);
+  EXPECT_EQ(counted.value(*counted.find("intensity"), 1), 8.0);
   const CloudTable normals =
       readCloud(directory.write("a.xyz", "// x\n1 2 3 0 0 1\n\n+1 2 3 1 0 0\n"));
   EXPECT_TRUE(normals.hasNormals());

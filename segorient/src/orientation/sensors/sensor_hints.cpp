@@ -2,6 +2,8 @@
 // Copyright (c) 2026, the segorient authors
 #include "orientation/sensors/sensor_hints.h"
 
+#include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <limits>
 
@@ -24,8 +26,11 @@ void addViewpoints(const SensorReport& report, OrientationHints& hints) {
 }  // namespace
 
 bool lacksSensors(const OrientationHints& hints) {
-  return !hints.has_viewpoint && !hints.has_direction && hints.viewpoints.empty() &&
-         hints.normals.empty() && hints.surface != SurfaceKind::CLOSED;
+  // A column of unknown places says no more than none.
+  const bool any = std::any_of(hints.viewpoints.begin(), hints.viewpoints.end(),
+                               [](float v) { return std::isfinite(v); });
+  return !hints.has_viewpoint && !hints.has_direction && !any && hints.normals.empty() &&
+         hints.surface != SurfaceKind::CLOSED;
 }
 
 SensorReport addFoundSensors(const PointView& points, PreparedCloud& cloud, int threads,
