@@ -105,6 +105,9 @@ struct Scales {
 constexpr Scales<4> kFew{{8, 12, 18, kSheetNeighbors}};
 constexpr Scales<6> kMany{{8, 12, 18, 27, 40, 60}};
 constexpr int kReach = 66;
+// ns a point, see resolveThreads().
+constexpr double kVoteTime = 20000.0;
+constexpr double kFitTime = 2000.0;
 
 }  // namespace
 
@@ -116,7 +119,7 @@ bool needsScanScales(const PointView& points, const Neighborhoods& nb, int small
   const std::size_t step = std::max<std::size_t>(1, points.size / kSamples);
   const std::size_t n = (points.size + step - 1) / step;
   std::size_t asking = 0;
-#pragma omp parallel for num_threads(resolveThreads(threads)) schedule(dynamic, 32) \
+#pragma omp parallel for num_threads(resolveThreads(threads, n, kVoteTime)) schedule(dynamic, 32) \
     reduction(+ : asking)
   for (std::size_t s = 0; s < n; ++s) {
     const std::size_t i = s * step;
@@ -151,7 +154,7 @@ std::vector<ScanPlane> fitScanPlanes(const PointView& points, const std::vector<
     index.nearestKAll(kReach + 1, nb, false);
   }
   std::vector<Scales<6>::Fits> fits(n);
-  const int t = resolveThreads(threads);
+  const int t = resolveThreads(threads, n, kFitTime);
 #pragma omp parallel for num_threads(t) schedule(dynamic, 512)
   for (std::size_t i = 0; i < n; ++i) fits[i] = kMany.fit(points, nb, i, spacing[i]);
   std::vector<ScanPlane> out(n);

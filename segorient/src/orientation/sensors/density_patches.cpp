@@ -165,7 +165,8 @@ DensityPatches DensityPatches::thinned(std::size_t count) const {
 
 DensityPatches densityPatches(const PointView& points, const search::MedianHashIndex& index,
                               int threads) {
-  const int team = resolveThreads(threads);
+  constexpr double kPatchTime = 3000.0;  // ns, see resolveThreads()
+  const int team = resolveThreads(threads, std::min(points.size, kSample), kPatchTime);
   std::vector<DensityPatches> scales;
   for (const int k : kScales) {
     if (points.size < static_cast<std::size_t>(k) * kIndependent) break;

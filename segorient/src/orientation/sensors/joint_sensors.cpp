@@ -43,7 +43,8 @@ void assignPlaces(PreparedCloud& cloud, const DensityPatches& patches,
   search::MedianHashIndex::Options options;
   options.threads = threads;
   index.build({centers.data(), 3, patches.size()}, nullptr, options);
-  const int team = resolveThreads(threads);
+  constexpr double kQueryTime = 300.0;  // ns, see resolveThreads()
+  const int team = resolveThreads(threads, cloud.size(), kQueryTime);
 #pragma omp parallel for schedule(static) num_threads(team)
   for (std::size_t i = 0; i < cloud.size(); ++i) {
     pcl::index_t nearest = 0;

@@ -216,7 +216,8 @@ Track searchTrack(const DensityPatches& patches, const Extent& extent, int threa
   const DensityPatches some = patches.thinned(kPieces);
   std::vector<Line> lines = startLines(some, extent);
   std::vector<double> costs(lines.size());
-  const int team = resolveThreads(threads);
+  constexpr double kFitTime = 1e6;  // ns a line, see resolveThreads()
+  const int team = resolveThreads(threads, lines.size(), kFitTime);
 #pragma omp parallel num_threads(team)
   {
     TrackModel model(some);

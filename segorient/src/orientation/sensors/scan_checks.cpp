@@ -19,6 +19,9 @@ constexpr std::size_t kSamples = 3000;
 // Neighbours of the plane that density and incidence are measured in: as many as an edge leaves
 // flat and noise of half a spacing does not tilt.
 constexpr int kPlane = 24;
+// ns a point, see resolveThreads().
+constexpr double kRayTime = 2000.0;
+constexpr double kPairTime = 1000.0;
 
 float dot(const float* a, const float* b) {
   return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
@@ -93,7 +96,7 @@ std::vector<std::uint8_t> Scan::hidden(bool all) const {
   options.threads = threads_;
   index.build({direction_.data(), 4, size()}, nullptr, options);
   std::vector<std::uint8_t> out(n, 0);
-#pragma omp parallel for num_threads(resolveThreads(threads_)) schedule(dynamic, 64)
+#pragma omp parallel for num_threads(resolveThreads(threads_, n, kRayTime)) schedule(dynamic, 64)
   for (std::size_t s = 0; s < n; ++s) {
     const std::size_t i = s * step;
     const Plane plane = planeOf(view(), near_, i, kPlane);
@@ -185,7 +188,7 @@ ContraryPairs findContraryPairs(const PointView& points, const Neighborhoods& nb
     std::array<std::int8_t, kAround> agree;  // 0 where nothing is said
   };
   std::vector<Pairs> found(n);
-#pragma omp parallel for num_threads(resolveThreads(threads)) schedule(dynamic, 256)
+#pragma omp parallel for num_threads(resolveThreads(threads, n, kPairTime)) schedule(dynamic, 256)
   for (std::size_t s = 0; s < n; ++s) {
     found[s].agree.fill(0);
     const std::size_t i = s * step;

@@ -187,7 +187,8 @@ std::optional<FittedPlace> searchStation(const DensityPatches& patches, float co
   const double diagonal = extent.diagonal();
   const DensityPatches coarse = patches.thinned(kCoarse);
   const std::vector<Position> places = placesAround(extent, kPlacesInside);
-  const int team = resolveThreads(threads);
+  constexpr double kTermTime = 10.0;  // ns for one patch at one place, see resolveThreads()
+  const int team = resolveThreads(threads, places.size() * coarse.size(), kTermTime);
   // The best of each law, of those with a vertical the best vertical.
   std::vector<FittedPlace> found;
   for (const Place& law : lawsAt({0.0, 0.0, 0.0})) {
