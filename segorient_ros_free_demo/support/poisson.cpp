@@ -15,7 +15,7 @@
 #include "io/cloud_writer.h"
 #include "io/output_file.h"
 #include "render/scene.h"
-#include "support/silent_errors.h"
+#include "support/silence.h"
 
 namespace segorient::program {
 namespace {
@@ -40,7 +40,7 @@ CloudTable poissonSurface(const LocalPoints& points, const std::vector<float>& n
   std::vector<pcl::Vertices> polygons;
   {
     // PCL's own remarks are no part of what this program says.
-    const SilentErrors silence;
+    const Silence silence;
     poisson.performReconstruction(vertices, polygons);
   }
   table.size = table.width = vertices.size();

@@ -5,10 +5,12 @@
 #include <sys/stat.h>
 
 #include <csignal>
+#include <cstdio>
 
 #include "io/errors.h"
 #include "io/output_file.h"
 #include "scratch_directory.h"
+#include "support/silence.h"
 
 namespace segorient::test {
 namespace {
@@ -134,6 +136,21 @@ TEST(OutputFile, ASignalLeavesNoHalfFile) {
   EXPECT_EXIT(interruptTwoFiles(directory.file("out.pcd"), directory.file("report.json")),
               testing::KilledBySignal(SIGINT), "");
   EXPECT_EQ(directory.entries(), 0U);
+}
+
+TEST(Silence, NothingGetsOutWhileItLasts) {
+  testing::internal::CaptureStdout();
+  testing::internal::CaptureStderr();
+  std::printf("before ");
+  {
+    const program::Silence silence;
+    std::printf("within");
+    std::fprintf(stderr, "within");
+  }
+  std::printf("after");
+  std::fprintf(stderr, "after");
+  EXPECT_EQ(testing::internal::GetCapturedStdout(), "before after");
+  EXPECT_EQ(testing::internal::GetCapturedStderr(), "after");
 }
 
 }  // namespace
