@@ -33,6 +33,7 @@
 #include <vector>
 
 #include "common/compact_cloud.h"
+#include "orientation/orient_segments.h"
 
 namespace {
 
