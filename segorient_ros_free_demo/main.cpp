@@ -2,6 +2,7 @@
 // Copyright (c) 2026, the segorient authors
 #include <pcl/console/print.h>
 
+#include <algorithm>
 #include <array>
 #include <cstdlib>
 #include <iostream>
@@ -54,7 +55,13 @@ int run(const std::vector<std::string>& words) {
     return 2;
   }
   if (words[0] == "--help" || words[0] == "-h" || words[0] == "help") {
-    if (words.size() > 1) return run({words[1], "--help"});
+    const bool of_command =
+        words.size() > 1 && std::any_of(kCommands.begin(), kCommands.end(),
+                                        [&](const Command& c) { return words[1] == c.name; });
+    if (of_command) return run({words[1], "--help"});
+    if (words.size() > 1 && words[1] != "help" && words[1].rfind('-', 0) != 0) {
+      return run({words[1]});  // which says that there is none
+    }
     printHelp(std::cout);
     return 0;
   }

@@ -65,6 +65,8 @@ for test in "${tests[@]}"; do
     failed=1
   fi
   count=$(sed -n 's/^\[  PASSED  \] \([0-9]*\) test.*/\1/p' "$work/log/$name.txt" | tail -1)
+  # A program that ran nothing has not passed.
+  if [ -z "$count" ] || [ "$count" = 0 ]; then result=failed; failed=1; fi
   echo "$test: ${count:-0} tests passed; $result"
   grep '^\[  FAILED  \]' "$work/log/$name.txt" | sort -u || true
 done

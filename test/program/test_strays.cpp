@@ -33,7 +33,7 @@ std::vector<Point> mapCloud(std::size_t n) {
   for (std::size_t i = 0; i < n; ++i) {
     const double x = u(random);
     const double y = u(random);
-    points.push_back({kMap[0] + x, kMap[1] + y, kMap[2] + std::sin(x)});
+    points.push_back({kMap[0] + x, kMap[1] + y, kMap[2] + 30.0 * std::sin(0.3 * x)});
   }
   return points;
 }

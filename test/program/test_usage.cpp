@@ -27,6 +27,10 @@ TEST(Usage, HelpOfTheProgramAndOfEveryCommand) {
   EXPECT_EQ(runProgram({"help", "orient"}).out, orient);
   EXPECT_EQ(runProgram({"--help", "orient"}).out, orient);
   EXPECT_EQ(runProgram({"help", "polish"}).status, 2);
+  for (const std::string again : {"help", "--help", "-h"}) {
+    EXPECT_EQ(runProgram({"help", again}).out, help.out);
+    EXPECT_EQ(runProgram({again, again}).out, help.out);
+  }
   // What a command makes no use of is not in its help.
   EXPECT_NE(orient.find("--verbose"), std::string::npos);
   EXPECT_EQ(runProgram({"segment", "--help"}).out.find("--verbose"), std::string::npos);

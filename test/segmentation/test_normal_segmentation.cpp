@@ -338,6 +338,33 @@ TEST(NormalSegmentation, SmoothModeAndResidualAsInRegionGrowing) {
   EXPECT_GE(facesOf(s), 12U) << "no farther than to the next columns";
 }
 
+TEST(NormalSegmentation, ResidualIsInTheUnitOfTheCloud) {
+  const auto cloud = pcl::make_shared<pcl::PointCloud<pcl::PointXYZ>>();
+  const auto normals = pcl::make_shared<pcl::PointCloud<pcl::Normal>>();
+  cylinder(*cloud, *normals);
+  for (const float unit : {1e-3F, 1.F, 1e3F}) {
+    const auto scaled = pcl::make_shared<pcl::PointCloud<pcl::PointXYZ>>(*cloud);
+    for (pcl::PointXYZ& p : *scaled) {
+      for (float* v : {&p.x, &p.y, &p.z}) *v *= unit;
+    }
+    Segmenter s;
+    s.setInputCloud(scaled);
+    s.setInputNormals(normals);
+    s.setReferenceThreshold(2.F);  // alpha alone
+    s.setSmoothnessThreshold(0.3F);
+    s.setUniteSmooth(false);
+    s.setAbsorbSmall(false);
+    s.setExtractEdges(false);
+    s.setConnectSmall(false);
+    s.setSettleEdges(false);
+    s.setResidualTestFlag(true);
+    s.setResidualThreshold(0.1F * unit);
+    EXPECT_EQ(facesOf(s), 1U) << unit;
+    s.setResidualThreshold(1e-5F * unit);
+    EXPECT_GE(facesOf(s), 12U) << unit;
+  }
+}
+
 TEST(NormalSegmentation, SettingsWithoutAMeaningGiveNoSegments) {
   const auto cloud = pcl::make_shared<pcl::PointCloud<pcl::PointXYZ>>();
   const auto normals = pcl::make_shared<pcl::PointCloud<pcl::Normal>>();

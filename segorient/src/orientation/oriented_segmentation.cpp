@@ -97,7 +97,8 @@ OrientedSegmentation orientSegmentation(const PointView& points, const NormalVie
   const Segmentation of_points =
       segmentation != nullptr
           ? segmentation::gather(cloud, point_normals, *segmentation)
-          : segmentByNormals(cloud.points(), normal_view, neighborhoods, segmentation_options);
+          : segmentByNormals(cloud.points(), normal_view, neighborhoods,
+                             segmentation::inUnitOf(cloud, segmentation_options));
   SegmentGraph graph;  // the default method does without
   if (options.method != OrientationMethod::AUTO)
     graph = buildSegmentGraph(of_points, neighborhoods);

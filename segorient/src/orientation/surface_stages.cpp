@@ -9,6 +9,7 @@
 #include <cstdint>
 
 #include "features/automatic_normals.h"
+#include "segmentation/segmentation_rows.h"
 
 namespace segorient::detail {
 
@@ -32,8 +33,8 @@ void SurfaceStages::findNormals(const PipelineOptions& options) {
 }
 
 void SurfaceStages::findSegments(const SegmentationOptions& options, Segmentation* faces) {
-  segmentation = segmentByNormals(cloud.points(), normalView(), cloud.neighborhoods(), options,
-                                  nullptr, faces);
+  segmentation = segmentByNormals(cloud.points(), normalView(), cloud.neighborhoods(),
+                                  segmentation::inUnitOf(cloud, options), nullptr, faces);
 }
 
 void SurfaceStages::recomputeNormals(const PipelineOptions& options) {

@@ -94,7 +94,7 @@ void CloudSegmentation::computePrepared(const Input& input, const SegmentationOp
     cloud_->dropIndex();
   }
   const std::vector<float> normals = segmentation::gatherNormals(*cloud_, input.normals);
-  SegmentationOptions used = options;
+  SegmentationOptions used = segmentation::inUnitOf(*cloud_, options);
   used.neighbors = neighbors_;
   Segmentation faces;
   const Segmentation segments =

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 
 namespace segorient::segmentation {
 namespace {
@@ -42,6 +43,12 @@ void collectMembers(Segmentation& segmentation) {
     if (label < 0) continue;
     segmentation.members[next[at(label)]++] = static_cast<pcl::index_t>(i);
   }
+}
+
+SegmentationOptions inUnitOf(const PreparedCloud& cloud, const SegmentationOptions& options) {
+  SegmentationOptions out = options;
+  if (out.max_residual < std::numeric_limits<float>::max()) out.max_residual /= cloud.unit();
+  return out;
 }
 
 std::vector<float> gatherNormals(const PreparedCloud& cloud, const NormalView& row_normals) {

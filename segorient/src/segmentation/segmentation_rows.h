@@ -3,6 +3,7 @@
 #pragma once
 
 #include <segorient/common/point_view.h>
+#include <segorient/segmentation/region_growing.h>
 #include <segorient/segmentation/segmentation.h>
 
 #include <cstddef>
@@ -14,6 +15,9 @@ namespace segorient::segmentation {
 
 /// Fills in members, and each segment's place and size among them, from the labels.
 void collectMembers(Segmentation& segmentation);
+
+/// Settings whose lengths are in the input's unit, in that of the cloud.
+SegmentationOptions inUnitOf(const PreparedCloud& cloud, const SegmentationOptions& options);
 
 /// Normals and curvatures of a cloud's points from those of its rows, 4 floats a point.
 std::vector<float> gatherNormals(const PreparedCloud& cloud, const NormalView& row_normals);

@@ -79,33 +79,29 @@ Bounds bulkBounds(std::size_t size, const Position& position) {
   // Where all are far from the origin already, strays change little.
   if (all.points == 0 || all.isFar()) return all;
   // Strays matter only if they are farther away than the bulk is wide: then all of that is in a few
-  // of these slots.
+  // of these slots along the longest side. The others may be no longer than without strays.
   constexpr std::size_t kSlots = 64;
-  std::array<std::array<std::size_t, kSlots>, 3> slots{};
+  std::array<std::size_t, kSlots> slots{};
+  std::size_t a = 0;
+  for (std::size_t b = 1; b < 3; ++b) {
+    if (all.high[b] / 2.0 - all.low[b] / 2.0 > all.high[a] / 2.0 - all.low[a] / 2.0) a = b;
+  }
   for (std::size_t i = 0; i < size; ++i) {
     const std::array<double, 3> p = position(i);
     if (!isFinitePoint(p)) continue;
-    for (std::size_t a = 0; a < 3; ++a) {
-      // Halves, since the extent itself may overflow.
-      const double range = all.high[a] / 2.0 - all.low[a] / 2.0;
-      const double at = range > 0.0 ? (p[a] / 2.0 - all.low[a] / 2.0) / range : 0.0;
-      ++slots[a][static_cast<std::size_t>(std::min(at * kSlots, kSlots - 1.0))];
-    }
+    // Halves, since the extent itself may overflow.
+    const double range = all.high[a] / 2.0 - all.low[a] / 2.0;
+    const double at = range > 0.0 ? (p[a] / 2.0 - all.low[a] / 2.0) / range : 0.0;
+    ++slots[static_cast<std::size_t>(std::min(at * kSlots, kSlots - 1.0))];
   }
-  bool narrow = true;
-  for (std::size_t a = 0; a < 3; ++a) {
-    std::size_t fullest = 0;
-    for (std::size_t s = 0; s + 1 < kSlots; ++s) {
-      fullest = std::max(fullest, slots[a][s] + slots[a][s + 1]);
-    }
-    narrow = narrow && 2 * fullest >= all.points;
-  }
-  if (!narrow) return all;
+  std::size_t fullest = 0;
+  for (std::size_t s = 0; s + 1 < kSlots; ++s) fullest = std::max(fullest, slots[s] + slots[s + 1]);
+  if (2 * fullest < all.points) return all;
   std::array<std::vector<double>, 3> coordinates;
   for (auto& axis : coordinates) axis.reserve(all.points);
   for (std::size_t i = 0; i < size; ++i) {
     const std::array<double, 3> p = position(i);
-    for (std::size_t a = 0; a < 3 && isFinitePoint(p); ++a) coordinates[a].push_back(p[a]);
+    for (std::size_t b = 0; b < 3 && isFinitePoint(p); ++b) coordinates[b].push_back(p[b]);
   }
   const Bounds fence = fenceAround(coordinates);
   Bounds bulk;

@@ -40,7 +40,7 @@ class FirstStages {
   std::vector<float> normals() const;  ///< 4 floats: normal, curvature; NaN where there is none
   /// The same with the signs that agree within each segment.
   std::vector<float> normalsBySegment() const;
-  Segmentation segmentation() const;  ///< sizes are in distinct points; members are not set
+  Segmentation segmentation() const;  ///< sizes are in rows
 
   const std::vector<StageTime>& times() const;
   int k() const;  ///< neighbours used, the point itself not counted

@@ -9,6 +9,7 @@
 
 #include "features/sheet_denoise.h"
 #include "features/sheet_normals.h"
+#include "segmentation/segmentation_rows.h"
 #include "segmentation/sheet_segmentation.h"
 
 namespace segorient::detail {
@@ -37,11 +38,10 @@ void findNeighbors(PreparedCloud& cloud, const PipelineOptions& options,
 }
 
 // Segments of the final normals, turned as most of their points are.
-void segmentFinal(const PointView& points, const Neighborhoods& table,
-                  const PipelineOptions& options, AutoStages& out) {
-  SegmentationOptions settings = options.segmentation;
+void segmentFinal(const PointView& points, const Neighborhoods& table, SegmentationOptions settings,
+                  int threads, AutoStages& out) {
   settings.neighbors = kSheetDegree;
-  settings.threads = options.threads;
+  settings.threads = threads;
   out.segmentation =
       segmentByNormals(points, {out.normals.data(), 4, points.size}, table, settings);
   Segmentation& segmentation = out.segmentation;
@@ -93,7 +93,8 @@ AutoStages runAutoStages(PreparedCloud& cloud, const PipelineOptions& options,
   out.orientation = std::move(oriented.orientation);
   out.spacing = oriented.spacing;
   begin("segmentation", 0.81);
-  segmentFinal(points, table, options, out);
+  segmentFinal(points, table, segmentation::inUnitOf(cloud, options.segmentation), options.threads,
+               out);
   return out;
 }
 
