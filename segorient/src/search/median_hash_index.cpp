@@ -6,6 +6,7 @@
 #include <memory>
 #include <utility>
 
+#include "common/median.h"
 #include "search/index_impl.h"
 #include "search/parallel_error.h"
 
@@ -30,12 +31,6 @@ std::vector<float> stepsOf(const BuildPoint* points, std::size_t count) {
 }
 
 constexpr double kQueryTime = 400.0;  // ns, see resolveThreads()
-
-float median(std::vector<float> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
 
 // Most points are hardly farther from the one before than from their 16th neighbour.
 bool areInOrder(const std::vector<float>& steps, const Layout& layout) {

@@ -10,6 +10,8 @@
 
 #include "orientation/checks/fault_patches.h"
 
+#include "common/dot.h"
+
 namespace segorient {
 namespace {
 
@@ -25,10 +27,6 @@ constexpr float kMost = std::numeric_limits<float>::max();
 
 std::size_t at(std::int32_t i) {
   return static_cast<std::size_t>(i);
-}
-
-float dot(const float* a, const float* b) {
-  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
 // To unit length, in double as lengths may be anything; false where there is no direction.

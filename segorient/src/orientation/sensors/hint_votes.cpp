@@ -5,12 +5,10 @@
 #include <cmath>
 #include <cstddef>
 
+#include "common/dot.h"
+
 namespace segorient::detail {
 namespace {
-
-float dot(const float* a, const float* b) {
-  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
 
 // What is seen edge-on says little: each vote weighs as much as it points along the normal.
 void vote(const float* normal, float sign, const float* direction, Ballot& ballot) {

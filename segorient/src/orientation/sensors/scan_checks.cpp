@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "common/dot.h"
 #include "common/median.h"
 #include "features/sheet_fit.h"
 
@@ -22,10 +23,6 @@ constexpr int kPlane = 24;
 // ns a point, see resolveThreads().
 constexpr double kRayTime = 2000.0;
 constexpr double kPairTime = 1000.0;
-
-float dot(const float* a, const float* b) {
-  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
 
 Plane planeOf(const PointView& points, const Neighborhoods& nb, std::size_t i, int k) {
   Moments m;
