@@ -227,8 +227,9 @@ SheetNormals estimateSheetNormals(const PointView& points, const Neighborhoods& 
     const Offsets o = gatherOffsets(points, nb, i, out.spacing[i]);
     store(fitPoint(o, smallest, noise, options), i, out, lopsided);
   }
-  if (options.scan_scales && !noise.thin &&
-      detail::needsScanScales(points, nb, out.scale, options.threads)) {
+  out.scan_scales = options.scan_scales && !noise.thin &&
+                    detail::needsScanScales(points, nb, out.scale, options.threads);
+  if (out.scan_scales) {
     const std::vector<detail::ScanPlane> planes =
         detail::fitScanPlanes(points, out.spacing, out.scale, options.threads);
     for (std::size_t i = 0; i < n; ++i) {

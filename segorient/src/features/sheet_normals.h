@@ -40,6 +40,7 @@ struct SheetNormals {
   float noise = 0.F;                   ///< see NoiseLevel::fine
   float residual = 0.F;                ///< median residual of the final fits, in spacings
   int scale = 0;                       ///< smallest neighbourhood that the noise allowed
+  bool scan_scales = false;            ///< whether so many points asked for larger ones
 };
 
 /// Estimates sheet normals.

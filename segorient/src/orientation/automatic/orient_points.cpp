@@ -7,6 +7,7 @@
 
 #include "common/median.h"
 #include "features/sheet_normals.h"
+#include "orientation/automatic/grazing_normals.h"
 #include "orientation/automatic/sensor_signs.h"
 #include "orientation/automatic/sheet_filter.h"
 #include "orientation/winding/winding_normals.h"
@@ -51,7 +52,10 @@ AutoNormals orientPoints(const PointView& points, const Neighborhoods& neighborh
     refineByWinding(points, sheets.spacing, sheets.residual, threads, filtered);
   }
   if (!out.orientation.toward.empty()) {
-    detail::faceSensors(out.orientation.toward, filtered);
+    faceSensors(out.orientation.toward, filtered);
+    if (sheets.scan_scales) {
+      replaceGrazingNormals(points, out.orientation.toward, threads, filtered);
+    }
   }
   out.normals = std::move(filtered.normals);
   for (std::size_t i = 0; i < points.size; ++i) {
