@@ -7,6 +7,7 @@
 #include <pybind11/numpy.h>
 #include <pybind11/pybind11.h>
 #include <pybind11/stl.h>
+#include <segorient/common/bulk_bounds.h>
 #include <segorient/orientation/check_normals.h>
 #include <segorient/orientation/first_stages.h>
 #include <segorient/orientation/pipeline.h>
@@ -16,6 +17,7 @@
 
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <memory>
 #include <stdexcept>
 #include <utility>
@@ -471,6 +473,37 @@ void searchQueries(const search::MedianHashIndex& index, const PointView& querie
   }
 }
 
+template <typename T>
+py::tuple frameOf(const py::array_t<T, py::array::forcecast>& points) {
+  const auto at = points.template unchecked<2>();
+  const auto position = [&](std::size_t i) {
+    std::array<double, 3> p{};
+    for (py::ssize_t a = 0; a < 3; ++a)
+      p[static_cast<std::size_t>(a)] = static_cast<double>(at(static_cast<py::ssize_t>(i), a));
+    return p;
+  };
+  const auto size = static_cast<std::size_t>(points.shape(0));
+  std::vector<double> origin(3, 0.0);
+  std::vector<std::int64_t> strays;
+  {
+    const py::gil_scoped_release unlocked;
+    const Bounds bulk = bulkBounds(size, position);
+    for (std::size_t a = 0; a < 3 && bulk.isFar(); ++a) origin[a] = bulk.middle()[a];
+    for (std::size_t i = 0; i < size; ++i) {
+      const std::array<double, 3> p = position(i);
+      const bool finite = std::isfinite(p[0]) && std::isfinite(p[1]) && std::isfinite(p[2]);
+      if (finite && bulk.isBeyondFloats(p)) strays.push_back(static_cast<std::int64_t>(i));
+    }
+  }
+  return py::make_tuple(column(std::move(origin)), column(std::move(strays)));
+}
+
+// What points are moved by so that floats do, and the rows that are beyond all floats.
+py::tuple frame(const py::array& points) {
+  if (py::isinstance<py::array_t<float>>(points)) return frameOf<float>(points);
+  return frameOf<double>(points);
+}
+
 py::tuple knn(const FloatArray& points, int k, const py::object& queries, int threads) {
   const PointView rows = viewOf(points);
   const FloatArray query_array = queries.is_none() ? FloatArray() : queries.cast<FloatArray>();
@@ -514,5 +547,6 @@ PYBIND11_MODULE(_core, module) {
   module.def("join_trajectory", &segorient::trajectoryViewpoints);
   module.def("sensors", &segorient::sensors);
   module.def("knn", &segorient::knn);
+  module.def("frame", &segorient::frame);
   segorient::definePage(module);
 }

@@ -27,11 +27,6 @@ bool viewable(const CloudTable& table, const std::array<const Field*, 3>& xyz) {
          table.row_bytes % sizeof(float) == 0 && xyz[0]->offset % sizeof(float) == 0;
 }
 
-double farthestCoordinate(const std::array<double, 3>& p, const std::array<double, 3>& origin) {
-  return std::max(
-      {std::abs(p[0] - origin[0]), std::abs(p[1] - origin[1]), std::abs(p[2] - origin[2])});
-}
-
 }  // namespace
 
 std::string pclName(std::string name) {
@@ -155,14 +150,11 @@ LocalPoints::LocalPoints(const CloudTable& table) {
   reach_ = bulk.reach();
   const bool move = bulk.isFar();
   if (move) origin_ = bulk.middle();
-  // To a neighbourhood that holds a point so far away, floats make the bulk one place.
-  constexpr double kFloatSteps = 16777216.0;  // 2^24
-  const double most = kFloatSteps * extent_ + reach_;
   bool has_strays = false;
   for (std::size_t i = 0; i < table.size; ++i) {
     const auto p = position(i);
     const bool finite = std::isfinite(p[0]) && std::isfinite(p[1]) && std::isfinite(p[2]);
-    const bool near = finite && farthestCoordinate(p, origin_) <= most;
+    const bool near = finite && !bulk.isBeyondFloats(p);
     finite_ += near ? 1 : 0;
     has_strays = has_strays || (finite && !near);
   }
@@ -177,7 +169,7 @@ LocalPoints::LocalPoints(const CloudTable& table) {
   copy_.resize(3 * table.size);
   for (std::size_t i = 0; i < table.size; ++i) {
     const auto p = table.triple(xyz, i);
-    const bool near = farthestCoordinate(p, origin_) <= most;
+    const bool near = !bulk.isBeyondFloats(p);
     for (std::size_t a = 0; a < 3; ++a) {
       copy_[3 * i + a] =
           near ? static_cast<float>(p[a] - origin_[a]) : std::numeric_limits<float>::quiet_NaN();

@@ -57,7 +57,8 @@ void writeVtk(const OutputCloud& cloud, OutputFile& file);
 /// LAS: as the input's if that was one (version, records about the coordinate system, scale and
 /// offset), else 1.2 with the finest steps that hold the cloud, or 1.4 where what it has asks for
 /// it. Fields that LAS knows are those; all others, the normals first, become extra bytes, with the
-/// record that describes them. Points without finite coordinates are left out, with a warning.
+/// record that describes them. Points without finite coordinates are left out, with a
+/// warning, and strays so far away that integers could not tell the others apart.
 void writeLas(const OutputCloud& cloud, OutputFile& file);
 
 /// By the file's ending, .pcd, .ply, .las or .vtk; does not commit. What a PCD says by its

@@ -67,13 +67,15 @@ class Layout {
   std::uint64_t returns(std::size_t number) const { return returns_[number]; }
   const LasOrigin& origin() const { return origin_; }
 
-  bool hasPlace(std::size_t row) const {
-    return std::all_of(xyz_.begin(), xyz_.end(),
-                       [row](const Column* c) { return std::isfinite(valueOf(*c, row)); });
-  }
+  /// False where coordinates are not finite, or of a stray so far away that the grid of coordinates
+  /// would make the others one place.
+  bool hasPlace(std::size_t row) const { return !bulk_.isBeyondFloats(position(row)); }
   void makeRecord(std::size_t row, std::uint8_t* to) const;
 
  private:
+  std::array<double, 3> position(std::size_t row) const {
+    return {valueOf(*xyz_[0], row), valueOf(*xyz_[1], row), valueOf(*xyz_[2], row)};
+  }
   double ticks(std::size_t a, double v) const { return std::round((v - offset_[a]) / scale_[a]); }
   double stored(std::size_t a, double v) const { return scale_[a] * ticks(a, v) + offset_[a]; }
   double largest(const char* name) const;
@@ -85,6 +87,7 @@ class Layout {
   const OutputCloud& cloud_;
   LasOrigin origin_;
   std::array<const Column*, 3> xyz_;
+  Bounds bulk_;
   std::array<ValueRange, 3> range_;
   std::array<std::uint64_t, 16> returns_{};
   std::uint64_t points_ = 0;
@@ -101,6 +104,7 @@ class Layout {
 
 Layout::Layout(const OutputCloud& cloud)
     : cloud_(cloud), xyz_{cloud.find("x"), cloud.find("y"), cloud.find("z")} {
+  bulk_ = bulkBounds(cloud.size, [this](std::size_t row) { return position(row); });
   if (cloud.las) origin_ = *cloud.las;
   measure();
   chooseFormat();
@@ -335,7 +339,8 @@ void writeLas(const OutputCloud& cloud, OutputFile& file) {
   const Layout layout(cloud);
   if (layout.skipped() > 0) {
     warn(file.path() + ": " + std::to_string(layout.skipped()) +
-         " points without finite coordinates are left out: LAS has no such points");
+         " points without coordinates, or too far away from the others, are left out: LAS has no "
+         "such points");
   }
   std::vector<std::vector<std::uint8_t>> records = layout.origin().records;
   if (!layout.extras().empty()) records.push_back(describeExtras(layout.extras()));

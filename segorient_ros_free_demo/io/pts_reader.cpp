@@ -43,11 +43,11 @@ CloudTable tableOf(const std::vector<double>& values, const Layout& layout,
   CloudTable table;
   table.size = values.size() / layout.columns;
   table.width = table.size;
-  std::array<ValueRange, 3> ranges;
-  for (std::size_t i = 0; i < table.size; ++i) {
-    for (std::size_t c = 0; c < 3; ++c) ranges[c].add(values[i * layout.columns + c]);
-  }
-  for (const char* name : {"x", "y", "z"}) table.addField(name, 'F', needDouble(ranges) ? 8 : 4);
+  const bool wide = needDouble(table.size, [&](std::size_t i) -> std::array<double, 3> {
+    const double* row = &values[i * layout.columns];
+    return {row[0], row[1], row[2]};
+  });
+  for (const char* name : {"x", "y", "z"}) table.addField(name, 'F', wide ? 8 : 4);
   if (layout.intensity) table.addField("intensity", 'F', 4);
   if (layout.normal > 0) {
     for (const char* name : {"normal_x", "normal_y", "normal_z"}) table.addField(name, 'F', 4);

@@ -138,13 +138,14 @@ bool isSeen(const Point& p) {
 }
 
 bool farFromOrigin(const std::vector<Scan>& scans) {
-  std::array<ValueRange, 3> ranges;
-  for (const Scan& scan : scans) {
-    for (const Point& p : scan.points) {
-      for (std::size_t c = 0; c < 3; ++c) ranges[c].add(p.position[c]);
-    }
-  }
-  return needDouble(ranges);
+  std::vector<std::size_t> ends;
+  std::size_t size = 0;
+  for (const Scan& scan : scans) ends.push_back(size += scan.points.size());
+  return needDouble(size, [&](std::size_t i) {
+    const auto end = std::upper_bound(ends.begin(), ends.end(), i);
+    const Scan& scan = scans[static_cast<std::size_t>(end - ends.begin())];
+    return scan.points[i + scan.points.size() - *end].position;
+  });
 }
 
 CloudTable tableOf(const std::vector<Scan>& scans, bool colors) {

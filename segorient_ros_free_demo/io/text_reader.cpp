@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026, the segorient authors
-#include <segorient/common/bulk_bounds.h>
-
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -9,6 +7,7 @@
 
 #include "io/readers.h"
 #include "io/text_numbers.h"
+#include "io/value_range.h"
 
 namespace segorient::program {
 namespace {
@@ -21,17 +20,16 @@ struct Numbers {
   double at(std::size_t row, std::size_t column) const { return values[row * columns + column]; }
 };
 
-// Floats resolve 1e-7 of a range only near 0; text far from it (map coordinates, times) stays in
-// double. Up to three columns are looked at together.
-bool needsDouble(const Numbers& numbers, const std::vector<std::size_t>& columns) {
-  const Bounds bulk = bulkBounds(numbers.rows(), [&](std::size_t row) {
+// Whether columns need doubles, as map coordinates and times do. Up to three are looked at
+// together.
+bool needDouble(const Numbers& numbers, const std::vector<std::size_t>& columns) {
+  return program::needDouble(numbers.rows(), [&](std::size_t row) {
     std::array<double, 3> p{0.0, 0.0, 0.0};
     for (std::size_t c = 0; c < std::min<std::size_t>(columns.size(), 3); ++c) {
       p[c] = numbers.at(row, columns[c]);
     }
     return p;
   });
-  return bulk.extent() > 0.0 && bulk.isFar();
 }
 
 // Six columns without names are taken for x y z and a normal if all those are of unit length.
@@ -57,10 +55,10 @@ CloudTable makeTable(const Numbers& numbers, const std::vector<std::string>& nam
   for (std::size_t c = 0; c < numbers.columns; ++c) {
     if (names[c] == "x" || names[c] == "y" || names[c] == "z") xyz.push_back(c);
   }
-  const bool far = needsDouble(numbers, xyz);
+  const bool far = needDouble(numbers, xyz);
   for (std::size_t c = 0; c < numbers.columns; ++c) {
     const bool coordinate = std::find(xyz.begin(), xyz.end(), c) != xyz.end();
-    const bool wide = coordinate ? far : !isFloatInPcl(names[c]) && needsDouble(numbers, {c});
+    const bool wide = coordinate ? far : !isFloatInPcl(names[c]) && needDouble(numbers, {c});
     table.addField(names[c], 'F', wide ? 8 : 4);
   }
   table.size = numbers.rows();

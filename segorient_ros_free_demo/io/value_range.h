@@ -2,9 +2,11 @@
 // Copyright (c) 2026, the segorient authors
 #pragma once
 
+#include <segorient/common/bulk_bounds.h>
+
 #include <algorithm>
-#include <array>
 #include <cmath>
+#include <cstddef>
 
 namespace segorient::program {
 
@@ -28,15 +30,12 @@ class ValueRange {
 };
 
 /// Whether coordinates need doubles: floats resolve 1e-7 of a range only near 0, not far from it
-/// (map coordinates, say).
-inline bool needDouble(const std::array<ValueRange, 3>& xyz) {
-  double extent = 0.0;
-  double reach = 0.0;
-  for (const ValueRange& r : xyz) {
-    extent = std::max(extent, r.extent());
-    reach = std::max(reach, r.reach());
-  }
-  return extent > 0.0 && reach > 2.0 * extent;
+/// (map coordinates, say). What a few strays would need does not count.
+/// \param position of each of `size` points, an array of three; not finite where there is none
+template <typename Position>
+bool needDouble(std::size_t size, const Position& position) {
+  const Bounds bulk = bulkBounds(size, position);
+  return bulk.extent() > 0.0 && bulk.isFar();
 }
 
 }  // namespace segorient::program

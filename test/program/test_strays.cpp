@@ -13,7 +13,9 @@
 #include <random>
 
 #include "io/cloud_table.h"
+#include "io/cloud_writer.h"
 #include "io/readers.h"
+#include "las_sample.h"
 #include "scratch_directory.h"
 
 namespace segorient::test {
@@ -65,7 +67,8 @@ TEST(Strays, DoNotMoveTheFrame) {
   const Bounds expected = boundsOf(clean);
   ASSERT_TRUE(expected.isFar());
   for (const std::size_t count : {1U, 10U, 100U}) {
-    for (const double at : {0.0, 1e30, -1e300, kNaN, 2e7}) {
+    // The last: all that there is lies far from the origin, the strays as well.
+    for (const double at : {0.0, 1e30, -1e300, kNaN, 2e7, 2e6}) {
       std::vector<Point> points = clean;
       addStrays(points, count, at);
       const CloudTable table = tableOf(points);
@@ -121,20 +124,91 @@ TEST(Strays, OfAllSortsOfCloudsDoNotHarm) {
   EXPECT_EQ(boundsOf({{-most, 0.0, 0.0}, {most, 0.0, 0.0}, {0.0, 0.0, 0.0}}).points, 3U);
 }
 
+// Every reader that chooses the precision by itself.
 TEST(Strays, LeaveTextItsDigits) {
   const ScratchDirectory directory;
-  for (const double at : {0.0, 1e30}) {
+  for (const double at : {0.5, 1e30}) {
     std::vector<Point> points = mapCloud(500);
     addStrays(points, 10, at);
-    const std::string path = directory.file("cloud.xyz");
-    {
-      std::ofstream file(path);
-      file << std::setprecision(17);
-      for (const Point& p : points) file << p[0] << " " << p[1] << " " << p[2] << "\n";
+    for (const std::string name : {"cloud.xyz", "cloud.pts", "cloud.obj", "cloud.ptx"}) {
+      SCOPED_TRACE(name);
+      const std::string path = directory.file(name);
+      {
+        std::ofstream file(path);
+        file << std::setprecision(17);
+        if (name == "cloud.pts") file << points.size() << "\n";
+        if (name == "cloud.ptx") {
+          file << points.size() << "\n1\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n"
+               << "1 0 0 0\n0 1 0 0\n0 0 1 0\n0 0 0 1\n";
+        }
+        for (const Point& p : points) {
+          if (name == "cloud.obj") file << "v ";
+          file << p[0] << " " << p[1] << " " << p[2] << "\n";
+        }
+      }
+      const CloudTable table = program::readCloud(path);
+      ASSERT_EQ(table.size, points.size());
+      for (std::size_t i = 0; i < points.size(); ++i) EXPECT_EQ(table.position(i), points[i]);
     }
-    const CloudTable table = program::readCloud(path);
-    ASSERT_EQ(table.size, points.size());
-    for (std::size_t i = 0; i < points.size(); ++i) EXPECT_EQ(table.position(i), points[i]);
+  }
+}
+
+// Of a stray alone, floats are enough for a cloud near the origin.
+TEST(Strays, DoNotMakeACloudFar) {
+  const ScratchDirectory directory;
+  std::string rows;
+  for (int i = 0; i < 100; ++i) rows += std::to_string(i) + " " + std::to_string(i * i) + " 1\n";
+  for (const std::string name : {"cloud.xyz", "cloud.pts"}) {
+    const CloudTable table = program::readCloud(directory.write(name, rows + "1e9 1e9 1e9\n"));
+    EXPECT_EQ(table.find("x")->size, 4U) << name;
+  }
+}
+
+// LAS has whole numbers: what they stand for comes back to the last bit.
+TEST(Strays, LeaveLasItsNumbers) {
+  const ScratchDirectory directory;
+  LasSample sample = lasSample(0, 300);
+  for (const std::size_t count : {1U, 10U, 100U}) {
+    LasSample spoilt = sample;
+    for (std::size_t i = 0; i < count; ++i) {
+      std::string point = sample.points[0];
+      putAt(point, 0, std::int32_t{-500000000});  // at x = 0
+      putAt(point, 4, static_cast<std::int32_t>(-2100000000));
+      spoilt.points.insert(spoilt.points.begin() + static_cast<std::ptrdiff_t>(2 * i), point);
+    }
+    const CloudTable clean = program::readCloud(directory.write("clean.las", sample.bytes()));
+    const CloudTable table = program::readCloud(directory.write("spoilt.las", spoilt.bytes()));
+    const LocalPoints expected(clean);
+    const LocalPoints local(table);
+    EXPECT_EQ(local.origin(), expected.origin());
+    EXPECT_EQ(local.extent(), expected.extent());
+    {
+      program::OutputFile file(directory.file("again.las"));
+      writeLas(program::OutputCloud(table), file);
+      file.commit();
+    }
+    const CloudTable again = program::readCloud(directory.file("again.las"));
+    ASSERT_EQ(again.size, table.size);
+    for (std::size_t i = 0; i < table.size; ++i) EXPECT_EQ(again.position(i), table.position(i));
+  }
+}
+
+// The steps of LAS are those that the cloud has without them; they can't be written.
+TEST(Strays, BeyondFloatsAreNotInLas) {
+  const ScratchDirectory directory;
+  const std::vector<Point> clean = mapCloud(500);
+  std::vector<Point> points = clean;
+  addStrays(points, 10, 1e30);
+  const CloudTable table = tableOf(points);
+  {
+    program::OutputFile file(directory.file("out.las"));
+    writeLas(program::OutputCloud(table), file);
+    file.commit();
+  }
+  const CloudTable again = program::readCloud(directory.file("out.las"));
+  ASSERT_EQ(again.size, clean.size());
+  for (std::size_t i = 0; i < clean.size(); ++i) {
+    for (std::size_t a = 0; a < 3; ++a) EXPECT_NEAR(again.position(i)[a], clean[i][a], 1e-6);
   }
 }
 

@@ -481,6 +481,67 @@ class Inputs(unittest.TestCase):
                     self.assertGreater(cosines.min(), 0.99)
                     self.assertEqual(cloud.report["duplicates"], max(count - 1, 0) if at == 0.0 else 0)
 
+    def test_strays_beyond_floats_are_no_points(self):
+        points, outward = sphere(2000)
+        for dtype in (np.float32, np.float64):
+            clean = np.ascontiguousarray(points, dtype)
+            expected = segorient.orient(clean), segorient.normals(clean), segorient.segment(clean)
+            for at in (1e20, -1e30, np.nan):
+                for count in (1, 10, 100):
+                    with self.subTest(f"{dtype.__name__}, {count} at {at}"):
+                        spoilt = np.concatenate([np.full((count, 3), at, dtype), clean])
+                        found = segorient.orient(spoilt), segorient.normals(spoilt), segorient.segment(spoilt)
+                        for old, new in zip(expected, found):
+                            np.testing.assert_array_equal(new.normals[count:], old.normals)
+                            self.assertTrue(np.isnan(new.normals[:count]).all())
+                        np.testing.assert_array_equal(found[2].labels[count:], expected[2].labels)
+                        self.assertEqual(found[0].report["non_finite"], count)
+                        check = segorient.check(spoilt, found[0].normals)
+                        self.assertFalse(check.contradictions.any())
+                        near = segorient.knn(spoilt, 3)
+                        self.assertTrue((near.indices[:count] == -1).all())
+                        self.assertTrue((near.indices[count:] >= count).all())
+                        found[0]._html(1000, "strays")
+
+    def test_float32_is_used_where_it_is(self):
+        points = np.ascontiguousarray(sphere(1000)[0], np.float32)
+        points[5] = np.nan
+        self.assertTrue(np.shares_memory(segorient._local(points)[0], points))
+
+    def test_what_a_mask_hides_is_not_known(self):
+        points, outward = sphere(1000)
+        hidden = np.zeros(len(points), bool)
+        hidden[::3] = True
+        times = np.linspace(0.0, 1.0, len(points))
+        path = np.array([[0.0, 0.0, 0.0, 9.0], [0.4, 3.0, 0.0, 9.0], [1.0, 5.0, 5.0, 9.0]])
+        three = np.repeat(hidden[:, None], 3, axis=1)
+        viewpoints = 3.0 * points
+        scans = np.arange(len(points)) % 7
+
+        def options(**given):
+            return segorient._sensors(
+                len(points), np.zeros(3), *(given.get(n) for n in ("viewpoint", "viewpoints", "trajectory", "times")),
+                False, given.get("scans"), None)
+
+        seen = options(viewpoints=np.ma.masked_array(viewpoints, three))["viewpoints"]
+        np.testing.assert_array_equal(np.isnan(seen).any(axis=1), hidden)
+        seen = options(trajectory=path, times=np.ma.masked_array(times, hidden))["viewpoints"]
+        np.testing.assert_array_equal(np.isnan(seen).any(axis=1), hidden)
+        masked = np.ma.masked_array(path, np.zeros(path.shape, bool))
+        masked[1, 2] = np.ma.masked  # half a pose is none
+        seen = options(trajectory=masked, times=times)["viewpoints"]
+        np.testing.assert_array_equal(seen, options(trajectory=path[[0, 2]], times=times)["viewpoints"])
+        numbers = options(scans=np.ma.masked_array(scans, hidden))["scans"]
+        np.testing.assert_array_equal(numbers, np.where(hidden, -1, scans))
+        for unsigned in (np.uint8, np.uint64):
+            numbers = options(scans=np.ma.masked_array(scans.astype(unsigned), hidden))["scans"]
+            np.testing.assert_array_equal(numbers, np.where(hidden, -1, scans))
+        with self.assertRaisesRegex(ValueError, "viewpoint is masked"):
+            segorient.orient(points, viewpoint=np.ma.masked_array([0.0, 0.0, 5.0], [0, 0, 1]))
+        keep = np.ma.masked_array(np.where(three, -outward, outward), three)
+        kept = segorient.orient(points, keep=keep)
+        self.assertTrue((np.sum(kept.normals * outward, axis=1) > 0.0).all())
+
     def test_any_number_of_threads(self):
         points = sphere(1000)[0]
         expected = segorient.orient(points, threads=1).normals

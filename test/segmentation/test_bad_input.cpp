@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026, the segorient authors
 #include <gtest/gtest.h>
+#include <segorient/common/bulk_bounds.h>
 #include <segorient/search/median_hash.h>
 #include <segorient/segmentation/normal_segmentation.h>
 
@@ -76,9 +77,17 @@ void checkSegments(const BadCloud& bad, const IndexCase& index, bool labelled,
   const std::size_t size = bad.cloud->size();
   std::vector<bool> wanted(size, false);
   const std::size_t rows = index.indices ? index.indices->size() : size;
+  const auto position = [&](std::size_t i) -> std::array<double, 3> {
+    const pcl::PointXYZ* p = pointOf(*bad.cloud, index.indices, i);
+    const double none = std::numeric_limits<double>::quiet_NaN();
+    if (p == nullptr) return {none, none, none};
+    return {static_cast<double>(p->x), static_cast<double>(p->y), static_cast<double>(p->z)};
+  };
+  const Bounds bulk = bulkBounds(rows, position);
   for (std::size_t i = 0; i < rows; ++i) {
     const pcl::PointXYZ* point = pointOf(*bad.cloud, index.indices, i);
-    if (point != nullptr) wanted[static_cast<std::size_t>(point - &(*bad.cloud)[0])] = labelled;
+    if (point == nullptr || bulk.isBeyondFloats(position(i))) continue;
+    wanted[static_cast<std::size_t>(point - &(*bad.cloud)[0])] = labelled;
   }
   const std::vector<std::int32_t>& labels = segmentation.getLabels();
   if (!labels.empty()) {

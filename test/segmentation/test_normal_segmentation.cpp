@@ -338,6 +338,98 @@ TEST(NormalSegmentation, SmoothModeAndResidualAsInRegionGrowing) {
   EXPECT_GE(facesOf(s), 12U) << "no farther than to the next columns";
 }
 
+// What a test parted must not be united again because its border is smooth.
+TEST(NormalSegmentation, UnitingHeedsTheTests) {
+  const auto cloud = pcl::make_shared<pcl::PointCloud<pcl::PointXYZ>>();
+  const auto normals = pcl::make_shared<pcl::PointCloud<pcl::Normal>>();
+  cylinder(*cloud, *normals);
+  for (std::size_t i = 0; i < cloud->size(); ++i) {  // three columns in the middle are rough
+    const float angle = std::atan2((*cloud)[i].y, (*cloud)[i].x);
+    (*normals)[i].curvature = angle > 0.7F && angle < 0.77F ? 0.2F : 0.01F;
+  }
+  Segmenter s;
+  s.setInputCloud(cloud);
+  s.setInputNormals(normals);
+  EXPECT_EQ(facesOf(s), 1U) << "parted by beta alone";
+  s.setSmoothModeFlag(false);
+  s.setSmoothnessThreshold(0.3F);
+  std::vector<pcl::PointIndices> clusters;
+  s.extract(clusters);
+  EXPECT_GE(clusters.size(), 3U);
+  for (const pcl::PointIndices& cluster : clusters) {
+    float low = 9.F;
+    float high = -9.F;
+    for (const pcl::index_t i : cluster.indices) {
+      const auto& p = (*cloud)[static_cast<std::size_t>(i)];
+      low = std::min(low, std::atan2(p.y, p.x));
+      high = std::max(high, std::atan2(p.y, p.x));
+    }
+    EXPECT_LE(high - low, 2.F * 0.3F + 1e-3F);
+  }
+  s.setSmoothModeFlag(true);
+  s.setCurvatureThreshold(0.1F);
+  EXPECT_GE(facesOf(s), 2U);
+  s.setCurvatureTestFlag(false);
+  EXPECT_EQ(facesOf(s), 1U);
+  s.setResidualTestFlag(true);
+  s.setResidualThreshold(1e-5F);
+  EXPECT_GE(facesOf(s), 5U);
+}
+
+using Partition = std::set<std::set<pcl::index_t>>;
+
+template <typename SegmentationT>
+Partition partition(SegmentationT& segmentation) {
+  std::vector<pcl::PointIndices> clusters;
+  segmentation.extract(clusters);
+  Partition out;
+  for (const pcl::PointIndices& c : clusters) out.emplace(c.indices.begin(), c.indices.end());
+  return out;
+}
+
+// With everything off that PCL does not have, the modes and tests cut as PCL's do.
+TEST(NormalSegmentation, BareGrowingIsThatOfRegionGrowing) {
+  const PclInput in(Prepared(sample("cube", cube(), 3000, 1)));
+  pcl::RegionGrowing<pcl::PointXYZ, pcl::Normal> theirs;
+  Segmenter ours;
+  ours.setReferenceThreshold(2.F);
+  ours.setMaximumGap(0.F);
+  ours.setMaximumOffset(0.F);
+  ours.setAbsorbSmall(false);
+  ours.setExtractEdges(false);
+  ours.setSettleEdges(false);
+  ours.setConnectSmall(false);
+  theirs.setNumberOfNeighbours(11);  // the point itself is one
+  ours.setNumberOfNeighbours(10);
+  const auto both = [&](auto&& set) {
+    set(theirs);
+    set(ours);
+  };
+  both([&](auto& s) {
+    s.setInputCloud(in.cloud);
+    s.setInputNormals(in.normals);
+    s.setSmoothnessThreshold(0.1F);
+    s.setCurvatureThreshold(0.02F);
+    s.setResidualThreshold(0.01F);
+  });
+  ours.setUniteSmooth(false);
+  std::set<std::size_t> sizes;
+  for (const bool smooth : {true, false}) {
+    for (const int tests : {1, 2, 3}) {
+      both([&](auto& s) {
+        s.setSmoothModeFlag(smooth);
+        s.setCurvatureTestFlag((tests & 1) != 0);
+        s.setResidualTestFlag((tests & 2) != 0);
+        s.setCurvatureTestFlag((tests & 1) != 0);
+      });
+      const Partition expected = partition(theirs);
+      EXPECT_EQ(partition(ours), expected) << smooth << " " << tests;
+      sizes.insert(expected.size());
+    }
+  }
+  EXPECT_GE(sizes.size(), 4U) << "the settings make a difference";
+}
+
 TEST(NormalSegmentation, ResidualIsInTheUnitOfTheCloud) {
   const auto cloud = pcl::make_shared<pcl::PointCloud<pcl::PointXYZ>>();
   const auto normals = pcl::make_shared<pcl::PointCloud<pcl::Normal>>();

@@ -10,7 +10,9 @@
 
 Keywords are named as the options of the program ``segorient``, angles are in degrees, and what is
 left out is chosen from the cloud. Row i of every result belongs to row i of the points. Points with
-NaN or infinite coordinates get NaN normals and label -1.
+NaN or infinite coordinates get NaN normals and label -1; so do strays that are farther from the bulk
+of the points than 2^24 times its extent, where floats end, and rows of masked arrays of which
+anything is hidden. Of what else is given by row, what a mask hides counts as not known.
 
 Arrays of float32 whose rows are consecutive (an (n, 3) array, or the first three columns of a wider
 one) are used where they are. Others are copied; float64 ones that lie far from the origin, such as
@@ -228,49 +230,17 @@ def _moved(array: npt.NDArray[Any], origin: _Origin) -> Floats:
     return out
 
 
-def _is_far(low: _Origin, high: _Origin) -> bool:
-    """Floats resolve 1e-7 of the extent only near the origin."""
-    reach = max(np.abs(low).max(), np.abs(high).max())
-    with np.errstate(over="ignore"):
-        return bool(reach > 2.0 * (high - low).max())
-
-
-def _bulk_bounds(finite: npt.NDArray[Any]) -> Tuple[_Origin, _Origin]:
-    """Bounds of all but strays: of what is within 16 times the range between the quartiles."""
-    low = finite.min(axis=0).astype(np.float64)
-    high = finite.max(axis=0).astype(np.float64)
-    if not _is_far(low, high):
-        ranks = [len(finite) // 4, len(finite) // 2, min(3 * len(finite) // 4, len(finite) - 1)]
-        quarter, median, most = np.partition(finite, ranks, axis=0)[ranks].astype(np.float64)
-        width = (most - quarter).max()
-        if width > 0.0:
-            with np.errstate(over="ignore", invalid="ignore"):
-                inside = (np.abs(finite - median) <= 16.0 * width).all(axis=1)
-            # More than a quarter are no strays: half of a depth image may be at 0,0,0.
-            if 4 * np.count_nonzero(~inside) <= len(finite):
-                low = finite[inside].min(axis=0).astype(np.float64)
-                high = finite[inside].max(axis=0).astype(np.float64)
-    return low, high
-
-
 def _local(points: npt.ArrayLike) -> Tuple[Floats, _Origin]:
-    """Points as float32 near the origin, and what they were moved by."""
+    """Points as float32 near the origin, and what they were moved by; strays beyond floats are NaN."""
     array = _rows("points", points)
-    origin = np.zeros(3)
-    if _is_viewable(array):
+    origin, strays = _core.frame(array if array.flags.aligned else array.copy())
+    if array.dtype == np.float32:
+        origin = np.zeros(3)  # to move them would bring nothing back
+    if _is_viewable(array) and len(strays) == 0:
         return array, origin
-    if array.dtype != np.float32 and len(array) > 0:
-        finite = array[np.isfinite(array).all(axis=1)]
-        if len(finite) > 0:
-            low, high = _bulk_bounds(finite)
-            if _is_far(low, high):
-                origin = low + 0.5 * (high - low)
-            moved = _moved(array, origin)
-            # To a neighbourhood that holds a point so far away, floats make the bulk one place.
-            most = 2.0**24 * (high - low).max() + max(np.abs(low).max(), np.abs(high).max())
-            moved[(np.abs(moved) > most).any(axis=1)] = np.nan
-            return moved, origin
-    return _moved(array, origin), origin
+    moved = _moved(array, origin)
+    moved[strays] = np.nan
+    return moved, origin
 
 
 def _to_world(places: List[Dict[str, Any]], origin: _Origin) -> None:
@@ -345,10 +315,15 @@ def _rows_of(name: str, value: npt.ArrayLike, size: int) -> npt.NDArray[Any]:
 
 
 def _one_each(name: str, value: npt.ArrayLike, size: int, kinds: str) -> npt.NDArray[Any]:
-    """Checks that this is an array of one number for each point, of one of these kinds."""
+    """Checks that this is an array of one number for each point, of one of these kinds.
+
+    What a mask hides is not known: NaN, or -1 where numbers are whole.
+    """
     array = np.asarray(value)
     if array.dtype.kind not in kinds:
         raise TypeError(f"{name} must be {'whole' if kinds == 'iu' else 'real'} numbers, not {array.dtype}")
+    if isinstance(value, np.ma.MaskedArray):
+        array = np.ma.filled(value.astype(np.int64), -1) if kinds == "iu" else _unmasked(value)
     if array.shape != (size,):
         raise ValueError(
             f"{name} must have one number for each of the {size} points, not shape {array.shape}"
@@ -360,7 +335,7 @@ def _joined(
     trajectory: npt.ArrayLike, times: npt.ArrayLike, viewpoints: Optional[npt.NDArray[Any]], size: int
 ) -> npt.NDArray[Any]:
     """Viewpoints from a trajectory, under those that are known already."""
-    poses = np.asarray(trajectory)
+    poses = _unmasked(trajectory)
     if poses.dtype.kind not in "fiu":
         raise TypeError(f"trajectory must be real numbers, not {poses.dtype}")
     if poses.ndim != 2 or poses.shape[1] != 4:
@@ -395,6 +370,8 @@ def _sensors(
             raise TypeError(f"viewpoint must be three numbers, not {viewpoint!r}")
         if place.shape != (3,):
             raise ValueError(f"viewpoint must be three numbers, not an array of shape {place.shape}")
+        if np.ma.getmaskarray(viewpoint).any():
+            raise ValueError("viewpoint is masked: leave it out where it is not known")
         options["viewpoint"] = _moved(place, origin)
     seen = None if viewpoints is None else _rows_of("viewpoints", viewpoints, size)
     if (trajectory is None) != (times is None):

@@ -94,27 +94,31 @@ bool equalXyz(const float* a, const float* b) {
   return a[0] == b[0] && a[1] == b[1] && a[2] == b[2];
 }
 
+std::array<double, 3> inDouble(const float* p) {
+  return {static_cast<double>(p[0]), static_cast<double>(p[1]), static_cast<double>(p[2])};
+}
+
 std::vector<Keyed> zOrder(const Source& source) {
   constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
-  std::vector<Keyed> items;
-  items.reserve(source.size());
-  for (std::size_t i = 0; i < source.size(); ++i) {
-    if (source.at(i) != nullptr) items.push_back({0, static_cast<pcl::index_t>(i)});
-  }
   // Strays must not make one cell of all others: what lies outside goes into the outermost cells.
   const Bounds bulk = bulkBounds(source.size(), [&](std::size_t i) -> std::array<double, 3> {
     const float* p = source.at(i);
     if (p == nullptr) return {kNone, kNone, kNone};
-    return {static_cast<double>(p[0]), static_cast<double>(p[1]), static_cast<double>(p[2])};
+    return inDouble(p);
   });
   // One scale for all axes, so that cells are cubes.
   constexpr double kLastCell = (1 << 21) - 1;
   const double scale = bulk.extent() > 0.0 ? kLastCell / bulk.extent() : 0.0;
-  for (Keyed& item : items) {
-    const float* p = source.known(item.row);
+  std::vector<Keyed> items;
+  items.reserve(source.size());
+  for (std::size_t i = 0; i < source.size(); ++i) {
+    const float* p = source.at(i);
+    if (p == nullptr || bulk.isBeyondFloats(inDouble(p))) continue;
+    items.push_back({0, static_cast<pcl::index_t>(i)});
     for (std::size_t a = 0; a < 3; ++a) {
       const double cell = (static_cast<double>(p[a]) - bulk.low[a]) * scale;
-      item.key |= spreadBits(static_cast<std::uint64_t>(std::clamp(cell, 0.0, kLastCell))) << a;
+      items.back().key |= spreadBits(static_cast<std::uint64_t>(std::clamp(cell, 0.0, kLastCell)))
+                          << a;
     }
   }
   return items;

@@ -9,8 +9,8 @@
 
 namespace segorient {
 
-/// The distinct finite points of a cloud, in an order that depends on where they are and not on
-/// where they stood in the input.
+/// The distinct finite points of a cloud but for strays beyond the reach of floats, in an order
+/// that depends on where they are and not on where they stood in the input.
 ///
 /// Every stage of the pipeline works on this. Three things follow: exact duplicates cannot fill a
 /// neighbourhood, NaN points are nobody's neighbour, and the result is the same for any order of
@@ -18,7 +18,7 @@ namespace segorient {
 /// what the stages after the search spend their time on.
 struct CompactCloud {
   std::vector<float> xyz;            ///< 4 floats a point, the fourth is 0
-  std::vector<pcl::index_t> row_of;  ///< for each input row its compact row, -1 where not finite
+  std::vector<pcl::index_t> row_of;  ///< for each input row its compact row, -1 where left out
   std::vector<pcl::index_t> source;  ///< for each compact row the first input row that holds it
 
   /// Input coordinates are `unit` times those of `xyz`; see normalizeUnit().
@@ -28,7 +28,8 @@ struct CompactCloud {
   PointView view() const { return {xyz.data(), 4, source.size()}; }
 };
 
-/// \param points input rows; rows with NaN or infinite coordinates are left out
+/// \param points input rows; rows with NaN or infinite coordinates are left out, and those so far
+///        from the bulk of the points that floats end, see Bounds::isBeyondFloats()
 /// \param indices rows to use, or null for all; out of range entries are left out. With indices,
 ///        row_of and source refer to positions in `indices`
 /// \param threads see resolveThreads()

@@ -132,7 +132,9 @@ void searchAndEstimateNormals(const PointView& input, const pcl::Indices& indice
   const std::vector<float> queries = inUnitOf(cloud, input);
   const PointView query_view{queries.data(), 4, input.size};
   const NeighborSearch search = [&](pcl::index_t i, pcl::Indices& found, std::vector<float>& sqr) {
-    const float* query = query_view[static_cast<std::size_t>(i)];
+    const auto row = static_cast<std::size_t>(i);
+    if (!surface && cloud.pointOf(row) < 0) return 0;
+    const float* query = query_view[row];
     if (size.k <= 0) return index.radius(query, radius, found, sqr, 0, true);
     found.resize(static_cast<std::size_t>(k));
     sqr.resize(static_cast<std::size_t>(k));

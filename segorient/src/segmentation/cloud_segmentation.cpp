@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026, the segorient authors
+#include <segorient/common/bulk_bounds.h>
 #include <segorient/segmentation/cloud_segmentation.h>
 
 #include <algorithm>
+#include <array>
 #include <limits>
 #include <type_traits>
 
@@ -39,6 +41,30 @@ void copyNormal(const NormalView& normals, std::size_t i, float* to) {
   to[3] = normals[i][normals.curvature];
 }
 
+std::vector<float> copyOf(const PointView& points) {
+  std::vector<float> out(3 * points.size);
+  for (std::size_t i = 0; i < points.size; ++i) std::copy_n(points[i], 3, &out[3 * i]);
+  return out;
+}
+
+// The points with NaN in the place of those beyond floats, which are then not chosen any more;
+// empty where there are none.
+std::vector<float> withoutStrays(const PointView& points, std::vector<bool>& chosen) {
+  const auto position = [&](std::size_t i) -> std::array<double, 3> {
+    const float* p = points[i];
+    return {static_cast<double>(p[0]), static_cast<double>(p[1]), static_cast<double>(p[2])};
+  };
+  const Bounds bulk = bulkBounds(points.size, position);
+  std::vector<float> out;
+  for (std::size_t i = 0; i < points.size; ++i) {
+    if (!isFinite(points[i]) || !bulk.isBeyondFloats(position(i))) continue;
+    if (out.empty()) out = copyOf(points);
+    std::fill_n(&out[3 * i], 3, std::numeric_limits<float>::quiet_NaN());
+    chosen[i] = false;
+  }
+  return out;
+}
+
 }  // namespace
 
 void CloudSegmentation::clear() {
@@ -62,26 +88,29 @@ bool CloudSegmentation::compute(const Input& input, const SegmentationOptions& o
 
 bool CloudSegmentation::computeWithTable(const Input& input, const SegmentationOptions& options) {
   if (!fits(*input.table, input.points.size)) return false;
+  const std::size_t size = input.points.size;
+  std::vector<bool> chosen(size, input.indices == nullptr);
+  for (std::size_t i = 0; input.indices != nullptr && i < input.indices->size(); ++i) {
+    const pcl::index_t row = (*input.indices)[i];
+    if (row >= 0 && static_cast<std::size_t>(row) < size)
+      chosen[static_cast<std::size_t>(row)] = true;
+  }
+  PointView points = input.points;
+  const std::vector<float> without_strays = withoutStrays(input.points, chosen);
+  if (!without_strays.empty()) points = {without_strays.data(), 3, size};
   NormalView normals = input.normals;
   std::vector<float> masked;
-  if (input.indices != nullptr) {
-    std::vector<char> wanted(input.points.size, 0);
-    for (const pcl::index_t i : *input.indices) {
-      if (i >= 0 && static_cast<std::size_t>(i) < wanted.size())
-        wanted[static_cast<std::size_t>(i)] = 1;
+  if (std::find(chosen.begin(), chosen.end(), false) != chosen.end()) {
+    masked.assign(4 * size, std::numeric_limits<float>::quiet_NaN());
+    for (std::size_t i = 0; i < size; ++i) {
+      if (chosen[i]) copyNormal(input.normals, i, &masked[4 * i]);
     }
-    masked.resize(4 * wanted.size());
-    for (std::size_t i = 0; i < wanted.size(); ++i) {
-      copyNormal(input.normals, i, &masked[4 * i]);
-      if (wanted[i] == 0) masked[4 * i] = std::numeric_limits<float>::quiet_NaN();
-    }
-    normals = {masked.data(), 4, wanted.size()};
+    normals = {masked.data(), 4, size};
   }
   SegmentationOptions used = options;
   used.neighbors = neighbors_;
   table_ = input.table;
-  result_ =
-      segmentByNormals(input.points, normals, *table_, used, &report_, united_ ? &faces_ : nullptr);
+  result_ = segmentByNormals(points, normals, *table_, used, &report_, united_ ? &faces_ : nullptr);
   return true;
 }
 

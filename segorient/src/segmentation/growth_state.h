@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 namespace segorient::segmentation {
@@ -56,6 +57,11 @@ struct Cluster {
 
 inline float dotNormals(const Node& p, const Node& q) {
   return p.nx * q.nx + p.ny * q.ny + p.nz * q.nz;
+}
+
+/// How far q is off the tangent plane of p.
+inline float residual(const Node& p, const Node& q) {
+  return std::abs((q.x - p.x) * p.nx + (q.y - p.y) * p.ny + (q.z - p.z) * p.nz);
 }
 
 /// The two geometric conditions on neighbours.
@@ -120,6 +126,12 @@ struct GrowthState {
   void fetchRow(std::size_t row) const { __builtin_prefetch(neighborhoods->indices(row)); }
   int rowSize(std::size_t row) const { return std::min(neighborhoods->count(row), neighbors); }
 };
+
+/// The largest residual that growing passes, in the unit of the nodes.
+inline float scaledResidual(const SegmentationOptions& options, const GrowthState& state) {
+  const bool limited = options.max_residual < std::numeric_limits<float>::max();
+  return limited ? options.max_residual * state.scale : options.max_residual;
+}
 
 /// Scales and packs the points, finds the local spacing and the limits.
 void prepare(const PointView& points, const NormalView& normals, const SegmentationOptions& options,

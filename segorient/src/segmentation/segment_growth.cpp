@@ -120,9 +120,7 @@ class Grower {
         cos_beta_(options.beta < kRightAngle ? std::cos(options.beta) : -1.F),
         sqr_cos_beta_(static_cast<double>(cos_beta_) * static_cast<double>(cos_beta_)),
         max_curvature_(options.max_curvature),
-        max_residual_(options.max_residual < std::numeric_limits<float>::max()
-                          ? options.max_residual * state.scale
-                          : options.max_residual),
+        max_residual_(scaledResidual(options, state)),
         compare_with_seed_(options.compare_with_seed),
         nodes_(state.nodes.data()),
         labels_(state.labels.data()),
@@ -235,11 +233,6 @@ class Grower {
     if (cos_beta_ > 0.F && !(along > 0.0 && along * along >= threshold_)) return false;
     accept(q, sign, residual(p, candidate) <= max_residual_);
     return true;
-  }
-
-  // How far q is off the tangent plane of p.
-  static float residual(const Node& p, const Node& q) {
-    return std::abs((q.x - p.x) * p.nx + (q.y - p.y) * p.ny + (q.z - p.z) * p.nz);
   }
 
   const Neighborhoods& hood_;

@@ -17,7 +17,8 @@ constexpr std::size_t kMostPatches = 128;
 /// Points of a patch on each side, and on both: a quadratic surface has six coefficients.
 constexpr int kLeastSide = 3;
 constexpr int kLeastPatch = 12;
-/// Share of the pairs across a border over which growing could have gone on but for beta.
+/// Share of the pairs across a border over which growing could have gone on but for beta, either
+/// way.
 constexpr double kShareWithin = 0.5;
 /// Pairs of a border that is not smooth from which on it keeps its segments apart; where two
 /// corners touch, some pairs mean little.
@@ -55,6 +56,8 @@ class BorderTest {
   BorderTest(const SegmentationOptions& options, const GrowthState& state)
       : state_(state),
         cos_alpha_(std::cos(std::min(options.alpha, kRightAngle))),
+        max_curvature_(options.max_curvature),
+        max_residual_(scaledResidual(options, state)),
         most_slope_(std::tan(0.5 * static_cast<double>(std::min(options.alpha, kRightAngle)))) {}
 
   Border test(const Pair* begin, const Pair* end) {
@@ -67,6 +70,7 @@ class BorderTest {
       const Node& q = state_.nodes[pair->q];
       const float cosine = dotNormals(p, q);
       if (!(std::abs(cosine) >= cos_alpha_) || !state_.limits.admissible(p, q)) continue;
+      if (!passesOn(p, q) || !passesOn(q, p)) continue;
       ++within;
       agreement += static_cast<double>(cosine);
     }
@@ -160,6 +164,11 @@ class BorderTest {
     ++sums.patches;
   }
 
+  // Whether growing that comes from p goes on at q.
+  bool passesOn(const Node& p, const Node& q) const {
+    return q.curvature <= max_curvature_ && residual(p, q) <= max_residual_;
+  }
+
   // Points of the two segments among the neighbours' neighbours, and theirs in turn.
   void listPatch(const Pair& pair, int rings) {
     found_.restart();
@@ -203,6 +212,8 @@ class BorderTest {
 
   const GrowthState& state_;
   float cos_alpha_;
+  float max_curvature_;
+  float max_residual_;
   double most_slope_;
   DistinctPoints found_;
   std::vector<pcl::index_t> patch_;  ///< ascending
@@ -316,6 +327,8 @@ class SignedSets {
 }  // namespace
 
 std::size_t uniteSmooth(const SegmentationOptions& options, GrowthState& state) {
+  // What united segments would then hold is farther than alpha from any seed.
+  if (options.compare_with_seed) return 0;
   SignedSets sets(state.clusters.size());
   std::vector<Border> smooth;
   for (const Border& border : testBorders(options, state)) {

@@ -55,6 +55,17 @@ struct Bounds {
   /// Floats resolve 1e-7 of the extent only near the origin: whether these points are farther away
   /// than twice their extent, as map coordinates are.
   bool isFar() const { return reach() > 2.0 * extent(); }
+  /// Whether a point is farther away than floats reach: to one that holds the difference, all of
+  /// these are one place. Such a point is nobody's neighbour.
+  bool isBeyondFloats(const std::array<double, 3>& p) const {
+    constexpr double kFloatSteps = 16777216.0;  // 2^24
+    const double most = kFloatSteps * extent();
+    bool beyond = points == 0;
+    for (std::size_t a = 0; a < 3; ++a) {
+      beyond = beyond || !(p[a] >= low[a] - most && p[a] <= high[a] + most);
+    }
+    return beyond;
+  }
 };
 
 /// The box that no point of the bulk is outside of: 16 times the range between the quartiles around
@@ -76,8 +87,7 @@ Bounds bulkBounds(std::size_t size, const Position& position) {
     const std::array<double, 3> p = position(i);
     if (isFinitePoint(p)) all.add(p);
   }
-  // Where all are far from the origin already, strays change little.
-  if (all.points == 0 || all.isFar()) return all;
+  if (all.points == 0) return all;
   // Strays matter only if they are farther away than the bulk is wide: then all of that is in a few
   // of these slots along the longest side. The others may be no longer than without strays.
   constexpr std::size_t kSlots = 64;

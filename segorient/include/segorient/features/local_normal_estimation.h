@@ -18,7 +18,9 @@ namespace segorient {
 /// its width and height. With no search method set, neighbours come from MedianHashIndex, among the
 /// distinct finite points of the cloud. Unlike PCL's, neighbourhoods on a line have no normal.
 /// Bad settings (no cloud, an empty one, k < 0, a radius that is not positive, both or neither) are
-/// an error message and an empty output; an index out of range gives NaN.
+/// an error message and an empty output; an index out of range gives NaN. So does, where
+/// neighbours are not given, a stray farther from the bulk of the points than 2^24 times its
+/// extent.
 template <typename PointInT, typename PointOutT>
 class LocalNormalEstimation : public pcl::NormalEstimation<PointInT, PointOutT> {
  public:

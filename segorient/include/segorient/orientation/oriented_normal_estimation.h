@@ -30,9 +30,9 @@ namespace segorient {
 /// vp_y and vp_z say themselves where they were seen from. An organized cloud is taken for the
 /// range image that it is.
 ///
-/// A point without a normal (NaN coordinates, or fewer than three distinct points around) gets NaN,
-/// and is_dense is cleared. No cloud, an empty one, a negative k or radius, or both: PCL_ERROR and
-/// an empty output.
+/// A point without a normal (NaN coordinates, a stray farther away than 2^24 times the extent of
+/// the others, or fewer than three distinct points around) gets NaN, and is_dense is cleared. No
+/// cloud, an empty one, a negative k or radius, or both: PCL_ERROR and an empty output.
 template <typename PointInT, typename PointOutT>
 class OrientedNormalEstimation : public pcl::NormalEstimation<PointInT, PointOutT> {
  public:

@@ -51,8 +51,9 @@ struct StageTime {
 
 /// What orientCloud() did.
 struct PipelineReport {
-  std::size_t points = 0;      ///< input rows
-  std::size_t non_finite = 0;  ///< rows with NaN or infinite coordinates, or invalid indices
+  std::size_t points = 0;  ///< input rows
+  std::size_t non_finite =
+      0;  ///< rows with NaN or infinite coordinates, strays beyond floats, invalid indices
   std::size_t duplicates = 0;  ///< rows that repeat another one's coordinates
   std::size_t without_normal =
       0;  ///< rows that got none: all non-finite, or without a plane around

@@ -40,7 +40,8 @@ namespace segorient {
 /// segments united where their common border is smooth, unless setUniteSmooth (false).
 ///
 /// Without a cloud, or with normals of another size, extract() reports through PCL_ERROR and gives
-/// no segments. Points with NaN coordinates or normals are in no segment.
+/// no segments. Points with NaN coordinates or normals are in no segment, nor are strays farther
+/// from the bulk of the points than 2^24 times its extent, where floats end.
 template <typename PointT, typename NormalT>
 class NormalSegmentation : public pcl::PCLBase<PointT> {
  public:
@@ -94,7 +95,8 @@ class NormalSegmentation : public pcl::PCLBase<PointT> {
   void setReferenceTolerance(float epsilon);
   float getReferenceTolerance() const { return options_.epsilon; }
 
-  /// Points of higher curvature join a segment but do not pass it on; default: no limit.
+  /// Points of higher curvature join a segment but do not pass it on, nor are segments united
+  /// across them; default: no limit.
   void setCurvatureThreshold(float curvature);
   float getCurvatureThreshold() const { return options_.max_curvature; }
 
@@ -104,7 +106,8 @@ class NormalSegmentation : public pcl::PCLBase<PointT> {
   bool getCurvatureTestFlag() const { return curvature_test_; }
 
   /// Points farther than this off the tangent plane of the point that they are reached from join a
-  /// segment but do not pass it on; in the cloud's unit of length, default 0.05. Not above 0 while
+  /// segment but do not pass it on, nor are segments united there; in the cloud's unit of length,
+  /// default 0.05. Not above 0 while
   /// the test is on: no segments, as in PCL.
   void setResidualThreshold(float residual);
   float getResidualThreshold() const { return residual_; }
@@ -114,7 +117,8 @@ class NormalSegmentation : public pcl::PCLBase<PointT> {
   bool getResidualTestFlag() const { return residual_test_; }
 
   /// True (default): a normal is compared with that of the neighbour that it is reached from,
-  /// false: with that of the segment's first point. Beta is looked at in any case.
+  /// false: with that of the segment's first point; segments are then not united. Beta is looked at
+  /// in any case.
   void setSmoothModeFlag(bool value);
   bool getSmoothModeFlag() const { return !options_.compare_with_seed; }
 

@@ -37,6 +37,7 @@ struct SegmentationOptions {
   /// segment but do not pass it on; in the cloud's unit of length. Default: no limit.
   float max_residual = std::numeric_limits<float>::max();
   /// Alpha is between the normals of a point and of its segment's seed, not of two neighbours.
+  /// Faces are then the segments as they are.
   bool compare_with_seed = false;
   bool absorb_small = true;   ///< clean-up pass 1: small segments join a neighbouring segment
   bool extract_edges = true;  ///< clean-up pass 2: their points join regular ones one by one
