@@ -4,7 +4,7 @@
 // One query at a time, k = 1 and 10, from the points to ten diagonals away: MedianHash beside
 // pcl::search::KdTree. Ends with 1 if it is not 1.5 times as fast everywhere.
 //
-//   far_queries_benchmark [POINTS]
+//   far_queries_benchmark [POINTS [K ...]]
 #include <pcl/search/kdtree.h>
 #include <segorient/search/median_hash.h>
 
@@ -51,7 +51,18 @@ Cloud queriesAway(const Cloud& cloud, std::size_t count, float away, bool in_ord
   return queries;
 }
 
-double run(const std::string& name, const Cloud::Ptr& cloud, bool in_order) {
+/// As of a depth camera that writes 0,0,0 where it saw nothing: runs of points in one place.
+Cloud::Ptr withZeros(const Cloud& cloud) {
+  constexpr std::size_t kRun = 100;
+  auto out = pcl::make_shared<Cloud>(cloud);
+  for (std::size_t i = 0; i < out->size(); ++i) {
+    if (i / kRun % 3 == 0) (*out)[i] = {0.F, 0.F, 0.F};
+  }
+  return out;
+}
+
+double run(const std::string& name, const Cloud::Ptr& cloud, bool in_order,
+           const std::vector<int>& counts) {
   search::MedianHash<pcl::PointXYZ> ours;
   pcl::search::KdTree<pcl::PointXYZ> theirs;
   ours.setInputCloud(cloud);
@@ -59,7 +70,7 @@ double run(const std::string& name, const Cloud::Ptr& cloud, bool in_order) {
   const float diagonal = diagonalOf(*cloud);
   double least = 1e9;
   std::printf("%s, %s\n", name.c_str(), in_order ? "in order" : "shuffled");
-  for (const int k : {1, 10}) {
+  for (const int k : counts) {
     for (const float away : {0.0F, 0.003F, 0.01F, 0.05F, 0.2F, 1.0F, 3.0F, 10.0F}) {
       const std::size_t count = std::min<std::size_t>(8000, cloud->size());
       const Cloud queries = queriesAway(*cloud, count, away * diagonal, in_order);
@@ -88,16 +99,21 @@ double run(const std::string& name, const Cloud::Ptr& cloud, bool in_order) {
 int main(int argc, char** argv) {
   using namespace segorient::benchmark;
   const std::size_t n = argc > 1 ? std::strtoul(argv[1], nullptr, 10) : 50000;
+  std::vector<int> counts;
+  for (int i = 2; i < argc; ++i) counts.push_back(std::atoi(argv[i]));
+  if (counts.empty()) counts = {1, 10};
+  const auto lidar = lidarLike(n, 2);
   const std::vector<std::pair<std::string, Cloud::Ptr>> clouds{
       {"surface", alongCurve(*bumpySphere(n, 1))},
-      {"lidar", lidarLike(n, 2)},
+      {"lidar", lidar},
+      {"lidar with zeros", withZeros(*lidar)},
       {"uniform", alongCurve(*uniformCube(n, 3))}};
   double least = 1e9;
   for (const auto& [name, cloud] : clouds) {
-    least = std::min(least, run(name, cloud, true));
+    least = std::min(least, run(name, cloud, true, counts));
     auto shuffled = pcl::make_shared<Cloud>(*cloud);
     std::shuffle(shuffled->begin(), shuffled->end(), std::mt19937(4));
-    least = std::min(least, run(name, shuffled, false));
+    least = std::min(least, run(name, shuffled, false, counts));
   }
   std::printf("least: %.2f times as fast as pcl::search::KdTree (%.1f asked for)\n", least,
               kLeastRatio);

@@ -11,6 +11,7 @@
 #include <thread>
 
 #include "brute_force.h"
+#include "search/shared_block.h"
 #include "search_clouds.h"
 
 namespace segorient::test {
@@ -157,6 +158,50 @@ TEST(Away, TwoStructuresInTurn) {
       EXPECT_EQ(nearest(pair == &a ? index_a : index_b, query, 1), expected);
     }
   }
+}
+
+// As of a depth camera that writes 0,0,0 where it saw nothing: of many points in one place the
+// smallest indices count, whether regions are full of them or hold some.
+TEST(Away, ManyPointsInOnePlace) {
+  for (const std::size_t zeros : {40U, 900U, 2500U}) {
+    SearchCloud cloud = searchClouds(3000)[1];
+    for (std::size_t i = 0; i < zeros; ++i) {
+      for (std::size_t a = 0; a < 3; ++a) cloud.xyz[4 * (i * 7 % 3000) + a] = 0.F;
+    }
+    for (const std::size_t region : {100U, 1000U, 4096U}) {
+      MedianHashIndex index;
+      MedianHashIndex::Options options;
+      options.region_size = region;
+      index.build(cloud.view(), nullptr, options);
+      for (const double diagonals : {0.0, 0.003, 0.1, 3.0}) {
+        for (const auto& query : queriesAway(cloud, diagonals, 40)) {
+          auto expected = bruteForce(cloud.view(), query.data());
+          for (const std::size_t k : {100U, 33U, 32U, 10U, 1U}) {
+            expected.resize(k);
+            ASSERT_EQ(nearest(index, query, k), expected)
+                << k << " nearest from " << diagonals << " diagonals, " << zeros << " zeros";
+          }
+        }
+      }
+    }
+  }
+}
+
+TEST(Away, EachStructureHasItsOwnMemory) {
+  search::RecentPair pair;
+  search::Recent& first = pair.of(1);
+  EXPECT_EQ(&pair.of(1), &first);
+  first.away.was(true);
+  search::Recent& second = pair.of(2);
+  EXPECT_NE(&second, &first);
+  EXPECT_EQ(&pair.of(2), &second) << "also before its first query is done";
+  EXPECT_EQ(&pair.of(1), &first);
+  EXPECT_TRUE(first.away.isLikely()) << "as it was left";
+  second.away.was(true);
+  EXPECT_EQ(&pair.of(3), &second) << "the one that was not asked last";
+  EXPECT_FALSE(second.away.isLikely());
+  EXPECT_EQ(second.last.k, 0U);
+  EXPECT_EQ(&pair.of(1), &first);
 }
 
 }  // namespace

@@ -31,14 +31,19 @@ bool MedianHashIndex::Impl::searchBoxes(const float* q, std::size_t k, float pru
                                         std::vector<std::uint64_t>& keys, pcl::index_t* indices,
                                         float* distances) const {
   if (!boxesServe(k)) return false;
+  // What is approximate must not depend on which regions were made before.
+  const bool may_lack = k > kMostInOnePlace;
+  if (may_lack && prune != 1.0F) return false;
   BoxTree& tree = boxTree();
-  keys.resize(kMostNeighborsInBoxes);
+  if (may_lack && tree.isThinned()) return false;
+  keys.resize(k);
   BoxSearch search{{q[0], q[1], q[2]},
                    prune,
                    {keys.data(), k, 0.0F},
                    [](BoxTree& of, std::size_t region) { return of.region(region); },
                    &tree};
   kernels->nearestInBoxes(search, tree.root());
+  if (may_lack && tree.isThinned()) return false;
   for (std::size_t i = 0; i < k; ++i) {
     const auto bits = static_cast<std::uint32_t>(keys[i] >> 32U);
     std::memcpy(distances + i, &bits, sizeof(bits));

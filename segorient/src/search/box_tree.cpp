@@ -3,6 +3,7 @@
 #include "search/box_tree.h"
 
 #include <algorithm>
+#include <cstring>
 #include <limits>
 
 namespace segorient::search {
@@ -37,6 +38,28 @@ Box boxOf(const BuildPoint* points, std::size_t count) {
   return box;
 }
 
+bool isOnePlace(const Box& box) {
+  return box.lo[0] == box.hi[0] && box.lo[1] == box.hi[1] && box.lo[2] == box.hi[2];
+}
+
+// The topmost node at or above `node` whose points are all in one place; 0 if there is none.
+std::size_t placeAbove(const Layout& layout, std::size_t node) {
+  for (; !layout.flat.empty() && node > 0; node /= 2) {
+    if (layout.flat[node] != 0) return isOnePlace(layout.boxes[node]) ? node : 0;
+  }
+  return 0;
+}
+
+// Whether a node has only points of a place that another node has already: of many points in one
+// place, the region that comes first has those with the smallest ids, and the others have none.
+bool isRepeated(const Layout& layout, std::size_t node) {
+  const std::size_t place = placeAbove(layout, node);
+  if (place == 0) return false;
+  std::size_t first = place;
+  while (first < node) first *= 2;
+  return first != node;
+}
+
 // The boxes above the regions: the complete binary tree over them, four levels at a time.
 std::vector<BoxNode> nodesAbove(const Layout& layout) {
   std::vector<BoxNode> nodes;
@@ -57,7 +80,7 @@ std::vector<BoxNode> nodesAbove(const Layout& layout) {
       BoxNode made = emptyNode();
       for (std::size_t lane = 0; lane < std::size_t{1} << depth; ++lane) {
         const std::size_t child = (node << depth) + lane;
-        setBox(made, lane, layout.boxes[child]);
+        if (!isRepeated(layout, child)) setBox(made, lane, layout.boxes[child]);
         below.push_back(child);
       }
       nodes.push_back(made);
@@ -87,21 +110,73 @@ std::vector<BoxNode> nodesAbove(const Layout& layout) {
 // Makes the boxes of one region.
 class RegionBuilder {
  public:
-  RegionBuilder(const Layout& layout, const Region& region) : points_(region.end - region.begin) {
+  RegionBuilder(const Layout& layout, std::size_t number) {
+    const Region& region = layout.regions[number];
+    all_ = region.end - region.begin;
+    const std::size_t place = placeAbove(layout, layout.regions.size() + number);
+    if (place != 0) {
+      listPlace(layout, place, region.begin);
+      return;
+    }
+    points_.resize(all_);
     for (std::size_t i = 0; i < points_.size(); ++i) {
       const std::size_t at = region.begin + i;
       points_[i] = {{layout.x[at], layout.y[at], layout.z[at]}, layout.id[at]};
     }
+    if (mayBeCrowded()) thinPlaces();
   }
 
   std::unique_ptr<RegionBoxes> build() {
     boxes_ = std::make_unique<RegionBoxes>();
+    boxes_->thinned = points_.size() < all_;
     addNode(0, points_.size(), levelsFor(points_.size()));
     link();
     return std::move(boxes_);
   }
 
  private:
+  // The smallest ids of a place whose first point is `begin`.
+  void listPlace(const Layout& layout, std::size_t place, std::size_t begin) {
+    std::size_t last = place;
+    while (last < layout.regions.size()) last = 2 * last + 1;
+    const std::size_t end = layout.regions[last - layout.regions.size()].end;
+    points_.resize(std::min(end - begin, kMostInOnePlace));
+    for (std::size_t i = 0; i < points_.size(); ++i) {
+      points_[i] = {{layout.x[begin], layout.y[begin], layout.z[begin]}, layout.flat_id[begin + i]};
+    }
+  }
+
+  // Whether there may be more points in one place than are kept; nearly never wrong.
+  bool mayBeCrowded() const {
+    constexpr std::size_t kSlots = 8192;
+    std::vector<std::uint16_t> counts(kSlots, 0);
+    for (const BuildPoint& p : points_) {
+      std::uint32_t bits[3];
+      std::memcpy(bits, p.xyz, sizeof(bits));
+      const std::uint64_t mixed =
+          (bits[0] * 0x9e3779b97f4a7c15ULL ^ bits[1]) * 0xc2b2ae3d27d4eb4fULL ^ bits[2];
+      if (++counts[(mixed * 0x9e3779b97f4a7c15ULL) >> 51U] > kMostInOnePlace) return true;
+    }
+    return false;
+  }
+
+  // Of points in one place, those with the smallest ids stay.
+  void thinPlaces() {
+    std::sort(points_.begin(), points_.end(), [](const BuildPoint& p, const BuildPoint& q) {
+      for (int a = 0; a < 3; ++a) {
+        if (p.xyz[a] != q.xyz[a]) return p.xyz[a] < q.xyz[a];
+      }
+      return p.row < q.row;
+    });
+    std::size_t kept = 0;
+    for (const BuildPoint p : points_) {
+      const bool full = kept >= kMostInOnePlace &&
+                        std::equal(p.xyz, p.xyz + 3, points_[kept - kMostInOnePlace].xyz);
+      if (!full) points_[kept++] = p;
+    }
+    points_.resize(kept);
+  }
+
   // Levels of nodes above leaves that hold so many points; at least one.
   static std::size_t levelsFor(std::size_t count) {
     std::size_t levels = 1;
@@ -192,6 +267,7 @@ class RegionBuilder {
     }
   }
 
+  std::size_t all_ = 0;
   std::vector<BuildPoint> points_;
   std::unique_ptr<RegionBoxes> boxes_;
   std::vector<Below> below_;
@@ -202,6 +278,7 @@ class RegionBuilder {
 BoxTree::BoxTree(const Layout& layout)
     : layout_(layout), top_(nodesAbove(layout)), regions_(layout.regions.size()) {
   for (auto& region : regions_) region.store(nullptr, std::memory_order_relaxed);
+  thinned_ = !layout.flat.empty();
   memory_ = top_.capacity() * sizeof(BoxNode) + regions_.capacity() * sizeof(regions_[0]);
 }
 
@@ -211,7 +288,8 @@ BoxTree::~BoxTree() {
 
 // Two threads may make the same at the same time; the first to be done is kept.
 const BoxNode* BoxTree::makeRegion(std::size_t number) {
-  std::unique_ptr<RegionBoxes> made = RegionBuilder(layout_, layout_.regions[number]).build();
+  std::unique_ptr<RegionBoxes> made = RegionBuilder(layout_, number).build();
+  if (made->thinned) thinned_ = true;
   const RegionBoxes* kept = nullptr;
   if (!regions_[number].compare_exchange_strong(kept, made.get(), std::memory_order_acq_rel)) {
     return kept->nodes.data();

@@ -19,6 +19,10 @@ namespace segorient::search {
 /// Boxes below a node, and points of a leaf: whole vectors of any instruction set.
 constexpr std::size_t kBoxFanOut = 16;
 
+/// Points in one place that a region keeps: no box can tell them apart, so that each query nearby
+/// looks at all of them. More neighbours are found another way where there are such places.
+constexpr std::size_t kMostInOnePlace = 32;
+
 /// Points in arrays of their own; lanes without a point are infinitely far from everything.
 struct PointLeaf {
   float xyz[3][kBoxFanOut];
@@ -39,6 +43,7 @@ struct BoxNode {
 struct RegionBoxes {
   std::vector<BoxNode> nodes;  ///< the root first
   std::vector<PointLeaf> leaves;
+  bool thinned = false;  ///< not all of its points are there, see kMostInOnePlace
 
   std::size_t memory() const {
     return nodes.capacity() * sizeof(BoxNode) + leaves.capacity() * sizeof(PointLeaf);
@@ -62,6 +67,8 @@ class BoxTree {
     return made != nullptr ? made->nodes.data() : makeRegion(number);
   }
   std::size_t memory() const { return memory_; }
+  /// Whether points of some region made so far were left out, see kMostInOnePlace.
+  bool isThinned() const { return thinned_; }
 
  private:
   const BoxNode* makeRegion(std::size_t number);
@@ -70,6 +77,7 @@ class BoxTree {
   std::vector<BoxNode> top_;
   std::vector<std::atomic<const RegionBoxes*>> regions_;
   std::atomic<std::size_t> memory_;
+  std::atomic<bool> thinned_;
 };
 
 /// The k nearest so far, ascending, each as its distance's bits above its id: positive floats are

@@ -71,9 +71,8 @@ struct MedianHashIndex::Impl {
   mutable std::vector<std::uint32_t> ids;
   mutable std::atomic<std::size_t> ids_memory{0};
 
-  /// Whether searchBoxes() finds k nearest, unless distances overflow. Of points in one place, none
-  /// can be left out by boxes.
-  bool boxesServe(std::size_t k) const { return k <= kMostNeighborsInBoxes && layout.flat.empty(); }
+  /// Whether searchBoxes() finds k nearest, unless distances overflow.
+  static bool boxesServe(std::size_t k) { return k <= kMostNeighborsInBoxes; }
   /// Made by the first query that is away from the points.
   BoxTree& boxTree() const;
   std::size_t boxesMemory() const;

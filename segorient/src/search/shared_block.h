@@ -179,4 +179,27 @@ struct Recent {
   SharedBlock shared;
 };
 
+/// What is remembered of the two structures that were searched last: some programs ask two in turn.
+class RecentPair {
+ public:
+  /// \param index number of a structure, above 0. If it is none of the two, it takes the place of
+  ///        the one that was asked less recently, and nothing is known of it
+  Recent& of(std::uint64_t index) {
+    if (slots_[latest_].last.index == index) return slots_[latest_];
+    latest_ = 1 - latest_;
+    Recent& slot = slots_[latest_];
+    if (slot.last.index != index) {
+      // Its own from now on. No query is for 0 neighbours, so that none is near this one.
+      slot.last = LastQuery{};
+      slot.last.index = index;
+      slot.away.reset();
+    }
+    return slot;
+  }
+
+ private:
+  Recent slots_[2];
+  std::size_t latest_ = 0;
+};
+
 }  // namespace segorient::search

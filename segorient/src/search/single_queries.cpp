@@ -32,19 +32,11 @@ class Workspace {
   SortScratch sort() { return sort_.scratch(); }
   std::vector<std::pair<float, std::uint32_t>> pairs;
   std::vector<std::uint64_t> keys;
-  // Of the two structures that were searched last: some programs ask two in turn.
-  Recent& recent(std::uint64_t index) {
-    if (recent_[latest_].last.index != index) {
-      latest_ = 1 - latest_;
-      if (recent_[latest_].last.index != index) recent_[latest_].away.reset();
-    }
-    return recent_[latest_];
-  }
+  Recent& recent(std::uint64_t index) { return recent_.of(index); }
 
  private:
   static constexpr std::size_t kMostKept = std::size_t{1} << 18;
-  Recent recent_[2];
-  std::size_t latest_ = 0;
+  RecentPair recent_;
   std::vector<float> distance_;
   std::vector<std::uint32_t> id_;
   SortRoom sort_;
