@@ -3,13 +3,16 @@
 // Words on the command line, help, exit statuses, and what is left when something goes wrong.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "run_program.h"
 
 namespace segorient::test {
 namespace {
 
-const std::vector<std::string> kCommands{"orient",  "normals", "segment",  "triangulate", "knn",
-                                         "compare", "check",   "evaluate", "render",      "view"};
+const std::vector<std::string> kCommands{"orient",      "sensors", "normals", "segment",
+                                         "triangulate", "knn",     "check",   "compare",
+                                         "evaluate",    "render",  "view"};
 
 TEST(Usage, HelpOfTheProgramAndOfEveryCommand) {
   const Outcome help = runProgram({"--help"});
@@ -21,7 +24,16 @@ TEST(Usage, HelpOfTheProgramAndOfEveryCommand) {
     EXPECT_NE(own.out.find("Usage: segorient " + command), std::string::npos) << command;
     EXPECT_NE(own.out.find("Example:\n  segorient " + command), std::string::npos) << command;
     EXPECT_TRUE(own.err.empty()) << command;
+    EXPECT_EQ(runProgram({"help", command}).out, own.out) << command;
   }
+  // All that the program has are in the list above.
+  const std::size_t from = help.out.find("Commands:\n");
+  const std::size_t end = help.out.find("\n\n", from);
+  ASSERT_NE(end, std::string::npos);
+  EXPECT_EQ(static_cast<std::size_t>(
+                std::count(help.out.begin() + static_cast<std::ptrdiff_t>(from),
+                           help.out.begin() + static_cast<std::ptrdiff_t>(end), '\n')),
+            kCommands.size());
   EXPECT_EQ(runProgram({"--version"}).out, "segorient 1.0.0\n");
   const std::string orient = runProgram({"orient", "--help"}).out;
   EXPECT_EQ(runProgram({"help", "orient"}).out, orient);
@@ -35,6 +47,36 @@ TEST(Usage, HelpOfTheProgramAndOfEveryCommand) {
   EXPECT_NE(orient.find("--verbose"), std::string::npos);
   EXPECT_EQ(runProgram({"segment", "--help"}).out.find("--verbose"), std::string::npos);
   EXPECT_EQ(runProgram({"view", "--help"}).out.find("--threads"), std::string::npos);
+}
+
+// A report that can't be written: no output either, and what was there stays.
+TEST(Usage, OutputAndReportAreBothOrNone) {
+  const std::vector<std::pair<std::vector<std::string>, std::string>> commands{
+      {{"orient", fandisk()}, "out.pcd"},
+      {{"orient", fandisk(), "--method", "hoppe"}, "out.ply"},
+      {{"segment", fandisk()}, "out.pcd"},
+      {{"check", fandisk()}, "out.pcd"}};
+  for (const auto& [command, name] : commands) {
+    for (const bool existed : {false, true}) {
+      const ScratchDirectory directory;
+      const std::string out = directory.file(name);
+      if (existed) directory.write(name, "as it was");
+      for (const std::string& report : {directory.file("none/report.json"), directory.file("")}) {
+        std::vector<std::string> words = command;
+        words.insert(words.begin() + 2, out);
+        words.insert(words.end(), {"-q", "--report", report});
+        SCOPED_TRACE(command[0] + " --report " + report);
+        const Outcome run = runProgram(words);
+        EXPECT_EQ(run.status, 1);
+        EXPECT_TRUE(isOneLine(run.err)) << run.err;
+        EXPECT_NE(run.err.find(report), std::string::npos) << run.err;
+        EXPECT_EQ(directory.entries(), existed ? 1U : 0U);
+        if (existed) {
+          EXPECT_EQ(readFile(out), "as it was");
+        }
+      }
+    }
+  }
 }
 
 TEST(Usage, WrongUsageIsStatus2AndOneLine) {
@@ -55,6 +97,8 @@ TEST(Usage, WrongUsageIsStatus2AndOneLine) {
       {"orient", fandisk(), out, "--alpha", "-5"},
       {"orient", fandisk(), out, "--beta", "nan"},
       {"orient", fandisk(), out, "--threads", "-1"},
+      {"orient", fandisk(), out, "--threads", "65537"},
+      {"orient", fandisk(), out, "--threads", "99999999999999999999"},
       {"orient", fandisk(), out, "--report"},
       {"normals", fandisk(), directory.file("out.vtk")},
       {"render", fandisk(), directory.file("out.jpg")},
