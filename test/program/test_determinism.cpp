@@ -27,7 +27,7 @@ TEST_P(Determinism, SameBytesForAnyThreadsAndAnyRun) {
   const ScratchDirectory directory;
   const std::string out = directory.file(GetParam().output);
   std::string first;
-  for (const std::string threads : {"1", "1", "2", "7", "65536"}) {
+  for (const std::string threads : {"1", "1", "2", "7", "65537"}) {
     std::vector<std::string> words = GetParam().words;
     words.insert(words.begin() + 1, {fandisk(), out});
     words.insert(words.end(), {"--threads", threads});

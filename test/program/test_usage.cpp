@@ -97,7 +97,6 @@ TEST(Usage, WrongUsageIsStatus2AndOneLine) {
       {"orient", fandisk(), out, "--alpha", "-5"},
       {"orient", fandisk(), out, "--beta", "nan"},
       {"orient", fandisk(), out, "--threads", "-1"},
-      {"orient", fandisk(), out, "--threads", "65537"},
       {"orient", fandisk(), out, "--threads", "99999999999999999999"},
       {"orient", fandisk(), out, "--report"},
       {"normals", fandisk(), directory.file("out.vtk")},
