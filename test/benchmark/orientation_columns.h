@@ -88,6 +88,8 @@ inline std::vector<Column> withoutSteps() {
               [](PipelineOptions& o) { o.orientation.automatic.wind_components = false; }),
       without("viewpoint",
               [](PipelineOptions& o) { o.orientation.automatic.infer_viewpoint = false; }),
+      without("coarse levels",
+              [](PipelineOptions& o) { o.orientation.automatic.coarse_levels = false; }),
       without("winding normals",
               [](PipelineOptions& o) { o.orientation.automatic.winding_normals = false; }),
       without("wedges", [](PipelineOptions& o) { o.orientation.automatic.filter_wedges = false; }),

@@ -97,6 +97,11 @@ std::string sheetChoice(const detail::AutoStages& stages) {
                            : "so positions stay as they are")
        << "; planes of one sheet each, of as few of " << stages.k
        << " neighbours as the noise allows";
+  if (stages.level > 0.F) {
+    text << "; points contradict each other as layers do that do not quite fit: signs from an even "
+            "subset, "
+         << stages.level << " spacings apart";
+  }
   return text.str();
 }
 

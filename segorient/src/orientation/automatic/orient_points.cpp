@@ -7,6 +7,7 @@
 
 #include "common/median.h"
 #include "features/sheet_normals.h"
+#include "orientation/automatic/coarse_levels.h"
 #include "orientation/automatic/grazing_normals.h"
 #include "orientation/automatic/sensor_signs.h"
 #include "orientation/automatic/sheet_filter.h"
@@ -14,10 +15,11 @@
 #include "segmentation/sheet_segmentation.h"
 
 namespace segorient::detail {
+namespace {
 
-AutoNormals orientPoints(const PointView& points, const Neighborhoods& neighborhoods,
-                         const AutomaticOptions& settings, const PointHints& hints, int threads,
-                         const std::function<void(const char*, double)>& begin) {
+AutoNormals orientAtOneScale(const PointView& points, const Neighborhoods& neighborhoods,
+                             const AutomaticOptions& settings, const PointHints& hints, int threads,
+                             const std::function<void(const char*, double)>& begin) {
   AutoNormals out;
   if (begin) begin("normals", 0.3);
   SheetNormalOptions normal_options{settings.split_walls, settings.dominant_plane, threads};
@@ -72,6 +74,20 @@ AutoNormals orientPoints(const PointView& points, const Neighborhoods& neighborh
       out.confidences[i] = std::min(out.confidences[i], result.point_confidences[i]);
     }
   }
+  return out;
+}
+
+}  // namespace
+
+AutoNormals orientPoints(const PointView& points, const Neighborhoods& neighborhoods,
+                         const AutomaticOptions& settings, const PointHints& hints, int threads,
+                         const std::function<void(const char*, double)>& begin) {
+  AutoNormals out = orientAtOneScale(points, neighborhoods, settings, hints, threads, begin);
+  if (!settings.coarse_levels || !hints.noneOfPoints()) return out;
+  const auto orient = [&](const PointView& subset, const Neighborhoods& table) {
+    return orientAtOneScale(subset, table, settings, hints, threads, {});
+  };
+  out.level = followCoarserLevels(points, neighborhoods, orient, threads, out);
   return out;
 }
 

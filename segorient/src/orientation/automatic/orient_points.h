@@ -22,10 +22,12 @@ struct AutoNormals {
   std::vector<std::int32_t> components;  ///< -1 where there is no normal
   AutoOrientation orientation;           ///< of the sheets' segments
   float spacing = 0.F;                   ///< median
+  float level = 0.F;                     ///< see followCoarserLevels()
 };
 
-/// Sheet normals, sheet segments, their orientation, and the filter that makes the final normals.
-/// \param begin called with a stage's name and the fraction of the work done before it; may be
+/// Sheet normals, sheet segments, their orientation, and the filter that makes the final normals;
+/// at a coarser scale as well where points contradict each other, see followCoarserLevels(). \param
+/// begin called with a stage's name and the fraction of the work done before it; may be
 ///        empty
 AutoNormals orientPoints(const PointView& points, const Neighborhoods& neighborhoods,
                          const AutomaticOptions& settings, const PointHints& hints, int threads,

@@ -92,6 +92,7 @@ AutoStages runAutoStages(PreparedCloud& cloud, const PipelineOptions& options,
   out.components = std::move(oriented.components);
   out.orientation = std::move(oriented.orientation);
   out.spacing = oriented.spacing;
+  out.level = oriented.level;
   begin("segmentation", 0.81);
   segmentFinal(points, table, segmentation::inUnitOf(cloud, options.segmentation), options.threads,
                out);

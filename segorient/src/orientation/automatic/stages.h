@@ -24,6 +24,7 @@ struct AutoStages {
   float spacing = 0.F;    ///< median
   float noise = 0.F;      ///< see NoiseLevel::fine
   bool denoised = false;  ///< whether positions were smoothed first
+  float level = 0.F;      ///< see AutoNormals::level
 };
 
 /// The default method, from distinct points to oriented normals and segments: neighbours, sheet

@@ -27,6 +27,11 @@ struct PointHints {
   /// 3 floats a point: sum of the unit vectors that its normal is said to point along; empty = none
   std::vector<float> directions;
   std::vector<Seed> seeds;
+
+  /// Whether nothing is said about single points, nor from where they were seen.
+  bool noneOfPoints() const {
+    return !has_viewpoint && sensors.empty() && directions.empty() && seeds.empty();
+  }
 };
 
 /// \param cloud that that `hints` is about

@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the segorient authors
+#include "orientation/automatic/layer_test.h"
+
+#include <segorient/common/threads.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+
+#include "common/dot.h"
+#include "segmentation/sheet_segmentation.h"
+
+namespace segorient::detail {
+namespace {
+
+constexpr float kFlat = 0.97F;           // normals within 14 degrees of their mean
+constexpr std::size_t kSamples = 20000;  // enough for the scatter to a hundredth
+// Between a wall's .18 and the .58 of layers on a sphere, whose noise makes it less.
+constexpr float kCross = 0.25F;
+
+// Standard deviation of the offsets of p and its neighbours along a direction.
+float thickness(const PointView& points, const Neighborhoods& table, std::size_t p,
+                const float* direction) {
+  const int count = std::min(table.count(p), kSheetDegree);
+  float sum = 0.F;
+  float squares = 0.F;
+  for (int j = 0; j < count; ++j) {
+    const float* q = points[static_cast<std::size_t>(table.indices(p)[j])];
+    const float d[3] = {q[0] - points[p][0], q[1] - points[p][1], q[2] - points[p][2]};
+    const float offset = dot(d, direction);
+    sum += offset;
+    squares += offset * offset;
+  }
+  const auto n = static_cast<float>(std::max(1, count));
+  return std::sqrt(std::max(0.F, squares / n - (sum / n) * (sum / n)));
+}
+
+}  // namespace
+
+float thicknessScatter(const PointView& points, const Neighborhoods& neighborhoods,
+                       const std::vector<float>& around, int threads) {
+  const std::size_t stride = std::max<std::size_t>(1, points.size / kSamples);
+  const std::size_t rows = (points.size + stride - 1) / stride;
+  std::vector<float> values(rows, -1.F);
+#pragma omp parallel for num_threads(resolveThreads(threads, rows, 3000.0)) schedule(static)
+  for (std::size_t r = 0; r < rows; ++r) {
+    const float* mean = &around[4 * r * stride];
+    if (mean[3] >= kFlat) values[r] = thickness(points, neighborhoods, r * stride, mean);
+  }
+  double count = 0.0;
+  double sum = 0.0;
+  double squares = 0.0;
+  for (const float v : values) {
+    if (v < 0.F) continue;
+    count += 1.0;
+    sum += static_cast<double>(v);
+    squares += static_cast<double>(v) * static_cast<double>(v);
+  }
+  if (!(sum > 0.0)) return 0.F;
+  const double mean = sum / count;
+  return static_cast<float>(std::sqrt(std::max(0.0, squares / count - mean * mean)) / mean);
+}
+
+bool layersCross(const PointView& points, const Neighborhoods& neighborhoods,
+                 const std::vector<float>& around, int threads) {
+  return thicknessScatter(points, neighborhoods, around, threads) >= kCross;
+}
+
+}  // namespace segorient::detail

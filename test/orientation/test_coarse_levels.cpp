@@ -1,0 +1,234 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the segorient authors
+//
+// Coarser scales: scans that do not quite fit, and what looks like them.
+#include <gtest/gtest.h>
+#include <segorient/orientation/pipeline.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numeric>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "orientation/automatic/blue_noise.h"
+#include "orientation/automatic/layer_test.h"
+#include "orientation/automatic/sign_energy.h"
+#include "sheet_fixture.h"
+
+namespace segorient::test {
+namespace {
+
+using Vector = std::array<double, 3>;
+
+struct Cloud {
+  std::vector<float> xyz;
+  std::vector<float> normals;  // the true ones
+
+  void add(const Vector& p, const Vector& n) {
+    for (const double v : p) xyz.push_back(static_cast<float>(v));
+    for (const double v : n) normals.push_back(static_cast<float>(v));
+    xyz.push_back(0.F);
+    normals.push_back(0.F);
+  }
+  std::size_t size() const { return xyz.size() / 4; }
+};
+
+Vector onSphere(std::mt19937& rng) {
+  std::normal_distribution<double> normal;
+  const Vector v{normal(rng), normal(rng), normal(rng)};
+  const double length = std::sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
+  return {v[0] / length, v[1] / length, v[2] / length};
+}
+
+constexpr double kArea = 4 * M_PI;  // of the unit sphere
+
+// Two scans of a sphere, one of them moved by a multiple of their spacing.
+Cloud twoScans(std::size_t n, double apart, unsigned seed) {
+  std::mt19937 rng(seed);
+  const Vector t = onSphere(rng);
+  const double by = apart * std::sqrt(kArea / (static_cast<double>(n) / 2));
+  Cloud out;
+  for (std::size_t i = 0; i < n; ++i) {
+    const Vector d = onSphere(rng);
+    const double move = i % 2 == 0 ? 0.0 : by;
+    out.add({d[0] + move * t[0], d[1] + move * t[1], d[2] + move * t[2]}, d);
+  }
+  return out;
+}
+
+// A hollow sphere whose wall is a multiple of the spacing thick; noise in spacings.
+Cloud hollowSphere(std::size_t n, double wall, double noise, unsigned seed) {
+  std::mt19937 rng(seed);
+  std::normal_distribution<double> normal;
+  const double spacing = std::sqrt(2 * kArea / static_cast<double>(n));
+  Cloud out;
+  for (std::size_t i = 0; i < n; ++i) {
+    const Vector d = onSphere(rng);
+    const bool inner = i % 2 == 0;
+    const double r = inner ? 1 - wall * spacing : 1.0;
+    Vector p{};
+    for (std::size_t a = 0; a < 3; ++a) p[a] = r * d[a] + noise * spacing * normal(rng);
+    out.add(p, inner ? Vector{-d[0], -d[1], -d[2]} : d);
+  }
+  return out;
+}
+
+OrientedCloud orient(const std::vector<float>& xyz, bool coarse_levels = true, int threads = 1) {
+  PipelineOptions options;
+  options.threads = threads;
+  options.orientation.automatic.coarse_levels = coarse_levels;
+  return orientCloud(viewOf(xyz), nullptr, options);
+}
+
+double right(const Cloud& cloud, bool coarse_levels = true) {
+  return shareOutward(orient(cloud.xyz, coarse_levels).normals, cloud.normals);
+}
+
+class Layers : public testing::TestWithParam<double> {};
+
+TEST_P(Layers, AreOneSurface) {
+  const Cloud cloud = twoScans(6000, GetParam(), 1);
+  EXPECT_GE(right(cloud), 0.995);
+}
+
+INSTANTIATE_TEST_SUITE_P(CoarseLevels, Layers, testing::Values(0.25, 0.5, 0.75, 1.0));
+
+TEST(CoarseLevels, AreWhatMakesThemOne) {
+  const Cloud cloud = twoScans(6000, 1.0, 1);
+  EXPECT_LT(right(cloud, false), 0.95);
+  const OrientedCloud oriented = orient(cloud.xyz);
+  EXPECT_NE(oriented.report.normals_chosen.find("even subset"), std::string::npos);
+  const auto& components = oriented.report.components;
+  const std::size_t points = std::accumulate(
+      components.begin(), components.end(), std::size_t{0},
+      [](std::size_t sum, const ComponentOrientationResult& c) { return sum + c.points; });
+  EXPECT_EQ(points, cloud.size());
+}
+
+// A closed wall has the same points as two layers, but for its even thickness.
+TEST(CoarseLevels, LeaveTheTwoSidesOfAWallApart) {
+  const Cloud clean = hollowSphere(6000, 1.0, 0.0, 3);
+  EXPECT_GE(right(clean), 0.99);
+  const Cloud thin = hollowSphere(6000, 0.5, 0.0, 3);
+  EXPECT_GE(right(thin), right(thin, false));
+  const Cloud noisy = hollowSphere(6000, 0.8, 0.15, 3);
+  EXPECT_GE(right(noisy), right(noisy, false));
+}
+
+TEST(CoarseLevels, DependOnNeitherThreadsNorOrder) {
+  const Cloud cloud = twoScans(4000, 0.75, 5);
+  const OrientedCloud one = orient(cloud.xyz, true, 1);
+  const OrientedCloud three = orient(cloud.xyz, true, 3);
+  ASSERT_NE(one.report.normals_chosen.find("even subset"), std::string::npos);
+  EXPECT_EQ(one.normals, three.normals);
+  EXPECT_EQ(one.confidences, three.confidences);
+  std::vector<std::size_t> order(cloud.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::shuffle(order.begin(), order.end(), std::mt19937(7));
+  std::vector<float> shuffled(cloud.xyz.size());
+  for (std::size_t i = 0; i < order.size(); ++i) {
+    std::copy_n(&cloud.xyz[4 * order[i]], 4, &shuffled[4 * i]);
+  }
+  const OrientedCloud other = orient(shuffled);
+  for (std::size_t i = 0; i < order.size(); ++i) {
+    for (std::size_t a = 0; a < 4; ++a) {
+      ASSERT_EQ(other.normals[4 * i + a], one.normals[4 * order[i] + a]) << i;
+    }
+  }
+}
+
+TEST(SignEnergy, IsLeastAtTheTruth) {
+  for (const Cloud& cloud : {twoScans(6000, 0.5, 8), hollowSphere(6000, 1.0, 0.1, 8)}) {
+    const Neighborhoods table = neighborsOf(cloud.xyz);
+    const detail::SignJudge judge(viewOf(cloud.xyz), table, 1);
+    const float truth = judge.judge(cloud.normals).total();
+    EXPECT_LT(truth, 0.06F);
+    std::vector<float> inside_out = cloud.normals;
+    std::vector<float> half = cloud.normals;
+    std::vector<float> one_sided = cloud.normals;
+    for (std::size_t i = 0; i < cloud.size(); ++i) {
+      for (std::size_t a = 0; a < 3; ++a) {
+        inside_out[4 * i + a] *= -1.F;
+        if (cloud.xyz[4 * i] > 0.3F) half[4 * i + a] *= -1.F;
+        if (i % 2 == 0) one_sided[4 * i + a] *= -1.F;
+      }
+    }
+    EXPECT_GT(judge.judge(inside_out).total(), truth + 0.02F);
+    EXPECT_GT(judge.judge(half).total(), truth + 0.02F);
+    // Of a closed wall, turning one side makes one surface of both: that is what LayerTest is for.
+    EXPECT_GT(judge.judge(one_sided).total(), truth - 0.03F);
+  }
+}
+
+TEST(SignEnergy, TellsBacksFromFaces) {
+  const Cloud wall = hollowSphere(4000, 0.7, 0.0, 9);
+  const Neighborhoods table = neighborsOf(wall.xyz);
+  const detail::OpposedPairs as_is = detail::opposedPairs(viewOf(wall.xyz), table, wall.normals, 1);
+  EXPECT_LT(as_is.facing, 0.001F);
+  EXPECT_GT(as_is.backs, 0.2F);
+  std::vector<float> turned = wall.normals;
+  for (float& v : turned) v = -v;
+  const detail::OpposedPairs other = detail::opposedPairs(viewOf(wall.xyz), table, turned, 1);
+  EXPECT_NEAR(other.facing, as_is.backs, 1e-5);
+  EXPECT_NEAR(other.backs, as_is.facing, 1e-5);
+}
+
+TEST(LayerTest, TellsLayersFromWalls) {
+  // What a coarse scale sees of both: the normals of one sphere.
+  const auto scatter = [](const Cloud& cloud) {
+    std::vector<float> around(cloud.xyz.size());
+    for (std::size_t i = 0; i < cloud.size(); ++i) {
+      const float* p = &cloud.xyz[4 * i];
+      const float length = std::sqrt(dot3(p, p));
+      for (std::size_t a = 0; a < 3; ++a) around[4 * i + a] = p[a] / length;
+      around[4 * i + 3] = 1.F;
+    }
+    return detail::thicknessScatter(viewOf(cloud.xyz), neighborsOf(cloud.xyz), around, 1);
+  };
+  for (const unsigned seed : {11U, 12U, 13U}) {
+    EXPECT_GT(scatter(twoScans(6000, 0.5, seed)), 0.35F);
+    EXPECT_GT(scatter(twoScans(6000, 1.0, seed)), 0.35F);
+    EXPECT_LT(scatter(hollowSphere(6000, 0.6, 0.0, seed)), 0.2F);
+    EXPECT_LT(scatter(hollowSphere(6000, 0.6, 0.2, seed)), 0.2F);
+    EXPECT_LT(scatter(hollowSphere(6000, 1.2, 0.3, seed)), 0.2F);
+  }
+}
+
+TEST(BlueNoise, IsFarApartAndLeavesNoGap) {
+  const Cloud cloud = twoScans(3000, 0.5, 15);
+  const PointView points = viewOf(cloud.xyz);
+  const float radius = 0.12F;
+  const detail::BlueNoise even = detail::thinOut(points, radius);
+  const auto squares = [&](std::size_t i, std::size_t j) {
+    float sum = 0.F;
+    for (std::size_t a = 0; a < 3; ++a) {
+      sum += (points[i][a] - points[j][a]) * (points[i][a] - points[j][a]);
+    }
+    return sum;
+  };
+  for (std::size_t i = 0; i < even.kept.size(); ++i) {
+    for (std::size_t j = 0; j < i; ++j) {
+      ASSERT_GE(squares(even.kept[i], even.kept[j]), radius * radius);
+    }
+  }
+  for (std::size_t i = 0; i < points.size; ++i) {
+    float nearest = 1e9F;
+    for (const std::uint32_t k : even.kept) nearest = std::min(nearest, squares(i, k));
+    ASSERT_LT(nearest, radius * radius);
+    ASSERT_EQ(squares(i, even.kept[even.cell_of[i]]), nearest);
+  }
+}
+
+TEST(BlueNoise, RefusesRadiiThatFloatsCannotTell) {
+  const Cloud cloud = twoScans(100, 0.5, 16);
+  for (const float radius : {0.F, -1.F, 1e-20F, std::nanf("")}) {
+    EXPECT_TRUE(detail::thinOut(viewOf(cloud.xyz), radius).kept.empty());
+  }
+  EXPECT_TRUE(detail::thinOut({nullptr, 4, 0}, 1.F).kept.empty());
+}
+
+}  // namespace
+}  // namespace segorient::test
