@@ -27,9 +27,9 @@ constexpr float kMoreThanChance = 1.3F;
 // .04 to .31, solids and sheets .99 and more, several stations around an object from .42 on.
 constexpr float kSureSuggested = 0.6F;
 constexpr float kSureFound = 0.33F;
-// What several sensors explain varies far beyond chance: by 3 times and more. That of merged range
-// scans and of uneven samplings does by 2.1 times at most.
-constexpr float kFarBeyondChance = 2.5F;
+// Several sensors can adapt to much, so that there must be enough to adapt to: at twice the
+// deviation of chance three quarters of the variance are something else.
+constexpr float kFarBeyondChance = 2.F;
 // A suggestion is kept unless a place beside it explains this much more.
 constexpr float kMuchBetter = 0.6F;
 // From farther away, in diagonals, distances hardly differ, and a law is one of incidence alone.

@@ -24,10 +24,10 @@ using detail::toFloat;
 
 namespace {
 
-// Several stations have more to adapt: true ones in rooms and yards left .03 to .28, wrong ones
-// around single bodies .34 and more.
+// What may be left of the deviation. Several stations have more to adapt: true ones in rooms and
+// yards left .03 to .28, or nothing but chance; wrong ones around single bodies .33 and more.
 constexpr float kSureSeveral = 0.3F;
-// Along a line inside the scene, with free beams: true ones left .05 to .31, others .53 and more;
+// Along a line inside the scene, with free beams: true ones left .05 to .35, others .53 and more;
 // outside the scene .35 came about, but no vehicle goes there.
 constexpr float kSureTrack = 0.4F;
 
@@ -116,7 +116,8 @@ void detail::findSeveral(PreparedCloud& cloud, const DensityPatches& patches, in
   const detail::Occupancy occupancy(cloud.points(), patches, extent);
   const detail::Stations stations = detail::searchStations(patches, occupancy, kUp, threads);
   const float ratio = stations.cost / report.deviation;
-  if (!stations.positions.empty() && ratio <= kSureSeveral) {
+  const bool explained = ratio <= kSureSeveral || stations.cost <= report.chance;
+  if (!stations.positions.empty() && explained) {
     addSensors(stations.positions, SensorKind::STATION, kUp, ratio, report);
     assignPlaces(cloud, patches, detail::stationOf(patches, occupancy, stations), threads, report);
     report.why = "several places explain the densities";

@@ -25,7 +25,11 @@ constexpr int kPlaces = 9;       // a line of places is as good as a path once t
 constexpr int kElevations = 36;  // bins of 5 degrees: the steps between a lidar's beams and less
 constexpr int kBeamRounds = 6;
 constexpr float kPrior = 0.02F;  // of an even share of the pieces: empty bins stay as they are
-constexpr int kStarts = 4;
+// Of path lengths, as parts of the scene's: from standing nearly still on, each about twice the
+// last, since a path is found from starts of half its length to twice.
+constexpr std::array<double, 4> kLengths{0.02, 0.2, 0.44, 0.9};
+constexpr std::size_t kStarts =
+    2;  // that are followed, of each length: a good one may be a dead end
 constexpr int kEvaluations = 160;
 constexpr double kStep = 0.04;  // of the extent
 
@@ -177,8 +181,8 @@ std::array<double, 3> longDirection(const DensityPatches& patches) {
   return {c, s, 2.0 * reach};
 }
 
-// Short and long lines along the scene and across it, in its middle and beside, low and high.
-std::vector<Line> startLines(const DensityPatches& patches, const Extent& extent) {
+// Lines of one length along the scene and across it, in its middle and beside, low and high.
+std::vector<Line> startLines(const DensityPatches& patches, const Extent& extent, double part) {
   const std::array<double, 3> spread = longDirection(patches);
   const double length = spread[2];
   const double middle[2] = {0.5 * (extent.low[0] + extent.high[0]),
@@ -191,10 +195,8 @@ std::vector<Line> startLines(const DensityPatches& patches, const Extent& extent
         const double y = middle[1] + length * (along * dy + beside * dx);
         for (const double height : {0.12, 0.3, 0.6}) {
           const double z = extent.low[2] + height * (extent.high[2] - extent.low[2]);
-          for (const double half : {0.01, 0.1}) {
-            out.push_back({x - half * length * dx, y - half * length * dy, x + half * length * dx,
-                           y + half * length * dy, z});
-          }
+          const double half = 0.5 * part * length;
+          out.push_back({x - half * dx, y - half * dy, x + half * dx, y + half * dy, z});
         }
       }
     }
@@ -214,7 +216,11 @@ bool isInside(const std::vector<Position>& places, const Extent& extent) {
 
 Track searchTrack(const DensityPatches& patches, const Extent& extent, int threads) {
   const DensityPatches some = patches.thinned(kPieces);
-  std::vector<Line> lines = startLines(some, extent);
+  std::vector<Line> lines;
+  for (const double part : kLengths) {
+    const std::vector<Line> starts = startLines(some, extent, part);
+    lines.insert(lines.end(), starts.begin(), starts.end());
+  }
   std::vector<double> costs(lines.size());
   constexpr double kFitTime = 1e6;  // ns a line, see resolveThreads()
   const int team = resolveThreads(threads, lines.size(), kFitTime);
@@ -226,11 +232,15 @@ Track searchTrack(const DensityPatches& patches, const Extent& extent, int threa
       costs[i] = static_cast<double>(model.fit(placesAlong(lines[i])));
     }
   }
-  std::vector<std::size_t> order(lines.size());
-  std::iota(order.begin(), order.end(), std::size_t{0});
-  std::stable_sort(order.begin(), order.end(),
-                   [&](std::size_t a, std::size_t b) { return costs[a] < costs[b]; });
-  order.resize(std::min<std::size_t>(order.size(), kStarts));
+  std::vector<std::size_t> order;
+  const std::size_t each = lines.size() / kLengths.size();
+  for (std::size_t first = 0; first < lines.size(); first += each) {
+    std::vector<std::size_t> of_length(each);
+    std::iota(of_length.begin(), of_length.end(), first);
+    std::stable_sort(of_length.begin(), of_length.end(),
+                     [&](std::size_t a, std::size_t b) { return costs[a] < costs[b]; });
+    order.insert(order.end(), of_length.begin(), of_length.begin() + kStarts);
+  }
 #pragma omp parallel for schedule(static, 1) num_threads(team)
   for (std::size_t s = 0; s < order.size(); ++s) {
     TrackModel model(some);
