@@ -23,6 +23,7 @@ struct Command {
 
 constexpr std::array kCommands{
     Command{"orient", "IN... OUT     one oriented normal a point: the main job", runOrient},
+    Command{"tiles", "STEP DIR ...  the steps of orient --memory, one by one", runTiles},
     Command{"sensors", "IN [OUT.json] where the sensors stood", runSensors},
     Command{"normals", "IN OUT        unoriented normals", runNormals},
     Command{"segment", "IN OUT        segments: labels, colours, kinds", runSegment},

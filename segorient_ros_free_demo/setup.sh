@@ -67,5 +67,6 @@ build() {
 # python3-dev and pybind11-dev are for the Python package, which is left out without them.
 BUILD_PACKAGES=(g++ cmake ninja-build libpcl-dev libeigen3-dev libflann-dev libboost-dev
   libboost-program-options-dev python3-dev pybind11-dev python3-numpy)
-# chromium: pages are tested in it, where it is there.
-TEST_PACKAGES=(libgtest-dev doxygen dpkg-dev pkg-config chromium)
+# chromium: pages are tested in it, where it is there; python3-distributed: one of the engines for
+# tiles.
+TEST_PACKAGES=(libgtest-dev doxygen dpkg-dev pkg-config chromium python3-distributed)

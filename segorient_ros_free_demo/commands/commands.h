@@ -10,6 +10,7 @@ namespace segorient::program {
 // One function a command: reads its words, does it, and returns the exit status. They throw
 // FileError and UsageError.
 int runOrient(const std::vector<std::string>& words);
+int runTiles(const std::vector<std::string>& words);
 int runNormals(const std::vector<std::string>& words);
 int runSegment(const std::vector<std::string>& words);
 int runTriangulate(const std::vector<std::string>& words);

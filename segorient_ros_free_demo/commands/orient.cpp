@@ -18,6 +18,8 @@
 #include "support/sensor_report.h"
 #include "support/stage_memory.h"
 #include "support/stage_options.h"
+#include "support/tile_flags.h"
+#include "tiles/run_tiles.h"
 
 namespace segorient::program {
 namespace po = boost::program_options;
@@ -196,9 +198,11 @@ int runOrient(const std::vector<std::string>& words) {
   StageOptions stages;
   HintOptions hints;
   std::string report_path;
+  TileFlags tiles;
   line.argumentsMany("IN", "OUT");
   stages.add(line, true);
   hints.add(line);
+  tiles.add(line);
   line.options()("report", po::value(&report_path), "what was done, as JSON");
   common.add(line, "a summary of all components");
   if (!line.parse(words)) return 0;
@@ -207,6 +211,10 @@ int runOrient(const std::vector<std::string>& words) {
   stages.apply(line, common, options);
   hints.check(line, common, options);
   stages.warnOfUnused(line, common, options);
+  if (tiles.wanted()) {
+    runAllSteps(tiles.request(line, common, options, hints), tiles.folder(), common.quiet);
+    return 0;
+  }
   requireEnding(line.argument("OUT"), {".pcd", ".ply", ".las"});
 
   if (report_path == line.argument("OUT")) throw UsageError("--report and OUT are the same file");

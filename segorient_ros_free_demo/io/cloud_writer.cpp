@@ -142,7 +142,9 @@ void OutputCloud::addRest(const CloudTable& table, const std::vector<std::string
   }
 }
 
-void writePcd(const OutputCloud& cloud, OutputFile& file) {
+namespace {
+
+void writePcdHeader(const OutputCloud& cloud, OutputFile& file) {
   std::ostringstream header;
   header.precision(17);
   header << "# .PCD v0.7 - Point Cloud Data file format\nVERSION 0.7\nFIELDS";
@@ -157,7 +159,9 @@ void writePcd(const OutputCloud& cloud, OutputFile& file) {
   for (const double v : cloud.viewpoint) header << ' ' << v;
   header << "\nPOINTS " << cloud.size << "\nDATA binary\n";
   file.write(header.str());
+}
 
+void writePcdRows(const OutputCloud& cloud, OutputFile& file) {
   std::size_t row_bytes = 0;
   for (const Column& c : cloud.columns) row_bytes += c.field.bytes();
   writeRows(cloud.size, row_bytes, file, [&](std::size_t row, std::uint8_t* to) {
@@ -168,29 +172,45 @@ void writePcd(const OutputCloud& cloud, OutputFile& file) {
   });
 }
 
-void writePly(const OutputCloud& cloud, OutputFile& file) {
-  const std::vector<PlyProperty> properties = plyProperties(cloud);
+std::size_t bytesOf(const PlyProperty& p) {
+  return p.kind == PlyProperty::Kind::ToDouble ? sizeof(double) : p.bytes;
+}
+
+void writePlyHeader(const OutputCloud& cloud, OutputFile& file) {
   std::string header =
       "ply\nformat binary_little_endian 1.0\nelement vertex " + std::to_string(cloud.size) + "\n";
-  std::size_t row_bytes = 0;
-  std::vector<std::size_t> sizes;
-  for (const PlyProperty& p : properties) {
+  for (const PlyProperty& p : plyProperties(cloud)) {
     header += "property " + p.type + " " + p.name + "\n";
-    sizes.push_back(p.kind == PlyProperty::Kind::ToDouble ? sizeof(double) : p.bytes);
-    row_bytes += sizes.back();
   }
   if (cloud.triangles != nullptr) {
     header += "element face " + std::to_string(cloud.triangles->size()) +
               "\nproperty list uchar int vertex_indices\n";
   }
   file.write(header + "end_header\n");
+}
+
+void writePlyRows(const OutputCloud& cloud, OutputFile& file) {
+  const std::vector<PlyProperty> properties = plyProperties(cloud);
+  std::size_t row_bytes = 0;
+  for (const PlyProperty& p : properties) row_bytes += bytesOf(p);
   writeRows(cloud.size, row_bytes, file, [&](std::size_t row, std::uint8_t* to) {
-    for (std::size_t i = 0; i < properties.size(); ++i) {
-      const PlyProperty& p = properties[i];
+    for (const PlyProperty& p : properties) {
       makeValue(p, p.column->data + row * p.column->stride + p.offset, to);
-      to += sizes[i];
+      to += bytesOf(p);
     }
   });
+}
+
+}  // namespace
+
+void writePcd(const OutputCloud& cloud, OutputFile& file) {
+  writePcdHeader(cloud, file);
+  writePcdRows(cloud, file);
+}
+
+void writePly(const OutputCloud& cloud, OutputFile& file) {
+  writePlyHeader(cloud, file);
+  writePlyRows(cloud, file);
   if (cloud.triangles == nullptr) return;
   writeRows(cloud.triangles->size(), 13, file, [&](std::size_t i, std::uint8_t* to) {
     to[0] = 3;
@@ -263,6 +283,19 @@ void writeCloud(const OutputCloud& cloud, OutputFile& file) {
   if (ending == ".las") return writeLas(ConstantViewpoint(cloud).addedTo(cloud), file);
   if (ending == ".vtk") return writeVtk(cloud, file);
   writePcd(cloud, file);
+}
+
+void CloudWriter::add(const OutputCloud& block, std::uint64_t size) {
+  const bool ply = fileEnding(file_.path()) == ".ply";
+  const ConstantViewpoint viewpoint(block);
+  OutputCloud cloud = ply ? viewpoint.addedTo(block) : block;
+  if (!begun_) {
+    cloud.size = cloud.width = static_cast<std::size_t>(size);
+    ply ? writePlyHeader(cloud, file_) : writePcdHeader(cloud, file_);
+    begun_ = true;
+  }
+  cloud.size = block.size;
+  ply ? writePlyRows(cloud, file_) : writePcdRows(cloud, file_);
 }
 
 }  // namespace segorient::program

@@ -65,4 +65,16 @@ void writeLas(const OutputCloud& cloud, OutputFile& file);
 /// VIEWPOINT becomes fields vp_x, vp_y, vp_z in PLY and LAS.
 void writeCloud(const OutputCloud& cloud, OutputFile& file);
 
+/// A PCD or PLY that is written block by block; does not commit.
+class CloudWriter {
+ public:
+  explicit CloudWriter(OutputFile& file) : file_(file) {}
+  /// The next points. All blocks have the same columns. \param size of the whole cloud
+  void add(const OutputCloud& block, std::uint64_t size);
+
+ private:
+  OutputFile& file_;
+  bool begun_ = false;
+};
+
 }  // namespace segorient::program

@@ -96,4 +96,11 @@ void InputFile::skip(std::uint64_t bytes) {
   }
 }
 
+void InputFile::seek(std::uint64_t position) {
+  if (position > size_) fail("is cut short");
+  if (fseeko(file_.get(), static_cast<off_t>(position), SEEK_SET) != 0) fail(std::strerror(errno));
+  position_ = position;
+  begin_ = end_ = 0;
+}
+
 }  // namespace segorient::program

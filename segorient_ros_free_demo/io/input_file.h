@@ -31,6 +31,8 @@ class InputFile {
   /// Exactly so many bytes; throws if the file ends before.
   void read(void* out, std::size_t bytes);
   void skip(std::uint64_t bytes);
+  /// Goes on at any byte of the file; line numbers then mean nothing.
+  void seek(std::uint64_t position);
 
   [[noreturn]] void fail(const std::string& reason) const { throw FileError(path_, reason); }
   /// fail() with the number of the last line read.

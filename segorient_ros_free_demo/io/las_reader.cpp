@@ -5,6 +5,7 @@
 #include <cstring>
 #include <tuple>
 
+#include "io/cloud_stream.h"
 #include "io/las_format.h"
 #include "io/readers.h"
 
@@ -310,6 +311,20 @@ void packColors(CloudTable& table) {
   }
 }
 
+// All but packed colours.
+void readRecord(const LasOrigin& origin, const std::vector<LasItem>& items,
+                const std::vector<Extra>& extras, const std::uint8_t* record, std::size_t row,
+                CloudTable& table) {
+  for (std::size_t a = 0; a < 3; ++a) {
+    const double stored = load<std::int32_t>(record + 4 * a);
+    table.setReal(table.fields[a], row, origin.scale[a] * stored + origin.offset[a]);
+  }
+  for (std::size_t f = 0; f < items.size(); ++f) {
+    readItem(items[f], record, table.at(table.fields[3 + f], row));
+  }
+  for (const Extra& extra : extras) readExtra(extra, record, table.at(extra.field, row));
+}
+
 }  // namespace
 
 CloudTable readLas(InputFile& file) {
@@ -330,24 +345,34 @@ CloudTable readLas(InputFile& file) {
     const std::size_t count = std::min(kRowsAtOnce, table.size - first);
     file.read(records.data(), count * header.record_bytes);
     for (std::size_t i = 0; i < count; ++i) {
-      const std::uint8_t* record = records.data() + i * header.record_bytes;
-      for (std::size_t a = 0; a < 3; ++a) {
-        const double stored = load<std::int32_t>(record + 4 * a);
-        const double v = header.origin.scale[a] * stored + header.origin.offset[a];
-        table.setReal(table.fields[a], first + i, v);
-      }
-      for (std::size_t f = 0; f < items.size(); ++f) {
-        readItem(items[f], record, table.at(table.fields[3 + f], first + i));
-      }
-      for (const Extra& extra : extras) {
-        readExtra(extra, record, table.at(extra.field, first + i));
-      }
+      readRecord(header.origin, items, extras, records.data() + i * header.record_bytes, first + i,
+                 table);
     }
   }
   readExtendedRecords(file, header, header.points_begin + header.points * header.record_bytes);
   if (lasHasColor(format)) packColors(table);
   table.las = std::make_shared<LasOrigin>(std::move(header.origin));
   return table;
+}
+
+std::optional<RowFormat> lasRows(InputFile& file) {
+  Header header = readHeader(file);
+  readRecords(file, header, header.points_begin - header.header_bytes);
+  RowFormat rows;
+  const std::vector<LasItem> items = lasItems(header.origin.point_format);
+  std::vector<Extra> extras = readExtras(file, header, rows.layout);
+  addFields(items, false, extras, rows.layout);
+  rows.size = header.points;
+  rows.file_bytes = header.record_bytes;
+  const auto origin = std::make_shared<const LasOrigin>(std::move(header.origin));
+  rows.layout.las = origin;
+  rows.convert = [origin, items, extras, bytes = header.record_bytes](const std::uint8_t* from,
+                                                                      CloudTable& block) {
+    for (std::size_t i = 0; i < block.size; ++i) {
+      readRecord(*origin, items, extras, from + i * bytes, i, block);
+    }
+  };
+  return rows;
 }
 
 }  // namespace segorient::program

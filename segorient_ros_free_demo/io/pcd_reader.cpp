@@ -5,6 +5,7 @@
 #include <limits>
 #include <optional>
 
+#include "io/cloud_stream.h"
 #include "io/readers.h"
 #include "io/text_numbers.h"
 
@@ -246,21 +247,27 @@ void readAscii(InputFile& file, const PcdHeader& header, CloudTable& table) {
   }
 }
 
-}  // namespace
-
-CloudTable readPcd(InputFile& file) {
-  PcdHeader header = readHeader(file);
-  const std::uint64_t points = numberOfPoints(file, header);
+// Without rows.
+CloudTable tableOf(const InputFile& file, const PcdHeader& header) {
   CloudTable table;
-  std::uint64_t values = 0;
   for (const Field& column : header.columns) {
-    values += column.count;
     if (!isPadding(column)) table.addField(column.name, column.type, column.size, column.count);
   }
   if (table.fields.empty()) file.fail("has no FIELDS");
   table.width = static_cast<std::size_t>(*header.width);
   table.height = static_cast<std::size_t>(*header.height);
   table.viewpoint = header.viewpoint;
+  return table;
+}
+
+}  // namespace
+
+CloudTable readPcd(InputFile& file) {
+  PcdHeader header = readHeader(file);
+  const std::uint64_t points = numberOfPoints(file, header);
+  CloudTable table = tableOf(file, header);
+  std::uint64_t values = 0;
+  for (const Field& column : header.columns) values += column.count;
   if (header.data == "ascii") {
     // A digit and a separator for each number; the last line may lack its end.
     allocateRows(file, table, points, 2 * values);
@@ -278,6 +285,19 @@ CloudTable readPcd(InputFile& file) {
     if (f.name == "rgb" && f.size == 4 && f.count == 1) f.type = 'F';
   }
   return table;
+}
+
+std::optional<RowFormat> pcdRows(InputFile& file) {
+  PcdHeader header = readHeader(file);
+  RowFormat rows;
+  rows.size = numberOfPoints(file, header);
+  if (header.data != "binary") return std::nullopt;
+  rows.file_bytes = header.row_bytes;
+  rows.layout = tableOf(file, header);
+  rows.convert = [header](const std::uint8_t* from, CloudTable& block) {
+    copyRows(header, from, 0, block.size, block);
+  };
+  return rows;
 }
 
 }  // namespace segorient::program

@@ -4,6 +4,7 @@
 #include <cstring>
 #include <map>
 
+#include "io/cloud_stream.h"
 #include "io/readers.h"
 #include "io/text_numbers.h"
 
@@ -216,10 +217,10 @@ void dropTwinOfLabel(CloudTable& table) {
   table.fields.erase(table.fields.begin() + (twin - table.fields.data()));
 }
 
-void readVertices(InputFile& file, Body& body, const Element& element, bool ascii,
-                  CloudTable& table) {
+// Gives the table its fields. \return where each property goes; npos: it is dropped. Lists have no
+// place in a table.
+std::vector<std::size_t> placeProperties(const Element& element, CloudTable& table) {
   const auto& properties = element.properties;
-  // Where each property goes; npos: it is dropped. Lists have no place in a table.
   std::vector<std::size_t> offsets;
   const bool colours = std::count_if(properties.begin(), properties.end(),
                                      [](const Property& p) { return colourByte(p) >= 0; }) == 3;
@@ -236,6 +237,20 @@ void readVertices(InputFile& file, Body& body, const Element& element, bool asci
       table.addField(pclName(p.name), p.value.type, p.value.size);
     }
   }
+  return offsets;
+}
+
+// The same without a look at the points: where both are there, we wrote them.
+void dropTwinName(CloudTable& table) {
+  const Field* twin = table.find("scalar_label");
+  if (table.find("label") == nullptr || twin == nullptr) return;
+  table.fields.erase(table.fields.begin() + (twin - table.fields.data()));
+}
+
+void readVertices(InputFile& file, Body& body, const Element& element, bool ascii,
+                  CloudTable& table) {
+  const auto& properties = element.properties;
+  const std::vector<std::size_t> offsets = placeProperties(element, table);
   allocateRows(file, table, element.count, element.leastBytes(ascii));
   table.width = table.size;
   if (body.isVerbatim() && !element.hasLists() && table.row_bytes == element.leastBytes(false) &&
@@ -284,6 +299,36 @@ CloudTable readPly(InputFile& file) {
   }
   if (!has_vertices) file.fail("has no vertices");
   return table;
+}
+
+std::optional<RowFormat> plyRows(InputFile& file) {
+  const PlyHeader header = readHeader(file);
+  const auto is_vertex = [](const Element& e) { return e.name == "vertex"; };
+  const auto vertex = std::find_if(header.elements.begin(), header.elements.end(), is_vertex);
+  if (vertex == header.elements.end()) file.fail("has no vertices");
+  for (auto e = header.elements.begin(); e != vertex; ++e) {
+    if (header.ascii || e->hasLists()) return std::nullopt;
+    file.skip(e->count * e->leastBytes(false));
+  }
+  if (header.ascii || vertex->hasLists()) return std::nullopt;
+  RowFormat rows;
+  rows.size = vertex->count;
+  rows.file_bytes = static_cast<std::size_t>(vertex->leastBytes(false));
+  const std::vector<std::size_t> offsets = placeProperties(*vertex, rows.layout);
+  dropTwinName(rows.layout);
+  rows.convert = [offsets, properties = vertex->properties, swap = header.swap](
+                     const std::uint8_t* from, CloudTable& block) {
+    for (std::size_t row = 0; row < block.size; ++row) {
+      std::uint8_t* to = block.rows.data() + row * block.row_bytes;
+      for (std::size_t i = 0; i < properties.size(); ++i) {
+        const std::size_t bytes = properties[i].value.size;
+        std::copy_n(from, bytes, to + offsets[i]);
+        if (swap) std::reverse(to + offsets[i], to + offsets[i] + bytes);
+        from += bytes;
+      }
+    }
+  };
+  return rows;
 }
 
 }  // namespace segorient::program

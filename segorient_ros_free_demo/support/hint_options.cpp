@@ -183,4 +183,13 @@ void HintOptions::apply(const CloudTable& table, const std::string& path, const 
   options.orientation.hints = hints;
 }
 
+void HintOptions::apply(TileRequest& request) const {
+  request.has_viewpoint = !viewpoint_text_.empty();
+  request.viewpoint = viewpoint_;
+  request.up = up_;
+  request.closed = closed_;
+  request.open = open_;
+  request.find_sensors = !no_sensors_;
+}
+
 }  // namespace segorient::program

@@ -9,6 +9,7 @@
 
 #include "io/cloud_table.h"
 #include "support/command_line.h"
+#include "tiles/plan.h"
 
 namespace segorient::program {
 
@@ -37,6 +38,8 @@ class HintOptions {
   /// \param points of `table`; hints are moved as they are
   void apply(const CloudTable& table, const std::string& path, const LocalPoints& points,
              PipelineOptions& options) const;
+  /// The same for work tile by tile, which reads the clouds itself.
+  void apply(TileRequest& request) const;
 
  private:
   std::string viewpoint_text_;

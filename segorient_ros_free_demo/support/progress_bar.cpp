@@ -66,7 +66,7 @@ void ProgressBar::draw() {
       std::string(filled, '#') + std::string(static_cast<std::size_t>(kBarWidth) - filled, '.');
   std::fprintf(stderr, "\r\033[K%-13s [%s] %3.0f %%", stage_.c_str(), bar.c_str(),
                100.0 * fraction);
-  if (speed > 0.0) {
+  if (speed > 0.0 && items_ > 0) {
     std::fprintf(stderr, "  %s  %.0f s left", rateText(speed * static_cast<double>(items_)).c_str(),
                  (1.0 - fraction) / speed);
   } else {

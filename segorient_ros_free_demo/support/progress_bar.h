@@ -28,6 +28,11 @@ class ProgressBar {
   /// \param stage its name
   /// \param fraction of the whole work that is done, 0 to 1
   void update(const std::string& stage, double fraction);
+  /// What the work goes through, where it is known later.
+  void setItems(std::size_t items) {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    items_ = items;
+  }
   /// The same as a function for the library's stages; this object must outlive it.
   std::function<void(const char* stage, double fraction)> callback() {
     return [this](const char* stage, double fraction) { update(stage, fraction); };
@@ -38,8 +43,8 @@ class ProgressBar {
   void run();
   void draw();
 
-  std::size_t items_;
   std::mutex mutex_;  // guards all below
+  std::size_t items_;
   std::condition_variable wake_;
   bool end_ = false;
   bool drawn_ = false;

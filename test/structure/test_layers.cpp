@@ -83,6 +83,9 @@ const std::map<std::string, std::set<std::string>>& below() {
       {"orientation/paper", {"common", "search", "segmentation", "surface", "orientation"}},
       {"orientation/automatic",
        {"common", "search", "features", "segmentation", "orientation", "orientation/winding",
+        "orientation/sensors"}},
+      {"tiles",
+       {"common", "search", "features", "segmentation", "orientation", "orientation/automatic",
         "orientation/sensors"}}};
   return rooms;
 }

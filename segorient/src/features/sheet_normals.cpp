@@ -153,13 +153,16 @@ void store(const PointFit& fit, std::size_t i, SheetNormals& out, std::vector<fl
   lopsided[i] = asymmetry(fit.plane);
 }
 
-void judgeReliability(const std::vector<float>& lopsided, SheetNormals& out) {
+float medianResidual(const SheetNormals& out) {
   std::vector<float> residuals;
   residuals.reserve(out.spacing.size());
   for (std::size_t i = 0; i < out.spacing.size(); ++i) {
     if (std::isfinite(out.normals[4 * i + 3])) residuals.push_back(out.normals[4 * i + 3]);
   }
-  out.residual = median(std::move(residuals));
+  return median(std::move(residuals));
+}
+
+void judgeReliability(const std::vector<float>& lopsided, SheetNormals& out) {
   for (std::size_t i = 0; i < out.spacing.size(); ++i) {
     const float r = out.normals[4 * i + 3];
     out.reliable[i] = r < 2.5F * out.residual + 0.1F && lopsided[i] < 0.6F ? 1 : 0;
@@ -213,7 +216,9 @@ SheetNormals estimateSheetNormals(const PointView& points, const Neighborhoods& 
   out.below.resize(n);
   out.above.resize(n);
   out.reliable.resize(n);
-  const NoiseLevel noise = measureNoise(points, nb, options.threads);
+  const NoiseLevel noise =
+      options.known ? options.known->noise : measureNoise(points, nb, options.threads);
+  out.traits.noise = noise;
   out.noise = noise.fine;
   const int smallest = smallestScale(noise.fine);
   constexpr int kSizes[] = {8, 12, 18, kSheetNeighbors};
@@ -227,9 +232,11 @@ SheetNormals estimateSheetNormals(const PointView& points, const Neighborhoods& 
     const Offsets o = gatherOffsets(points, nb, i, out.spacing[i]);
     store(fitPoint(o, smallest, noise, options), i, out, lopsided);
   }
-  out.scan_scales = options.scan_scales && !noise.thin &&
-                    detail::needsScanScales(points, nb, out.scale, options.threads);
-  if (out.scan_scales) {
+  out.traits.scan_scales =
+      options.known ? options.known->scan_scales
+                    : options.scan_scales && !noise.thin &&
+                          detail::needsScanScales(points, nb, out.scale, options.threads);
+  if (out.traits.scan_scales) {
     const std::vector<detail::ScanPlane> planes =
         detail::fitScanPlanes(points, out.spacing, out.scale, options.threads);
     for (std::size_t i = 0; i < n; ++i) {
@@ -237,6 +244,8 @@ SheetNormals estimateSheetNormals(const PointView& points, const Neighborhoods& 
       store({planes[i].plane, planes[i].plane.variation(), {}}, i, out, lopsided);
     }
   }
+  out.residual = options.known ? options.known->residual : medianResidual(out);
+  out.traits.residual = out.residual;
   judgeReliability(lopsided, out);
   return out;
 }

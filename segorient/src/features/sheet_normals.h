@@ -6,12 +6,32 @@
 #include <segorient/common/point_view.h>
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 namespace segorient {
 
 /// Most neighbours of a point that sheet estimation looks at.
 constexpr int kSheetNeighbors = 32;
+
+/// How noisy a cloud is; 0 where no neighbourhood has a plane.
+struct NoiseLevel {
+  /// Median rms distance from a plane over 8 neighbours, in spacings. In a thin cloud over 8 of the
+  /// point's own wall, and of points whose walls can be told apart: somewhat low, as noise that is
+  /// large hides walls.
+  float fine = 0.F;
+  float coarse = 0.F;  ///< the same over 32, whatever walls they are of
+  /// Few neighbours make no plane (`fine` would be .13 or more), and a tenth of the points or more
+  /// see two walls up to two spacings apart: it is the other wall as much as noise.
+  bool thin = false;
+};
+
+/// What estimateSheetNormals() measures of a whole cloud; for a part of one it is told instead.
+struct SheetTraits {
+  NoiseLevel noise;
+  float residual = 0.F;      ///< see SheetNormals::residual
+  bool scan_scales = false;  ///< whether many points ask for the planes that scans need
+};
 
 /// Options of estimateSheetNormals(). Each step can be switched off to see what it is worth.
 struct SheetNormalOptions {
@@ -21,6 +41,8 @@ struct SheetNormalOptions {
   /// For what sensors saw: where noise and rings ask for larger neighbourhoods than the cloud's
   /// median does, up to 60. Not for solids, whose thin walls it takes for noise.
   bool scan_scales = false;
+  /// Of the cloud that the points are part of; none = measured, and scan_scales as it says.
+  std::optional<SheetTraits> known;
 };
 
 /// Normals that each come from one sheet of the surface (one wall of a plate, one face at an edge),
@@ -40,7 +62,7 @@ struct SheetNormals {
   float noise = 0.F;                   ///< see NoiseLevel::fine
   float residual = 0.F;                ///< median residual of the final fits, in spacings
   int scale = 0;                       ///< smallest neighbourhood that the noise allowed
-  bool scan_scales = false;            ///< whether so many points asked for larger ones
+  SheetTraits traits;                  ///< as measured, or as told
 };
 
 /// Estimates sheet normals.
@@ -60,18 +82,6 @@ struct SheetNormals {
 ///        are
 SheetNormals estimateSheetNormals(const PointView& points, const Neighborhoods& neighborhoods,
                                   const SheetNormalOptions& options = {});
-
-/// How noisy a cloud is; 0 where no neighbourhood has a plane.
-struct NoiseLevel {
-  /// Median rms distance from a plane over 8 neighbours, in spacings. In a thin cloud over 8 of the
-  /// point's own wall, and of points whose walls can be told apart: somewhat low, as noise that is
-  /// large hides walls.
-  float fine = 0.F;
-  float coarse = 0.F;  ///< the same over 32, whatever walls they are of
-  /// Few neighbours make no plane (`fine` would be .13 or more), and a tenth of the points or more
-  /// see two walls up to two spacings apart: it is the other wall as much as noise.
-  bool thin = false;
-};
 
 /// Measures the noise at some thousand of a cloud's points.
 /// \param points distinct finite points

@@ -39,8 +39,8 @@ struct RawVote {
 class Voter {
  public:
   Voter(const PointView& points, const Neighborhoods& nb, const SheetField& field,
-        const Segmentation& segmentation)
-      : points_(points), nb_(nb), field_(field), segmentation_(segmentation) {}
+        const Segmentation& segmentation, const std::vector<std::uint8_t>* voters)
+      : points_(points), nb_(nb), field_(field), segmentation_(segmentation), voters_(voters) {}
 
   void vote(std::size_t p, std::vector<RawVote>& out) const {
     if (!isBorder(p)) return;
@@ -65,7 +65,7 @@ class Voter {
 
   bool isBorder(std::size_t p) const {
     const std::int32_t own = segmentation_.labels[p];
-    if (own < 0) return false;
+    if (own < 0 || (voters_ != nullptr && (*voters_)[p] == 0)) return false;
     const pcl::index_t* row = nb_.indices(p) + 1;
     for (int j = 0; j < degree(p); ++j) {
       const std::int32_t l = segmentation_.labels[static_cast<std::size_t>(row[j])];
@@ -107,6 +107,7 @@ class Voter {
   const Neighborhoods& nb_;
   const SheetField& field_;
   const Segmentation& segmentation_;
+  const std::vector<std::uint8_t>* voters_;
 };
 
 struct Tally {
@@ -169,8 +170,8 @@ std::vector<RawVote> castVotes(const Voter& voter, std::size_t n, int threads) {
 
 std::vector<BorderVote> borderVotes(const PointView& points, const Neighborhoods& neighborhoods,
                                     const SheetField& field, const Segmentation& segmentation,
-                                    int threads) {
-  const Voter voter(points, neighborhoods, field, segmentation);
+                                    int threads, const std::vector<std::uint8_t>* voters) {
+  const Voter voter(points, neighborhoods, field, segmentation, voters);
   const std::vector<RawVote> votes = castVotes(voter, points.size, threads);
   std::vector<BorderVote> out;
   detail::WideVoter wide(points, neighborhoods, field, segmentation);

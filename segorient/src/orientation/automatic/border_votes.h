@@ -66,9 +66,11 @@ struct BorderVote : Evidence {
 /// overrule points that agree, where large segments meet at 60 degrees or less.
 ///
 /// \param segmentation with a segment for each label
+/// \param voters one a point: 0 for those that have no vote; null = all vote
 /// \return the same for any number of threads
 std::vector<BorderVote> borderVotes(const PointView& points, const Neighborhoods& neighborhoods,
                                     const SheetField& field, const Segmentation& segmentation,
-                                    int threads = 0);
+                                    int threads = 0,
+                                    const std::vector<std::uint8_t>* voters = nullptr);
 
 }  // namespace segorient

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "common/median.h"
 #include "features/sheet_normals.h"
@@ -17,15 +18,34 @@
 namespace segorient::detail {
 namespace {
 
+// Takes the normals from points that do not see all of their neighbours.
+void dropCutOff(const PointView& points, const Neighborhoods& nb, const std::vector<float>& whole,
+                SheetNormals& sheets) {
+  for (std::size_t i = 0; i < points.size; ++i) {
+    const float* p = points[i];
+    const float* q = points[static_cast<std::size_t>(nb.indices(i)[nb.count(i) - 1])];
+    float square = 0.F;
+    for (std::size_t a = 0; a < 3; ++a) square += (q[a] - p[a]) * (q[a] - p[a]);
+    if (std::sqrt(square) <= whole[i]) continue;
+    std::fill_n(&sheets.normals[4 * i], 4, std::numeric_limits<float>::quiet_NaN());
+  }
+}
+
 AutoNormals orientAtOneScale(const PointView& points, const Neighborhoods& neighborhoods,
                              const AutomaticOptions& settings, const PointHints& hints, int threads,
-                             const std::function<void(const char*, double)>& begin) {
+                             const std::function<void(const char*, double)>& begin,
+                             SheetRecord* record) {
   AutoNormals out;
   if (begin) begin("normals", 0.3);
-  SheetNormalOptions normal_options{settings.split_walls, settings.dominant_plane, threads};
+  SheetNormalOptions normal_options;
+  normal_options.split_walls = settings.split_walls;
+  normal_options.dominant_plane = settings.dominant_plane;
+  normal_options.threads = threads;
   normal_options.scan_scales = hints.has_viewpoint || !hints.sensors.empty();
+  if (record != nullptr) normal_options.known = record->traits;
   SheetNormals sheets = estimateSheetNormals(points, neighborhoods, normal_options);
   out.spacing = median(sheets.spacing);
+  if (record != nullptr) dropCutOff(points, neighborhoods, *record->whole, sheets);
   if (begin) begin("segmentation", 0.48);
   {
     const SheetField field = fieldOf(sheets);
@@ -35,11 +55,16 @@ AutoNormals orientAtOneScale(const PointView& points, const Neighborhoods& neigh
     cuts.epsilon = settings.epsilon;
     cuts.require_support = settings.require_support;
     cuts.clean_up = settings.clean_up;
-    const Segmentation segments = segmentSheets(
+    Segmentation segments = segmentSheets(
         points, neighborhoods, field, admissibleEdges(points, neighborhoods, field, threads), cuts);
     if (begin) begin("orientation", 0.62);
     out.orientation =
         orientSheets(points, neighborhoods, field, segments, settings, hints, threads);
+    if (record != nullptr) {
+      record->votes = borderVotes(points, neighborhoods, field, segments, threads, record->voters);
+      record->segments = std::move(segments);
+      record->sheets = sheets;
+    }
   }
   if (begin) begin("recomputation", 0.7);
   const OrientationResult& result = out.orientation.result;
@@ -55,7 +80,7 @@ AutoNormals orientAtOneScale(const PointView& points, const Neighborhoods& neigh
   }
   if (!out.orientation.toward.empty()) {
     faceSensors(out.orientation.toward, filtered);
-    if (sheets.scan_scales) {
+    if (sheets.traits.scan_scales) {
       replaceGrazingNormals(points, out.orientation.toward, threads, filtered);
     }
   }
@@ -68,8 +93,9 @@ AutoNormals orientAtOneScale(const PointView& points, const Neighborhoods& neigh
   }
   out.confidences = std::move(filtered.confidences);
   out.components = result.point_components;
-  for (std::size_t i = 0; i < points.size; ++i) {
-    // The less of both: do the normals around agree, and is their segment sure?
+  // The less of both: do the normals around agree, and is their segment sure? Of a part of a cloud
+  // only the first is known yet.
+  for (std::size_t i = 0; record == nullptr && i < points.size; ++i) {
     if (result.point_components[i] >= 0) {
       out.confidences[i] = std::min(out.confidences[i], result.point_confidences[i]);
     }
@@ -81,11 +107,14 @@ AutoNormals orientAtOneScale(const PointView& points, const Neighborhoods& neigh
 
 AutoNormals orientPoints(const PointView& points, const Neighborhoods& neighborhoods,
                          const AutomaticOptions& settings, const PointHints& hints, int threads,
-                         const std::function<void(const char*, double)>& begin) {
-  AutoNormals out = orientAtOneScale(points, neighborhoods, settings, hints, threads, begin);
-  if (!settings.coarse_levels || !hints.noneOfPoints()) return out;
+                         const std::function<void(const char*, double)>& begin,
+                         SheetRecord* record) {
+  AutoNormals out =
+      orientAtOneScale(points, neighborhoods, settings, hints, threads, begin, record);
+  // Whether a coarser scale is better is for the whole cloud to tell.
+  if (record != nullptr || !settings.coarse_levels || !hints.noneOfPoints()) return out;
   const auto orient = [&](const PointView& subset, const Neighborhoods& table) {
-    return orientAtOneScale(subset, table, settings, hints, threads, {});
+    return orientAtOneScale(subset, table, settings, hints, threads, {}, nullptr);
   };
   out.level = followCoarserLevels(points, neighborhoods, orient, threads, out);
   return out;

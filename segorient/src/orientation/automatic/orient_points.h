@@ -10,6 +10,7 @@
 #include <functional>
 #include <vector>
 
+#include "features/sheet_normals.h"
 #include "orientation/automatic/orient_sheets.h"
 #include "orientation/sensors/point_hints.h"
 
@@ -25,12 +26,30 @@ struct AutoNormals {
   float level = 0.F;                     ///< see followCoarserLevels()
 };
 
+/// For a cloud that is part of a larger one: what is known of that, and what it needs to know.
+struct SheetRecord {
+  SheetTraits traits;    ///< of the whole
+  bool denoise = false;  ///< whether the whole asks for smoothed positions
+  /// One a point: whose votes are kept, see borderVotes().
+  const std::vector<std::uint8_t>* voters = nullptr;
+  /// One a point: within what distance all is there. Points with neighbours farther away have no
+  /// normal, and are neighbours only.
+  const std::vector<float>* whole = nullptr;
+
+  SheetNormals sheets;  ///< found: normals not oriented
+  Segmentation segments;
+  std::vector<BorderVote> votes;
+  std::vector<float> smoothed;  ///< 4 floats a point: positions, where they were smoothed
+};
+
 /// Sheet normals, sheet segments, their orientation, and the filter that makes the final normals;
 /// at a coarser scale as well where points contradict each other, see followCoarserLevels(). \param
 /// begin called with a stage's name and the fraction of the work done before it; may be
 ///        empty
+/// \param record null unless the cloud is part of a larger one
 AutoNormals orientPoints(const PointView& points, const Neighborhoods& neighborhoods,
                          const AutomaticOptions& settings, const PointHints& hints, int threads,
-                         const std::function<void(const char*, double)>& begin = {});
+                         const std::function<void(const char*, double)>& begin = {},
+                         SheetRecord* record = nullptr);
 
 }  // namespace segorient::detail

@@ -7,7 +7,6 @@
 #include <cstddef>
 #include <numeric>
 
-#include "orientation/automatic/border_votes.h"
 #include "orientation/automatic/loose_parts.h"
 #include "orientation/automatic/segment_clusters.h"
 #include "orientation/automatic/sensor_signs.h"
@@ -43,18 +42,18 @@ const Ballot* decisive(const HintVotes& hints, bool open) {
 class Orienter {
  public:
   Orienter(const PointView& points, const Neighborhoods& nb, const SheetField& field,
-           const Segmentation& segmentation, const AutomaticOptions& options,
-           const PointHints& hints, int threads)
+           const Segmentation& segmentation, std::vector<BorderVote> votes, std::size_t count,
+           const AutomaticOptions& options, const PointHints& hints, int threads)
       : points_(points),
+        count_(count),
         field_(field),
         segmentation_(segmentation),
         options_(options),
         hints_(hints),
         threads_(threads),
         sensors_(detail::findKnownSensors(points, nb, field.spacing, hints, threads)),
-        votes_(borderVotes(points, nb, field, segmentation, threads)),
-        clusters_(segmentation, votes_,
-                  {options.contract_certain, options.flip_clusters, points.size}) {}
+        votes_(std::move(votes)),
+        clusters_(segmentation, votes_, {options.contract_certain, options.flip_clusters, count}) {}
 
   AutoOrientation run() {
     numberComponents();
@@ -103,6 +102,7 @@ class Orienter {
   std::vector<std::int32_t> ofPoints(const std::vector<std::int32_t>& of_segments) const;
 
   const PointView& points_;
+  const std::size_t count_;  // points of the cloud
   const SheetField& field_;
   const Segmentation& segmentation_;
   const AutomaticOptions& options_;
@@ -392,7 +392,7 @@ void Orienter::keepClosedFromSensors(const std::vector<Ballot>& ballots) {
     std::fill_n(&sensors_.toward[3 * i], 3, 0.F);
   }
   KnownSensor& report = sensors_.scans[0];
-  report.used = 2 * believed > points_.size;
+  report.used = 2 * believed > count_;
   if (!report.used) report.seen = 0;
 }
 
@@ -443,7 +443,7 @@ void Orienter::followViewpoint() {
   const auto largest =
       static_cast<std::int32_t>(std::max_element(size.begin(), size.end()) - size.begin());
   // Less than half of the cloud shows too little of what the sensor saw.
-  if (2 * static_cast<std::size_t>(size[at(largest)]) < points_.size) return;
+  if (2 * static_cast<std::size_t>(size[at(largest)]) < count_) return;
   std::vector<std::uint32_t> rows;
   for (std::size_t i = 0; i < points_.size; ++i) {
     const std::int32_t s = segmentation_.labels[i];
@@ -500,7 +500,7 @@ void Orienter::turnSegmentsTo(const ViewpointFit& fit) {
   for (std::size_t s = 0; s < signs_.size(); ++s) {
     if (turned_away[s] && agreement[at(group[s])] <= kFirmBorders) against.push_back(s);
   }
-  if (against.empty() || points > kMostAgainst * static_cast<float>(points_.size)) return;
+  if (against.empty() || points > kMostAgainst * static_cast<float>(count_)) return;
   std::vector<bool> sure(signs_.size());  // by group
   for (const std::size_t s : against) sure[at(group[s])] = true;
   for (const Viewpoint& other : fit.others) {
@@ -519,8 +519,8 @@ void Orienter::turnSegmentsTo(const ViewpointFit& fit) {
 
 void Orienter::findContradictions() {
   // Unanimous borders about as long as the object is wide: noise does not produce those.
-  const auto long_enough = static_cast<std::uint32_t>(
-      std::max(20.0, 0.5 * std::sqrt(static_cast<double>(points_.size))));
+  const auto long_enough =
+      static_cast<std::uint32_t>(std::max(20.0, 0.5 * std::sqrt(static_cast<double>(count_))));
   for (const BorderVote& v : votes_) {
     // Walls face apart in a plate, but not in a roll.
     if (v.by_planes || v.wall_counts || v.unanimity() < 0.9F || v.count < long_enough ||
@@ -600,7 +600,19 @@ AutoOrientation orientSheets(const PointView& points, const Neighborhoods& neigh
                              const SheetField& field, const Segmentation& segmentation,
                              const AutomaticOptions& options, const PointHints& hints,
                              int threads) {
-  return Orienter(points, neighborhoods, field, segmentation, options, hints, threads).run();
+  return orientSheets(points, neighborhoods, field, segmentation,
+                      borderVotes(points, neighborhoods, field, segmentation, threads), points.size,
+                      options, hints, threads);
+}
+
+AutoOrientation orientSheets(const PointView& points, const Neighborhoods& neighborhoods,
+                             const SheetField& field, const Segmentation& segmentation,
+                             std::vector<BorderVote> votes, std::size_t count,
+                             const AutomaticOptions& options, const PointHints& hints,
+                             int threads) {
+  return Orienter(points, neighborhoods, field, segmentation, std::move(votes), count, options,
+                  hints, threads)
+      .run();
 }
 
 }  // namespace segorient

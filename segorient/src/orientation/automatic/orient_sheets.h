@@ -12,6 +12,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "orientation/automatic/border_votes.h"
 #include "orientation/sensors/point_hints.h"
 #include "segmentation/sheet_segmentation.h"
 
@@ -39,6 +40,16 @@ struct AutoOrientation {
 AutoOrientation orientSheets(const PointView& points, const Neighborhoods& neighborhoods,
                              const SheetField& field, const Segmentation& segmentation,
                              const AutomaticOptions& options = {}, const PointHints& hints = {},
+                             int threads = 0);
+
+/// The same where the votes are known already, as they are of a cloud that was worked on in parts.
+/// \param points each may stand for several of the cloud's, of one segment
+/// \param neighborhoods needed only if hints name sensors
+/// \param count how many points the cloud has; sizes of segments are counted in these
+AutoOrientation orientSheets(const PointView& points, const Neighborhoods& neighborhoods,
+                             const SheetField& field, const Segmentation& segmentation,
+                             std::vector<BorderVote> votes, std::size_t count,
+                             const AutomaticOptions& options, const PointHints& hints,
                              int threads = 0);
 
 }  // namespace segorient

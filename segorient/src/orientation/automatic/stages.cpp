@@ -20,13 +20,16 @@ constexpr int kDenoisingNeighbors = 48;
 
 // Finds the neighbours, of smoothed positions where the noise asks for that.
 // \param smoothed stays empty where it does not
-void findNeighbors(PreparedCloud& cloud, const PipelineOptions& options,
+void findNeighbors(PreparedCloud& cloud, const PipelineOptions& options, const SheetRecord* record,
                    std::vector<float>& smoothed, Neighborhoods& of_smoothed, AutoStages& out) {
   out.k = cloud.findNeighbors(options.k > 0 ? options.k : kSheetNeighbors, false);
-  const NoiseLevel noise = measureNoise(cloud.points(), cloud.neighborhoods(), options.threads);
+  const NoiseLevel noise =
+      record != nullptr ? record->traits.noise
+                        : measureNoise(cloud.points(), cloud.neighborhoods(), options.threads);
   out.noise = noise.fine;
-  if (options.orientation.automatic.denoise && needsDenoising(noise)) {
-    out.denoised = true;
+  out.denoised = record != nullptr ? record->denoise
+                                   : options.orientation.automatic.denoise && needsDenoising(noise);
+  if (out.denoised) {
     smoothed = projectOnPlanes(cloud.points(), cloud.index(), kDenoisingNeighbors, options.threads);
     search::MedianHashIndex index;
     search::MedianHashIndex::Options search_options;
@@ -76,17 +79,18 @@ void segmentFinal(const PointView& points, const Neighborhoods& table, Segmentat
 
 AutoStages runAutoStages(PreparedCloud& cloud, const PipelineOptions& options,
                          const PointHints& hints,
-                         const std::function<void(const char*, double)>& begin) {
+                         const std::function<void(const char*, double)>& begin,
+                         SheetRecord* record) {
   AutoStages out;
   begin("search", 0.0);
   std::vector<float> smoothed;
   Neighborhoods of_smoothed;
-  findNeighbors(cloud, options, smoothed, of_smoothed, out);
+  findNeighbors(cloud, options, record, smoothed, of_smoothed, out);
   const PointView points =
       out.denoised ? PointView{smoothed.data(), 4, cloud.size()} : cloud.points();
   const Neighborhoods& table = out.denoised ? of_smoothed : cloud.neighborhoods();
-  AutoNormals oriented =
-      orientPoints(points, table, options.orientation.automatic, hints, options.threads, begin);
+  AutoNormals oriented = orientPoints(points, table, options.orientation.automatic, hints,
+                                      options.threads, begin, record);
   out.normals = std::move(oriented.normals);
   out.confidences = std::move(oriented.confidences);
   out.components = std::move(oriented.components);
@@ -96,6 +100,28 @@ AutoStages runAutoStages(PreparedCloud& cloud, const PipelineOptions& options,
   begin("segmentation", 0.81);
   segmentFinal(points, table, segmentation::inUnitOf(cloud, options.segmentation), options.threads,
                out);
+  if (record != nullptr) record->smoothed = std::move(smoothed);
+  return out;
+}
+
+CloudTraits measureTraits(PreparedCloud& cloud, const PipelineOptions& options, bool from_sensors) {
+  AutoStages found;
+  std::vector<float> smoothed;
+  Neighborhoods of_smoothed;
+  findNeighbors(cloud, options, nullptr, smoothed, of_smoothed, found);
+  const AutomaticOptions& settings = options.orientation.automatic;
+  SheetNormalOptions how;
+  how.split_walls = settings.split_walls;
+  how.dominant_plane = settings.dominant_plane;
+  how.threads = options.threads;
+  how.scan_scales = from_sensors;
+  const PointView points =
+      found.denoised ? PointView{smoothed.data(), 4, cloud.size()} : cloud.points();
+  CloudTraits out;
+  out.denoise = found.denoised;
+  out.sheets =
+      estimateSheetNormals(points, found.denoised ? of_smoothed : cloud.neighborhoods(), how)
+          .traits;
   return out;
 }
 

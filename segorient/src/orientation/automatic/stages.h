@@ -31,8 +31,20 @@ struct AutoStages {
 /// normals, sheet segments, their orientation, the filter that makes the final normals, and the
 /// paper's segmentation of those. \param begin called with a stage's name and the fraction of the
 /// work done before it
+/// \param record null unless the cloud is part of a larger one
 AutoStages runAutoStages(PreparedCloud& cloud, const PipelineOptions& options,
                          const PointHints& hints,
-                         const std::function<void(const char*, double)>& begin);
+                         const std::function<void(const char*, double)>& begin,
+                         SheetRecord* record = nullptr);
+
+/// What a whole cloud tells of itself before any sign.
+struct CloudTraits {
+  SheetTraits sheets;
+  bool denoise = false;  ///< whether neighbours are sought after smoothing the positions
+};
+
+/// \param cloud the whole, or neighbourhoods from all over it
+/// \param from_sensors whether sensors are known or were found, see SheetNormalOptions
+CloudTraits measureTraits(PreparedCloud& cloud, const PipelineOptions& options, bool from_sensors);
 
 }  // namespace segorient::detail

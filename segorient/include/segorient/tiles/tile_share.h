@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the segorient authors
+#pragma once
+
+#include <segorient/common/point_view.h>
+#include <segorient/orientation/orientation_hints.h>
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+// What one tile of a large cloud contributes to its orientation. The structures of numbers are
+// stored as they are in memory.
+namespace segorient {
+
+/// What no tile can tell by itself: properties of the whole cloud, the same for all tiles.
+struct TileTraits {
+  float noise = 0.F;         ///< rms distance from a plane over few neighbours, in spacings
+  float wide_noise = 0.F;    ///< over many
+  float residual = 0.F;      ///< median residual of the normals' planes, in spacings
+  std::uint8_t thin = 0;     ///< whether many neighbourhoods see two walls
+  std::uint8_t scan = 0;     ///< whether normals need the larger neighbourhoods of scans
+  std::uint8_t denoise = 0;  ///< whether positions are smoothed first
+  std::uint8_t unused = 0;
+};
+
+/// \param points the whole cloud, or neighbourhoods from all over it, as dense as they are
+/// \param k neighbours, 0 = the default
+/// \param from_sensors whether sensors are known or were found
+TileTraits measureTileTraits(const PointView& points, int k, bool from_sensors, int threads = 0);
+
+/// Which points of a tile's input are its own.
+enum class TileRole : std::uint8_t {
+  HALO,   ///< another tile's
+  OWN,    ///< its own
+  SHARED  ///< its own, and in the halo of others
+};
+
+inline bool isOwn(TileRole role) {
+  return role == TileRole::OWN || role == TileRole::SHARED;
+}
+
+/// Votes along the border of two pieces, see borderVotes(): sums of votes, of their absolute
+/// values, and of those that are reliable.
+struct TileVote {
+  std::int32_t a = 0;
+  std::int32_t b = 0;
+  float sheet[3] = {0.F, 0.F, 0.F};
+  float wall[3] = {0.F, 0.F, 0.F};
+  std::uint32_t count = 0;
+};
+
+/// Some neighbouring points of one piece, as one: the tile's part of the far field.
+struct TilePatch {
+  float position[3] = {0.F, 0.F, 0.F};  ///< relative to the tile's origin
+  float normal[3] = {0.F, 0.F, 0.F};    ///< as the piece is turned
+  float spacing = 0.F;                  ///< its square is the sum over the points
+  float residual = 0.F;                 ///< mean, in spacings
+  std::int32_t piece = -1;
+  std::uint32_t points = 0;
+  std::uint32_t reliable = 0;  ///< how many of them
+  std::uint32_t row = 0;       ///< of the tile's input: the first of them
+};
+
+/// A point that two tiles know, as one of them sees it.
+struct TileTie {
+  std::uint32_t row = 0;  ///< of the tile's input
+  std::int32_t piece = -1;
+  std::int32_t label = -1;
+  float normal[3] = {0.F, 0.F, 0.F};  ///< as the piece is turned; 0 where there is none
+};
+
+/// A tile worked on alone. Pieces are parts of the surface that are oriented in themselves, sheet
+/// segments; which way each is turned is for the join.
+struct TileShare {
+  // By row of the tile's input.
+  std::vector<float> normals;        ///< 4 floats: normal as its piece is turned, curvature; or NaN
+  std::vector<float> confidences;    ///< 0 to 1
+  std::vector<std::int32_t> labels;  ///< segment, -1 where there is no normal
+  std::vector<std::int32_t> patches;  ///< of its own rows; -1 where there is none
+
+  std::vector<std::uint32_t> piece_sizes;    ///< own distinct points
+  std::vector<std::uint32_t> segment_sizes;  ///< own rows
+  std::vector<TileVote> votes;               ///< of own points
+  std::vector<TilePatch> patch_list;         ///< of own points
+  std::vector<TileTie> ties;                 ///< of HALO and SHARED rows, ascending by row
+};
+
+struct TileOptions {
+  TileTraits traits;
+  int k = 0;                       ///< neighbours, 0 = the default
+  std::uint32_t patch_points = 1;  ///< most points of a patch
+  int threads = 0;                 ///< 0 = all cores; the result does not depend on it
+  /// What is known beforehand, by row of the tile's input. It helps the tile where its normals need
+  /// signs; what it says of the whole is for the join.
+  OrientationHints hints;
+};
+
+/// Neighbours, normals, pieces, votes and segments of a tile: all but the signs.
+///
+/// \param points of the tile and of the halo around it
+/// \param roles one a point
+/// \param whole one a point: within what distance of it all points of the cloud are there. Points
+/// of
+///        the halo whose neighbours are farther are neighbours only
+TileShare workOnTile(const PointView& points, const std::vector<TileRole>& roles,
+                     const std::vector<float>& whole, const TileOptions& options);
+
+}  // namespace segorient

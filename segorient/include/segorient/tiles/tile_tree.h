@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the segorient authors
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace segorient {
+
+/// Cuts space into tiles of about as many points each, where the points are: a k-d tree over a
+/// sample of a cloud. Below the tiles it goes on to small cells, which know how dense the points
+/// are there, and so how wide a halo around a tile has to be.
+///
+/// Every place belongs to one tile. Beyond its own points, a tile is given the points of others
+/// that lie within kHaloSpacings of their own local spacing of its cell.
+class TileTree {
+ public:
+  using Place = std::array<double, 3>;
+
+  /// One cell; its lower half comes next in the list.
+  struct Node {
+    double split = 0.0;        ///< places below it along `axis` are in the lower half
+    double reach = 0.0;        ///< without halves: how far away a tile may be that takes its points
+    std::int32_t axis = -1;    ///< -1: no halves
+    std::uint32_t upper = 0;   ///< the upper half
+    std::int32_t tile = -1;    ///< the tile that this cell is, -1 above and below tiles
+    std::uint32_t unused = 0;  ///< no hidden bytes: nodes are stored as they are
+  };
+
+  TileTree() = default;
+  /// \param sample places, finite; none = one tile
+  /// \param points_each how many points of the cloud each of them stands for
+  /// \param most_points of a tile; only points that are all in one place may be more
+  TileTree(std::vector<Place> sample, double points_each, double most_points);
+  /// A tree as it was stored. \return false, and an empty tree, if it is none
+  static bool restore(std::vector<Node> nodes, TileTree& tree);
+
+  const std::vector<Node>& nodes() const { return nodes_; }
+  std::size_t tiles() const { return tiles_; }
+
+  /// The tile that a place belongs to, and how far from it other tiles take it along.
+  std::uint32_t owner(const Place& p, double& reach) const;
+
+  /// Within what distance from a place a tile has all points that there are.
+  /// \param reach of the place, as owner() tells \param distance of the tile's cell from it
+  double wholeRadius(const Place& p, double reach, double distance) const;
+
+  /// Calls visit(tile, distance) for each tile whose cell is within `reach` along every axis, the
+  /// owner too, which is at 0.
+  template <typename Visit>
+  void forEachWithin(const Place& p, double reach, Visit&& visit) const {
+    if (!nodes_.empty()) descend(0, p, reach, 0.0, visit);
+  }
+
+ private:
+  struct Builder;
+  double leastReach(std::uint32_t n, const Place& p, double radius) const;
+  template <typename Visit>
+  void descend(std::uint32_t n, const Place& p, double reach, double distance,
+               Visit&& visit) const {
+    while (nodes_[n].tile < 0) {
+      const Node& node = nodes_[n];
+      const double above = p[static_cast<std::size_t>(node.axis)] - node.split;
+      const bool lower = above < reach;
+      const bool upper = above >= -reach;
+      if (lower && upper) descend(node.upper, p, reach, std::max(distance, -above), visit);
+      if (lower) distance = std::max(distance, above);
+      if (!lower) distance = std::max(distance, -above);
+      n = lower ? n + 1 : node.upper;
+    }
+    visit(static_cast<std::uint32_t>(nodes_[n].tile), distance);
+  }
+
+  std::vector<Node> nodes_;
+  std::size_t tiles_ = 0;
+};
+
+}  // namespace segorient

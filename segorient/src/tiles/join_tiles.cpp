@@ -1,0 +1,233 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the segorient authors
+#include <segorient/tiles/join_tiles.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <utility>
+
+#include "orientation/automatic/orient_sheets.h"
+#include "orientation/automatic/sensor_signs.h"
+#include "search/prepared_cloud.h"
+#include "tiles/piece_graph.h"
+
+namespace segorient {
+namespace {
+
+using detail::PieceTie;
+
+std::size_t at(std::int32_t i) {
+  return static_cast<std::size_t>(i);
+}
+
+// Pairs of something that both tiles have numbers for, by the points that both have.
+// \param of the number of a tie, -1 = none \param compare a pair of ties, from -1 to 1
+template <typename Of, typename Compare>
+void tally(const std::vector<TileTie>& in_a, std::int32_t first_a, const std::vector<TileTie>& in_b,
+           std::int32_t first_b, const Of& of, const Compare& compare, std::vector<PieceTie>& out) {
+  std::map<std::pair<std::int32_t, std::int32_t>, PieceTie> found;
+  std::map<std::int32_t, std::uint32_t> all_a;
+  std::map<std::int32_t, std::uint32_t> all_b;
+  for (std::size_t i = 0; i < in_a.size(); ++i) {
+    const std::int32_t a = of(in_a[i]);
+    const std::int32_t b = of(in_b[i]);
+    if (a >= 0) ++all_a[a];
+    if (b >= 0) ++all_b[b];
+    if (a < 0 || b < 0) continue;
+    PieceTie& pair = found[{a, b}];
+    const float agree = compare(in_a[i], in_b[i]);
+    pair.weight += agree;
+    pair.absolute += std::fabs(agree);
+    ++pair.count;
+  }
+  for (auto& [numbers, pair] : found) {
+    const auto [a, b] = numbers;
+    pair.a = first_a + a;
+    pair.b = first_b + b;
+    pair.most = 2 * pair.count > std::max(all_a[a], all_b[b]);
+    out.push_back(pair);
+  }
+}
+
+// Neighbours are needed only to check sensors.
+PointHints hintsOf(const JoinOptions& options, PreparedCloud& cloud) {
+  PointHints out = resolveHints(options.hints, cloud);
+  if (out.has_viewpoint || !out.sensors.empty()) {
+    cloud.findNeighbors(kSheetNeighbors, false);
+  }
+  return out;
+}
+
+}  // namespace
+
+struct TileJoiner::Impl {
+  struct First {
+    std::int32_t piece = 0;
+    std::int32_t label = 0;
+    std::size_t patch = 0;
+  };
+  std::vector<First> first;  // of each tile, and behind the last one
+  std::vector<std::uint32_t> piece_sizes;
+  std::vector<std::uint32_t> segment_sizes;
+  std::vector<TileVote> votes;
+  std::vector<TilePatch> patches;
+  std::vector<PieceTie> piece_ties;
+  std::vector<PieceTie> label_ties;
+
+  // Patches as a cloud whose points know their sheets.
+  struct PatchCloud {
+    PreparedCloud cloud;
+    std::vector<float> normals;
+    std::vector<float> spacing;
+    std::vector<std::uint8_t> reliable;
+    Segmentation segmentation;
+  };
+  PatchCloud makeCloud(const PointView& places, int threads) const;
+  void distribute(const AutoOrientation& orientation, const PatchCloud& cloud,
+                  JoinedTiles& out) const;
+  void labelSegments(JoinedTiles& out) const;
+};
+
+TileJoiner::Impl::PatchCloud TileJoiner::Impl::makeCloud(const PointView& places,
+                                                         int threads) const {
+  PatchCloud out;
+  out.cloud = PreparedCloud(places, nullptr, threads);
+  const std::size_t n = out.cloud.size();
+  out.normals.resize(4 * n);
+  out.spacing.resize(n);
+  out.reliable.resize(n);
+  out.segmentation.labels.resize(n);
+  out.segmentation.signs.assign(n, 1);
+  for (std::size_t i = 0; i < n; ++i) {
+    const TilePatch& patch = patches[out.cloud.rowOf(i)];
+    std::copy_n(patch.normal, 3, &out.normals[4 * i]);
+    out.normals[4 * i + 3] = patch.residual;
+    out.spacing[i] = patch.spacing / out.cloud.unit();
+    out.reliable[i] = 2 * patch.reliable >= patch.points ? 1 : 0;
+    out.segmentation.labels[i] = patch.piece;
+  }
+  out.segmentation.segments.resize(piece_sizes.size());
+  for (std::size_t s = 0; s < piece_sizes.size(); ++s) {
+    out.segmentation.segments[s].size = piece_sizes[s];
+  }
+  return out;
+}
+
+void TileJoiner::Impl::distribute(const AutoOrientation& orientation, const PatchCloud& cloud,
+                                  JoinedTiles& out) const {
+  for (std::size_t t = 0; t < out.tiles.size(); ++t) {
+    JoinedTile& tile = out.tiles[t];
+    for (std::size_t p = first[t].patch; p < first[t + 1].patch; ++p) {
+      // Patches in one place have one point, which is of one of their pieces.
+      const pcl::index_t point = cloud.cloud.pointOf(p);
+      const auto i = static_cast<std::size_t>(std::max<pcl::index_t>(point, 0));
+      const bool own = point >= 0 && cloud.cloud.rowOf(i) == p;
+      const SegmentOrientationResult& piece = orientation.result.segments[at(patches[p].piece)];
+      tile.signs.push_back(own ? orientation.result.point_signs[i] : piece.sign);
+      tile.confidences.push_back(own ? orientation.result.point_confidences[i] : piece.confidence);
+      for (std::size_t a = 0; a < 3 && !orientation.toward.empty(); ++a) {
+        tile.toward.push_back(own ? orientation.toward[3 * i + a] : 0.F);
+      }
+    }
+  }
+}
+
+void TileJoiner::Impl::labelSegments(JoinedTiles& out) const {
+  const std::vector<std::uint32_t> labels =
+      detail::uniteLabels(segment_sizes, label_ties, out.segments);
+  for (std::size_t t = 0; t < out.tiles.size(); ++t) {
+    out.tiles[t].labels.assign(labels.begin() + first[t].label,
+                               labels.begin() + first[t + 1].label);
+  }
+}
+
+TileJoiner::TileJoiner() : impl_(std::make_unique<Impl>()) {
+  impl_->first.emplace_back();
+}
+TileJoiner::~TileJoiner() = default;
+
+void TileJoiner::addTile(const std::vector<std::uint32_t>& piece_sizes,
+                         const std::vector<std::uint32_t>& segment_sizes,
+                         const std::vector<TileVote>& votes, const std::vector<TilePatch>& patches,
+                         const std::array<double, 3>& offset) {
+  Impl& i = *impl_;
+  const std::int32_t piece = i.first.back().piece;
+  for (TileVote v : votes) {
+    v.a += piece;
+    v.b += piece;
+    i.votes.push_back(v);
+  }
+  for (TilePatch p : patches) {
+    p.piece += piece;
+    for (std::size_t a = 0; a < 3; ++a) {
+      p.position[a] = static_cast<float>(static_cast<double>(p.position[a]) + offset[a]);
+    }
+    i.patches.push_back(p);
+  }
+  i.piece_sizes.insert(i.piece_sizes.end(), piece_sizes.begin(), piece_sizes.end());
+  i.segment_sizes.insert(i.segment_sizes.end(), segment_sizes.begin(), segment_sizes.end());
+  i.first.push_back({static_cast<std::int32_t>(i.piece_sizes.size()),
+                     static_cast<std::int32_t>(i.segment_sizes.size()), i.patches.size()});
+}
+
+void TileJoiner::tie(std::size_t tile_a, const std::vector<TileTie>& of_a, std::size_t tile_b,
+                     const std::vector<TileTie>& of_b) {
+  const auto cosine = [](const TileTie& a, const TileTie& b) {
+    return a.normal[0] * b.normal[0] + a.normal[1] * b.normal[1] + a.normal[2] * b.normal[2];
+  };
+  const auto one = [](const TileTie&, const TileTie&) { return 1.F; };
+  const Impl::First& a = impl_->first[tile_a];
+  const Impl::First& b = impl_->first[tile_b];
+  tally(
+      of_a, a.piece, of_b, b.piece, [](const TileTie& t) { return t.piece; }, cosine,
+      impl_->piece_ties);
+  tally(
+      of_a, a.label, of_b, b.label, [](const TileTie& t) { return t.label; }, one,
+      impl_->label_ties);
+}
+
+JoinedTiles TileJoiner::join(const JoinOptions& options) {
+  Impl& i = *impl_;
+  JoinedTiles out;
+  out.tiles.resize(i.first.size() - 1);
+  out.pieces = i.piece_sizes.size();
+  i.labelSegments(out);
+  if (i.patches.empty()) return out;
+  std::vector<float> xyz;
+  xyz.reserve(3 * i.patches.size());
+  std::size_t count = 0;
+  for (const TilePatch& p : i.patches) {
+    xyz.insert(xyz.end(), p.position, p.position + 3);
+    count += p.points;
+  }
+  Impl::PatchCloud patches = i.makeCloud({xyz.data(), 3, i.patches.size()}, options.threads);
+  const PointHints hints = hintsOf(options, patches.cloud);
+  SheetField field;
+  field.normals = patches.normals.data();
+  field.spacing = patches.spacing.data();
+  field.reliable = patches.reliable.data();
+  field.residual = options.traits.residual;
+  std::vector<BorderVote> votes = detail::gatherVotes(std::move(i.votes), std::move(i.piece_ties));
+  // A border is near any point of one of its pieces.
+  std::vector<pcl::index_t> some_point(i.piece_sizes.size(), 0);
+  for (std::size_t p = patches.cloud.size(); p-- > 0;) {
+    some_point[at(patches.segmentation.labels[p])] = static_cast<pcl::index_t>(p);
+  }
+  for (BorderVote& v : votes) v.where = some_point[at(v.a)];
+  AutoOrientation orientation = orientSheets(patches.cloud.points(), patches.cloud.neighborhoods(),
+                                             field, patches.segmentation, std::move(votes), count,
+                                             AutomaticOptions{}, hints, options.threads);
+  i.distribute(orientation, patches, out);
+  out.components = std::move(orientation.result.components);
+  return out;
+}
+
+void faceSensors(const std::vector<float>& toward, std::vector<float>& normals,
+                 const std::vector<float>& confidences) {
+  FilteredNormals filtered{std::move(normals), confidences};
+  detail::faceSensors(toward, filtered);
+  normals = std::move(filtered.normals);
+}
+
+}  // namespace segorient

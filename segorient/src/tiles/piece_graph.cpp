@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the segorient authors
+#include "tiles/piece_graph.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "common/disjoint_sets.h"
+
+namespace segorient::detail {
+namespace {
+
+std::size_t at(std::int32_t i) {
+  return static_cast<std::size_t>(i);
+}
+
+void add(const float* from, Evidence& to) {
+  to.add({from[0], from[1], from[2]});
+}
+
+// A point of a border has about half of its neighbours across it, each with a vote.
+TileVote voteOf(const PieceTie& tie) {
+  constexpr float kVotesOfPoint = 8.F;
+  TileVote v;
+  v.a = tie.a;
+  v.b = tie.b;
+  v.sheet[0] = kVotesOfPoint * tie.weight;
+  v.sheet[1] = v.sheet[2] = kVotesOfPoint * tie.absolute;
+  v.count = tie.count;
+  return v;
+}
+
+}  // namespace
+
+std::vector<BorderVote> gatherVotes(std::vector<TileVote> votes,
+                                    const std::vector<PieceTie>& ties) {
+  votes.reserve(votes.size() + ties.size());
+  for (const PieceTie& tie : ties) votes.push_back(voteOf(tie));
+  for (TileVote& v : votes) {
+    if (v.a > v.b) std::swap(v.a, v.b);
+  }
+  std::stable_sort(votes.begin(), votes.end(), [](const TileVote& x, const TileVote& y) {
+    return x.a != y.a ? x.a < y.a : x.b < y.b;
+  });
+  std::vector<BorderVote> out;
+  for (std::size_t i = 0; i < votes.size();) {
+    Evidence sheet;
+    BorderVote v;
+    v.a = votes[i].a;
+    v.b = votes[i].b;
+    for (; i < votes.size() && votes[i].a == v.a && votes[i].b == v.b; ++i) {
+      add(votes[i].sheet, sheet);
+      add(votes[i].wall, v.wall);
+      v.count += votes[i].count;
+    }
+    v.wall_counts = sheet.letsCount(v.wall);
+    static_cast<Evidence&>(v) = sheet;
+    if (v.wall_counts) v.add(v.wall);
+    out.push_back(v);
+  }
+  return out;
+}
+
+std::vector<std::uint32_t> uniteLabels(const std::vector<std::uint32_t>& sizes,
+                                       const std::vector<PieceTie>& pairs, std::size_t& count) {
+  DisjointSets sets(sizes.size());
+  for (const PieceTie& pair : pairs) {
+    if (pair.most) sets.join(pair.a, pair.b);
+  }
+  std::vector<std::uint32_t> united(sizes.size(), 0);
+  std::vector<std::int32_t> roots;
+  for (std::size_t i = 0; i < sizes.size(); ++i) {
+    const std::int32_t root = sets.find(static_cast<std::int32_t>(i));
+    united[at(root)] += sizes[i];
+    if (at(root) == i) roots.push_back(root);
+  }
+  std::stable_sort(roots.begin(), roots.end(),
+                   [&](std::int32_t a, std::int32_t b) { return united[at(a)] > united[at(b)]; });
+  count = 0;
+  std::vector<std::uint32_t> number(sizes.size(), 0);
+  for (std::size_t r = 0; r < roots.size(); ++r) {
+    number[at(roots[r])] = static_cast<std::uint32_t>(r);
+    count += united[at(roots[r])] > 0 ? 1 : 0;
+  }
+  std::vector<std::uint32_t> out(sizes.size());
+  for (std::size_t i = 0; i < sizes.size(); ++i) {
+    out[i] = number[at(sets.find(static_cast<std::int32_t>(i)))];
+  }
+  return out;
+}
+
+}  // namespace segorient::detail

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the segorient authors
+#pragma once
+
+#include <segorient/tiles/tile_share.h>
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "orientation/automatic/border_votes.h"
+
+namespace segorient::detail {
+
+/// What the points that two tiles both have say of a piece (or a segment) of one and one of the
+/// other.
+struct PieceTie {
+  std::int32_t a = 0;
+  std::int32_t b = 0;
+  float weight = 0.F;    ///< sum of the cosines between both tiles' normals
+  float absolute = 0.F;  ///< sum of their absolute values
+  std::uint32_t count = 0;
+  bool most = false;  ///< whether it is most of what each of the two has in the other's tile
+};
+
+/// The votes between the pieces of all tiles, ascending by (a, b): those of borders, and those of
+/// points that two tiles have. Votes of several tiles on the same two add up.
+///
+/// Pieces that are the same are not simply put together: where a piece of one tile mixes two sides,
+/// which it may by a leak at the rim of its halo, its ties to both contradict the borders between
+/// these, and no tie may be the last word.
+std::vector<BorderVote> gatherVotes(std::vector<TileVote> votes, const std::vector<PieceTie>& ties);
+
+/// Unites labels that most of what each has in the other's tile ties together; numbered by
+/// descending size, then by the first that had it.
+/// \param pairs of labels \param count those with points \return by label
+std::vector<std::uint32_t> uniteLabels(const std::vector<std::uint32_t>& sizes,
+                                       const std::vector<PieceTie>& pairs, std::size_t& count);
+
+}  // namespace segorient::detail

@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the segorient authors
+#include "tiles/input_state.h"
+
+#include <fcntl.h>
+#include <sys/file.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+#include <filesystem>
+#include <regex>
+#include <vector>
+
+#include "io/input_file.h"
+#include "tiles/checksum.h"
+
+namespace segorient::program {
+namespace fs = std::filesystem;
+namespace {
+
+// Names of files that steps write, and of such files before they are moved to their places.
+bool isOurs(const std::string& name, bool unfinished_only) {
+  static const std::regex kFinished(
+      "plan|join|lock|input-[0-9]+\\.ply|tile-[0-9]+\\.(points|rows|share|ties|signs)");
+  static const std::regex kUnfinished(
+      "(plan|join|input-[0-9]+\\.ply|tile-[0-9]+\\.(points|rows|share|ties|signs))"
+      "\\.([A-Za-z0-9]{6}|part)");
+  return std::regex_match(name, kUnfinished) ||
+         (!unfinished_only && std::regex_match(name, kFinished));
+}
+
+void removeFiles(const std::string& folder, bool unfinished_only) {
+  std::vector<fs::path> gone;
+  for (const auto& entry : fs::directory_iterator(folder)) {
+    if (isOurs(entry.path().filename().string(), unfinished_only)) gone.push_back(entry.path());
+  }
+  for (const fs::path& path : gone) {
+    std::error_code ignored;
+    fs::remove(path, ignored);
+  }
+}
+
+}  // namespace
+
+InputState stateOf(const std::string& path) {
+  InputFile file(path);
+  struct stat info {};
+  if (stat(path.c_str(), &info) != 0) file.fail(std::strerror(errno));
+  InputState state;
+  state.bytes = static_cast<std::uint64_t>(info.st_size);
+  state.time = std::int64_t{info.st_mtim.tv_sec} * 1000000000 + info.st_mtim.tv_nsec;
+  constexpr std::uint64_t kHead = 65536;
+  std::vector<char> head(static_cast<std::size_t>(std::min(kHead, file.remaining())));
+  file.read(head.data(), head.size());
+  Checksum sum;
+  sum.add(head.data(), head.size());
+  state.head = sum.value();
+  return state;
+}
+
+WorkFolder::WorkFolder(std::string path, bool alone) : path_(std::move(path)) {
+  std::error_code error;
+  fs::create_directories(path_, error);
+  if (error) throw FileError(path_, "cannot be made: " + error.message());
+  const std::string name = path_ + "/lock";
+  lock_ = open(name.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
+  if (lock_ < 0) throw FileError(name, std::strerror(errno));
+  if (flock(lock_, (alone ? LOCK_EX : LOCK_SH) | LOCK_NB) != 0) {
+    const bool busy = errno == EWOULDBLOCK;
+    close(lock_);
+    throw FileError(path_, busy ? "is in use by another run" : std::strerror(errno));
+  }
+}
+
+WorkFolder::~WorkFolder() {
+  if (lock_ >= 0) close(lock_);
+}
+
+void WorkFolder::removeUnfinished() const {
+  removeFiles(path_, true);
+}
+
+void WorkFolder::remove() {
+  removeFiles(path_, false);
+  std::error_code not_empty;
+  fs::remove(path_, not_empty);
+}
+
+}  // namespace segorient::program

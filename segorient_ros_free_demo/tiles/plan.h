@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the segorient authors
+#pragma once
+
+#include <segorient/orientation/orientation_hints.h>
+#include <segorient/tiles/tile_share.h>
+
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <vector>
+
+namespace segorient::program {
+
+/// What the user asked for.
+struct TileRequest {
+  std::vector<std::string> inputs;  ///< files, in order
+  std::string output;               ///< a file, or an existing folder
+  std::uint64_t memory = 0;         ///< bytes of one step
+  std::uint64_t tile_points = 0;    ///< most points of a tile; 0 = as the memory allows
+  std::int32_t k = 0;               ///< neighbours; 0 = the default
+  std::array<double, 3> viewpoint{0, 0, 0};
+  bool has_viewpoint = false;
+  bool up = false;
+  bool closed = false;
+  bool open = false;
+  bool find_sensors = true;
+  int threads = 0;  ///< changes no result
+};
+
+/// A file that points are read from, and what tells whether it was changed since.
+struct PlanInput {
+  std::string path;
+  std::string streamed;  ///< where its points are read: the same, or a copy that can be streamed
+  std::uint64_t bytes = 0;
+  std::int64_t time = 0;
+  std::uint64_t head = 0;  ///< checksum of its first bytes
+  std::uint64_t first_row = 0;
+  std::uint64_t rows = 0;
+};
+
+/// A file that is written: the results of some inputs.
+struct PlanOutput {
+  std::string path;
+  std::uint32_t first_input = 0;
+  std::uint32_t inputs = 0;
+};
+
+/// What plan found out and all other steps go by.
+struct Plan {
+  std::uint64_t run = 0;  ///< stands for inputs, outputs and options
+  std::vector<PlanInput> inputs;
+  std::vector<PlanOutput> outputs;
+  std::uint64_t rows = 0;
+  std::uint64_t finite = 0;
+  std::array<double, 3> origin{0, 0, 0};
+  std::vector<std::array<double, 3>> tile_origins;
+  std::vector<std::uint64_t> tile_points;  ///< own ones
+  std::vector<std::uint64_t> tile_inputs;  ///< with the halo
+  TileTraits traits;
+  std::int32_t k = 0;
+  std::uint32_t patch_points = 1;
+  bool has_viewpoints = false;  ///< whether points carry where they were seen from
+  bool has_viewpoint = false;
+  std::array<double, 3> viewpoint{0, 0, 0};
+  bool up = false;
+  bool closed = false;
+  bool open = false;
+  bool find_sensors = true;
+  std::uint32_t found_sensors = 0;
+
+  std::size_t tiles() const { return tile_points.size(); }
+};
+
+/// Called with the share of a step that is done, 0 to 1.
+using StepProgress = std::function<void(double)>;
+
+/// A point in a tile's file; where points carry viewpoints, three floats follow.
+struct PointRecord {
+  std::uint32_t row_low = 0;
+  std::uint32_t row_high = 0;
+  float position[3] = {0.F, 0.F, 0.F};  ///< relative to the tile's origin
+  std::uint32_t owner = 0;              ///< the tile it belongs to, and kShared
+
+  float whole = 0.F;  ///< radius around it in which the tile has all points
+
+  std::uint64_t row() const { return std::uint64_t{row_high} << 32 | row_low; }
+};
+constexpr std::uint32_t kShared = 0x80000000U;
+
+Plan loadPlan(const std::string& folder);
+void savePlan(const Plan& plan, const std::string& folder);
+
+/// What is known of all points alike, in coordinates relative to `origin`.
+OrientationHints hintsOf(const Plan& plan, const std::array<double, 3>& origin);
+
+/// Throws FileError if an input is no longer what it was.
+void requireUnchanged(const Plan& plan);
+
+/// "DIR/tile-000007.points".
+std::string tilePath(const std::string& folder, std::size_t tile, const char* ending);
+std::string planPath(const std::string& folder);
+std::string joinPath(const std::string& folder);
+
+}  // namespace segorient::program

@@ -1,0 +1,174 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the segorient authors
+#include "tiles/plan_inputs.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <set>
+
+#include "io/cloud_stream.h"
+#include "io/cloud_writer.h"
+#include "io/file_endings.h"
+#include "io/readers.h"
+#include "support/command_line.h"
+#include "support/memory.h"
+#include "tiles/checksum.h"
+#include "tiles/input_state.h"
+
+namespace segorient::program {
+namespace fs = std::filesystem;
+namespace {
+
+bool isCloud(const std::string& name) {
+  static const std::set<std::string> kEndings{".pcd", ".ply", ".las", ".laz", ".obj", ".ptx",
+                                              ".pts", ".xyz", ".txt", ".asc", ".csv"};
+  return kEndings.count(fileEnding(name)) > 0;
+}
+
+bool isWritable(const std::string& name) {
+  return fileEnding(name) == ".ply" || fileEnding(name) == ".pcd";
+}
+
+void addOutputs(const std::string& output, Plan& plan) {
+  if (!fs::is_directory(output)) {
+    require(isWritable(output), output +
+                                    ": tile by tile, an output file must end in .pcd or .ply; "
+                                    "or name a folder that is there");
+    plan.outputs.push_back({fs::absolute(output).lexically_normal().string(), 0,
+                            static_cast<std::uint32_t>(plan.inputs.size())});
+    return;
+  }
+  std::set<std::string> names;
+  for (std::size_t i = 0; i < plan.inputs.size(); ++i) {
+    fs::path name = fs::path(plan.inputs[i].path).filename();
+    if (!isWritable(name.string())) name.replace_extension(".ply");
+    if (!names.insert(name.string()).second) {
+      throw FileError(plan.inputs[i].path,
+                      "has the name of another input, for which there is one "
+                      "place in the folder of outputs");
+    }
+    const fs::path to = fs::absolute(fs::path(output) / name).lexically_normal();
+    plan.outputs.push_back({to.string(), static_cast<std::uint32_t>(i), 1});
+  }
+}
+
+// What a run is for: steps take no files of other runs.
+std::uint64_t runOf(const TileRequest& request, const Plan& plan) {
+  Checksum sum;
+  const auto text = [&](const std::string& s) {
+    sum.addValue(s.size());
+    sum.add(s.data(), s.size());
+  };
+  text(SEGORIENT_VERSION);
+  for (const PlanInput& in : plan.inputs) {
+    text(in.path);
+    for (const std::uint64_t v : {in.bytes, in.head}) sum.addValue(v);
+    sum.addValue(in.time);
+  }
+  for (const PlanOutput& out : plan.outputs) text(out.path);
+  sum.addValue(request.memory);
+  sum.addValue(request.tile_points);
+  sum.addValue(request.k);
+  sum.addValue(request.viewpoint);
+  for (const bool b :
+       {request.has_viewpoint, request.up, request.closed, request.open, request.find_sensors}) {
+    sum.addValue(b);
+  }
+  return std::max<std::uint64_t>(1, sum.value());
+}
+
+// A copy of a cloud that has to be read as a whole.
+void convert(const PlanInput& in) {
+  warn(in.path + ": can't be read point by point, and is converted first");
+  requireMemory(in.path, 2 * in.bytes, availableMemory());
+  const CloudTable table = readCloud(in.path);
+  OutputFile file(in.streamed);
+  OutputCloud cloud(table);
+  cloud.addRest(table);
+  writeCloud(cloud, file);
+  file.commit();
+}
+
+void requireSameFields(const CloudTable& first, const CloudTable& other, const std::string& path) {
+  bool same = first.fields.size() == other.fields.size();
+  for (std::size_t f = 0; same && f < first.fields.size(); ++f) {
+    const Field& a = first.fields[f];
+    const Field& b = other.fields[f];
+    same = a.name == b.name && a.type == b.type && a.size == b.size && a.count == b.count;
+  }
+  if (!same) {
+    throw FileError(path,
+                    "has other fields than the first input: for outputs of their own, name a "
+                    "folder that is there");
+  }
+}
+
+}  // namespace
+
+std::vector<std::string> listClouds(const std::vector<std::string>& names) {
+  std::vector<std::string> out;
+  for (const std::string& name : names) {
+    if (!fs::is_directory(name)) {
+      out.push_back(name);
+      continue;
+    }
+    std::vector<std::string> inside;
+    for (const auto& entry : fs::directory_iterator(name)) {
+      if (entry.is_regular_file() && isCloud(entry.path().string())) {
+        inside.push_back(entry.path().string());
+      }
+    }
+    if (inside.empty()) throw FileError(name, "has no clouds in it");
+    std::sort(inside.begin(), inside.end());
+    out.insert(out.end(), inside.begin(), inside.end());
+  }
+  return out;
+}
+
+void planFiles(const TileRequest& request, Plan& plan) {
+  for (const std::string& path : listClouds(request.inputs)) {
+    const InputState state = stateOf(path);
+    PlanInput in;
+    in.path = in.streamed = fs::absolute(path).lexically_normal().string();
+    in.bytes = state.bytes;
+    in.time = state.time;
+    in.head = state.head;
+    plan.inputs.push_back(std::move(in));
+  }
+  addOutputs(request.output, plan);
+  plan.run = runOf(request, plan);
+}
+
+void openInputs(const std::string& folder, Plan& plan) {
+  CloudTable first;
+  std::size_t with_viewpoint = 0;
+  std::array<double, 3> viewpoint{0, 0, 0};
+  for (std::size_t i = 0; i < plan.inputs.size(); ++i) {
+    PlanInput& in = plan.inputs[i];
+    if (!CloudStream::canRead(in.path)) {
+      in.streamed = folder + "/input-" + std::to_string(i) + ".ply";
+      convert(in);
+    }
+    const CloudStream stream(in.streamed);
+    const CloudTable& layout = stream.layout();
+    if (i == 0) first = layout;
+    if (plan.outputs.size() == 1) requireSameFields(first, layout, in.path);
+    in.first_row = plan.rows;
+    in.rows = stream.size();
+    plan.rows += in.rows;
+    plan.has_viewpoints = plan.has_viewpoints || layout.hasViewpoints();
+    const std::array<double, 3> here{layout.viewpoint[0], layout.viewpoint[1], layout.viewpoint[2]};
+    if (here == std::array<double, 3>{0, 0, 0}) continue;
+    viewpoint = here;
+    ++with_viewpoint;
+  }
+  if (plan.has_viewpoint || plan.up || with_viewpoint == 0) return;
+  if (plan.inputs.size() == 1) {
+    plan.has_viewpoint = true;
+    plan.viewpoint = viewpoint;
+  } else {
+    plan.has_viewpoints = true;  // each file its own
+  }
+}
+
+}  // namespace segorient::program

@@ -1,0 +1,228 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the segorient authors
+#include <segorient/common/bulk_bounds.h>
+#include <segorient/tiles/tile_tree.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <limits>
+
+#include "io/cloud_stream.h"
+#include "tiles/bucket_files.h"
+#include "tiles/plan_inputs.h"
+#include "tiles/plan_sensors.h"
+#include "tiles/point_sample.h"
+#include "tiles/steps.h"
+
+namespace segorient::program {
+namespace {
+
+using Place = TileTree::Place;
+
+bool isFinite(const Place& p) {
+  return std::isfinite(p[0]) && std::isfinite(p[1]) && std::isfinite(p[2]);
+}
+
+std::array<float, 3> near(const Place& p, const Place& origin) {
+  std::array<float, 3> out{};
+  for (std::size_t a = 0; a < 3; ++a) out[a] = static_cast<float>(p[a] - origin[a]);
+  return out;
+}
+
+// Calls visit(row, place, block, row in block) for all points of all inputs, and begin(layout) for
+// each input.
+template <typename Begin, typename Visit>
+void forEachPoint(const Plan& plan, const StepProgress& progress, double from, double to,
+                  const Begin& begin, const Visit& visit) {
+  for (const PlanInput& in : plan.inputs) {
+    CloudStream stream(in.streamed);
+    begin(stream.layout());
+    CloudTable block;
+    std::uint64_t row = in.first_row;
+    while (stream.next(block)) {
+      const auto xyz = block.xyz();
+      for (std::size_t i = 0; i < block.size; ++i) visit(row++, block.triple(xyz, i), block, i);
+      if (progress) {
+        progress(from + (to - from) * static_cast<double>(row) / static_cast<double>(plan.rows));
+      }
+    }
+  }
+}
+
+// Where floats are exact enough: near the tile. Coordinates that were floats lose nothing, as the
+// origin is a multiple of a power of two, and no farther from 0 than they are.
+Place tileOrigin(const Bounds& bounds) {
+  Place origin{0, 0, 0};
+  if (bounds.points == 0 || !bounds.isFar()) return origin;
+  const double step = std::exp2(std::ceil(std::log2(std::max(8.0 * bounds.extent(), 1e-30))));
+  const Place middle = bounds.middle();
+  for (std::size_t a = 0; a < 3; ++a) origin[a] = step * std::trunc(middle[a] / step);
+  return origin;
+}
+
+// Small parts all over the cloud, with their surroundings, as dense as they are; a small cloud as a
+// whole.
+class Probe {
+ public:
+  Probe(const std::vector<Place>& sample, double points_each, const Place& origin)
+      : tree_(sample, points_each, kPart), origin_(origin), chosen_(tree_.tiles(), 0) {
+    const std::size_t parts = std::min(tree_.tiles(), kParts);
+    for (std::size_t p = 0; p < parts; ++p) chosen_[p * tree_.tiles() / parts] = 1;
+  }
+  void add(const Place& place) {
+    double reach = 0.0;
+    bool wanted = chosen_[tree_.owner(place, reach)] != 0;
+    if (!wanted)
+      tree_.forEachWithin(place, reach, [&](auto t, double) { wanted |= chosen_[t] != 0; });
+    if (!wanted) return;
+    const std::array<float, 3> p = near(place, origin_);
+    points_.insert(points_.end(), p.begin(), p.end());
+  }
+  PointView points() const { return {points_.data(), 3, points_.size() / 3}; }
+
+ private:
+  // Together about as many points as the sample of the whole.
+  static constexpr double kPart = 20000.0;
+  static constexpr std::size_t kParts = 52;
+  TileTree tree_;
+  Place origin_;
+  std::vector<std::uint8_t> chosen_;
+  std::vector<float> points_;
+};
+
+// Where points are said to have been seen from, or where that was found.
+class Viewpoints {
+ public:
+  explicit Viewpoints(const PlanSensors& sensors) : sensors_(sensors) {}
+  void begin(const CloudTable& layout) {
+    columns_ = layout.hasViewpoints();
+    const Place here{layout.viewpoint[0], layout.viewpoint[1], layout.viewpoint[2]};
+    known_ = here != Place{0, 0, 0};
+    header_ = here;
+  }
+  std::array<float, 3> of(const CloudTable& block, std::size_t row, std::uint64_t number,
+                          const Place& place, const Place& origin) const {
+    if (sensors_.found() > 0) return sensors_.of(number, near(place, origin));
+    if (columns_) return near(block.triple(block.viewpoints(), row), origin);
+    if (known_) return near(header_, origin);
+    constexpr float kUnknown = std::numeric_limits<float>::quiet_NaN();
+    return {kUnknown, kUnknown, kUnknown};
+  }
+
+ private:
+  const PlanSensors& sensors_;
+  bool columns_ = false;
+  bool known_ = false;
+  Place header_{0, 0, 0};
+};
+
+// The second pass: each point to its tile, and to those that it is near.
+void distribute(const TileTree& tree, const std::string& folder, const StepProgress& progress,
+                const PlanSensors& sensors, Probe& probe, Plan& plan) {
+  constexpr std::size_t kWaiting = std::size_t{1} << 26;
+  BucketFiles buckets(folder, plan.run, tree.tiles(), kWaiting);
+  plan.tile_points.assign(tree.tiles(), 0);
+  plan.tile_inputs.assign(tree.tiles(), 0);
+  Viewpoints viewpoints(sensors);
+  forEachPoint(
+      plan, progress, 0.4, 0.95, [&](const CloudTable& layout) { viewpoints.begin(layout); },
+      [&](std::uint64_t row, const Place& place, const CloudTable& block, std::size_t i) {
+        if (!isFinite(place)) return;
+        probe.add(place);
+        double reach = 0.0;
+        PointRecord record;
+        const std::uint32_t owner = tree.owner(place, reach);
+        record.row_low = static_cast<std::uint32_t>(row);
+        record.row_high = static_cast<std::uint32_t>(row >> 32);
+        std::size_t tiles = 0;
+        tree.forEachWithin(place, reach, [&](std::uint32_t, double) { ++tiles; });
+        record.owner = owner | (tiles > 1 ? kShared : 0);
+        ++plan.tile_points[owner];
+        std::array<float, 3> seen_from{};
+        if (plan.has_viewpoints) seen_from = viewpoints.of(block, i, row, place, plan.origin);
+        tree.forEachWithin(place, reach, [&](std::uint32_t tile, double distance) {
+          const std::array<float, 3> p = near(place, plan.tile_origins[tile]);
+          std::copy(p.begin(), p.end(), record.position);
+          record.whole =
+              static_cast<float>(distance > 0.0 ? tree.wholeRadius(place, reach, distance) : reach);
+          ++plan.tile_inputs[tile];
+          buckets.add(tile, record, plan.has_viewpoints ? seen_from.data() : nullptr);
+        });
+      });
+  buckets.commit();
+}
+
+double mostPoints(const TileRequest& request, double points_each) {
+  double most = static_cast<double>(request.tile_points);
+  if (request.tile_points == 0) {
+    const std::uint64_t room =
+        request.memory > 2 * kBytesAnyway ? request.memory - kBytesAnyway : request.memory / 2;
+    // The halo of a tile of a surface is as wide as 20 spacings: a tenth of a large tile.
+    most = static_cast<double>(room) / (1.15 * static_cast<double>(kBytesPerPoint));
+  }
+  // A sample tells a tile's points to a few hundredths.
+  constexpr double kSafe = 0.95;
+  return std::max(1.0, points_each > 1.0 ? kSafe * most : most);
+}
+
+}  // namespace
+
+Plan planStep(const TileRequest& request, const std::string& folder, const StepProgress& progress) {
+  Plan plan;
+  planFiles(request, plan);
+  if (std::filesystem::exists(planPath(folder))) {
+    Plan known = loadPlan(folder);
+    if (known.run == plan.run) return known;
+    throw FileError(folder,
+                    "has files of other inputs, outputs or options, or of an input that was "
+                    "changed: remove it, or name another folder");
+  }
+  plan.k = request.k;
+  plan.has_viewpoint = request.has_viewpoint;
+  plan.viewpoint = request.viewpoint;
+  plan.up = request.up;
+  plan.closed = request.closed;
+  plan.open = request.open;
+  plan.find_sensors = request.find_sensors;
+  openInputs(folder, plan);
+  PointSample sample;
+  std::size_t image_width = 0;
+  forEachPoint(
+      plan, progress, 0.0, 0.35,
+      [&](const CloudTable& layout) {
+        const bool image = layout.height > 1 && layout.width * layout.height == plan.rows;
+        image_width = image ? layout.width : 0;
+      },
+      [&](std::uint64_t row, const Place& place, const CloudTable&, std::size_t) {
+        if (isFinite(place)) sample.add(row, place);
+      });
+  plan.finite = sample.seen();
+  if (plan.finite == 0) {
+    throw FileError(plan.inputs[0].path, "has no point with finite coordinates");
+  }
+  const std::vector<Place>& places = sample.places();
+  const Bounds bulk = bulkBounds(places.size(), [&](std::size_t i) { return places[i]; });
+  if (bulk.isFar()) plan.origin = bulk.middle();
+  const TileTree tree(places, sample.pointsEach(), mostPoints(request, sample.pointsEach()));
+  std::vector<Bounds> bounds(tree.tiles());
+  double reach = 0.0;
+  for (const Place& p : places) bounds[tree.owner(p, reach)].add(p);
+  for (const Bounds& b : bounds) plan.tile_origins.push_back(tileOrigin(b));
+  const std::uint64_t most_patches =
+      std::max<std::uint64_t>(kSamplePoints, request.memory / kBytesPerPatch);
+  plan.patch_points = static_cast<std::uint32_t>((plan.finite + most_patches - 1) / most_patches);
+  Probe probe(places, sample.pointsEach(), plan.origin);
+  const PlanSensors sensors(plan, sample, image_width, request.threads);
+  plan.found_sensors = static_cast<std::uint32_t>(sensors.found());
+  plan.has_viewpoints = plan.has_viewpoints || sensors.found() > 0;
+  distribute(tree, folder, progress, sensors, probe, plan);
+  plan.traits =
+      measureTileTraits(probe.points(), plan.k,
+                        plan.has_viewpoint || plan.has_viewpoints || plan.up, request.threads);
+  requireUnchanged(plan);
+  savePlan(plan, folder);
+  return plan;
+}
+
+}  // namespace segorient::program

@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the segorient authors
+#include "tiles/run_tiles.h"
+
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <filesystem>
+
+#include "support/command_line.h"
+#include "support/progress_bar.h"
+#include "tiles/input_state.h"
+#include "tiles/plan_inputs.h"
+
+namespace segorient::program {
+namespace {
+
+// Shares of the time.
+constexpr double kPlanned = 0.1;
+constexpr double kTiled = 0.88;
+constexpr double kJoined = 0.93;
+
+std::string stageName(std::size_t tile, std::size_t tiles) {
+  return "tile " + std::to_string(tile + 1) + "/" + std::to_string(tiles);
+}
+
+}  // namespace
+
+std::uint64_t parseMemory(const std::string& text) {
+  constexpr double kLeast = 200e6;
+  char* end = nullptr;
+  const double number = std::strtod(text.c_str(), &end);
+  std::string unit(end);
+  if (!unit.empty() && (unit.back() == 'B' || unit.back() == 'b')) unit.pop_back();
+  double factor = 0.0;
+  if (unit.empty()) factor = 1.0;
+  if (unit == "M" || unit == "m") factor = 1e6;
+  if (unit == "G" || unit == "g") factor = 1e9;
+  if (unit == "T" || unit == "t") factor = 1e12;
+  const double bytes = number * factor;
+  require(end != text.c_str() && factor > 0.0 && std::isfinite(bytes) && bytes < 1e18,
+          "--memory takes a size, as in --memory 2G");
+  require(bytes >= kLeast, "--memory must be 200M at least");
+  return static_cast<std::uint64_t>(bytes);
+}
+
+void runAllSteps(const TileRequest& request, std::string folder, bool quiet) {
+  if (folder.empty()) {
+    folder = request.output;
+    while (folder.size() > 1 && folder.back() == '/') folder.pop_back();
+    folder += ".work";
+  }
+  const auto begin = std::chrono::steady_clock::now();
+  Plan plan;
+  planFiles(request, plan);  // what is wrong with the names is known before there is a folder
+  WorkFolder work(folder, true);
+  work.removeUnfinished();
+  JoinSummary joined;
+  {
+    ProgressBar bar(!quiet, 0);
+    const auto report = [&](const std::string& stage, double from, double to) {
+      return
+          [&bar, stage, from, to](double share) { bar.update(stage, from + (to - from) * share); };
+    };
+    try {
+      plan = planStep(request, folder, report("plan", 0.0, kPlanned));
+    } catch (...) {
+      // There is nothing to go on with, unless the folder is that of another run.
+      if (!std::filesystem::exists(planPath(folder))) work.remove();
+      throw;
+    }
+    bar.setItems(plan.rows);
+    double done = 0.0;
+    for (std::size_t t = 0; t < plan.tiles(); ++t) {
+      bar.update(stageName(t, plan.tiles()), kPlanned + (kTiled - kPlanned) * done);
+      tileStep(plan, folder, t, request.threads);
+      done += static_cast<double>(plan.tile_points[t]) / static_cast<double>(plan.finite);
+    }
+    bar.update("join", kTiled);
+    joined = joinStep(plan, folder, request.threads);
+    const auto outputs = static_cast<double>(plan.outputs.size());
+    for (std::size_t o = 0; o < plan.outputs.size(); ++o) {
+      const double from = kJoined + (1.0 - kJoined) * static_cast<double>(o) / outputs;
+      writeStep(plan, folder, o, report("write", from, from + (1.0 - kJoined) / outputs));
+    }
+  }
+  work.remove();
+  if (quiet) return;
+  const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - begin;
+  std::printf("points          %llu, %llu not finite\n", static_cast<unsigned long long>(plan.rows),
+              static_cast<unsigned long long>(plan.rows - plan.finite));
+  std::printf("tiles           %zu\n", plan.tiles());
+  std::printf("segments        %llu, of %llu pieces in %llu components\n",
+              static_cast<unsigned long long>(joined.segments),
+              static_cast<unsigned long long>(joined.pieces),
+              static_cast<unsigned long long>(joined.components));
+  if (plan.found_sensors > 0) std::printf("sensors found   %u\n", plan.found_sensors);
+  std::printf("seconds         %.2f\n", seconds.count());
+  for (const PlanOutput& out : plan.outputs) std::printf("written         %s\n", out.path.c_str());
+}
+
+}  // namespace segorient::program

@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the segorient authors
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "tiles/plan.h"
+
+// The steps of a cloud that is oriented tile by tile. Each makes files of others, moves them to
+// their places when they are whole, and does nothing if they are there already; so each may be
+// repeated, on any machine that sees the folder. All throw FileError.
+namespace segorient::program {
+
+/// Reads the inputs twice: cuts them into tiles, and gives each tile a file with its points and
+/// those around it; measures what no tile can tell alone.
+/// \param folder to work in, see WorkFolder
+Plan planStep(const TileRequest& request, const std::string& folder,
+              const StepProgress& progress = {});
+
+/// Normals, pieces, votes and segments of one tile.
+void tileStep(const Plan& plan, const std::string& folder, std::size_t tile, int threads);
+
+/// What was found in joining, for summaries.
+struct JoinSummary {
+  std::uint64_t pieces = 0;
+  std::uint64_t segments = 0;
+  std::uint64_t components = 0;
+};
+
+/// The signs and labels of all tiles, from what tiles say of their pieces.
+JoinSummary joinStep(const Plan& plan, const std::string& folder, int threads);
+
+/// Writes one output: the points of its inputs in their order.
+void writeStep(const Plan& plan, const std::string& folder, std::size_t output,
+               const StepProgress& progress = {});
+
+/// Bytes that a step takes for each point of its tile, and for each patch in joining, as measured;
+/// beside what the program takes anyway.
+constexpr std::uint64_t kBytesPerPoint = 450;
+constexpr std::uint64_t kBytesPerPatch = 1000;
+constexpr std::uint64_t kBytesAnyway = 150'000'000;
+
+}  // namespace segorient::program

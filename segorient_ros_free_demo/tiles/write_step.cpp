@@ -1,0 +1,130 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the segorient authors
+#include <segorient/tiles/join_tiles.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <memory>
+#include <queue>
+#include <utility>
+
+#include "io/cloud_stream.h"
+#include "io/cloud_writer.h"
+#include "support/colors.h"
+#include "tiles/steps.h"
+#include "tiles/tile_records.h"
+
+namespace segorient::program {
+namespace {
+
+constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
+
+// The results of all tiles in the order of the input's rows.
+class Results {
+ public:
+  Results(const Plan& plan, const std::string& folder, std::uint64_t first_row) {
+    for (std::size_t t = 0; t < plan.tiles(); ++t) {
+      const auto tile = static_cast<std::uint32_t>(t);
+      signs_.push_back(loadSigns(tilePath(folder, t, "signs"), plan.run, tile));
+      rows_.push_back(
+          std::make_unique<RowReader>(tilePath(folder, t, "rows"), plan.run, tile, first_row));
+      if (!rows_[t]->done()) next_.emplace(rows_[t]->row().row(), t);
+    }
+  }
+
+  // Of the rows from `first_row` on; NaN and no label for those that no tile knows.
+  void take(std::uint64_t first_row, std::size_t count) {
+    normals.assign(4 * count, kNaN);
+    confidences.assign(count, 0.F);
+    toward.assign(3 * count, 0.F);
+    labels.assign(count, kNoSegment);
+    bool sensors = false;
+    while (!next_.empty() && next_.top().first < first_row + count) {
+      const std::size_t tile = next_.top().second;
+      next_.pop();
+      RowReader& reader = *rows_[tile];
+      const RowRecord& r = reader.row();
+      const auto i = static_cast<std::size_t>(r.row() - first_row);
+      sensors = place(signs_[tile], r, i) || sensors;
+      reader.next();
+      if (!reader.done()) next_.emplace(reader.row().row(), tile);
+    }
+    if (sensors) faceSensors(toward, normals, confidences);
+  }
+
+  std::vector<float> normals;  // 4 a row, with the curvature
+  std::vector<float> confidences;
+  std::vector<float> toward;
+  std::vector<std::uint32_t> labels;
+
+ private:
+  // \return whether a sensor is known
+  bool place(const SignsFile& signs, const RowRecord& r, std::size_t i) {
+    std::copy_n(r.normal, 4, &normals[4 * i]);
+    confidences[i] = r.confidence;
+    const auto label = static_cast<std::size_t>(r.label);
+    if (r.label >= 0 && label < signs.labels.size()) labels[i] = signs.labels[label];
+    const auto patch = static_cast<std::size_t>(r.patch);
+    if (r.patch < 0 || patch >= signs.signs.size()) return false;
+    for (std::size_t a = 0; a < 3; ++a) normals[4 * i + a] *= signs.signs[patch];
+    if (signs.toward.empty()) return false;
+    std::copy_n(&signs.toward[3 * patch], 3, &toward[3 * i]);
+    return true;
+  }
+
+  std::vector<SignsFile> signs_;
+  std::vector<std::unique_ptr<RowReader>> rows_;
+  using Next = std::pair<std::uint64_t, std::size_t>;
+  std::priority_queue<Next, std::vector<Next>, std::greater<>> next_;  // row and tile
+};
+
+void addBlock(const CloudTable& block, const Results& results, std::uint64_t size,
+              CloudWriter& writer) {
+  OutputCloud out(block);
+  const float* n = results.normals.data();
+  out.add("normal_x", n, 4);
+  out.add("normal_y", n + 1, 4);
+  out.add("normal_z", n + 2, 4);
+  out.add("curvature", n + 3, 4);
+  std::vector<std::uint32_t> colors;
+  if (block.find("rgb") == nullptr) {
+    for (const std::uint32_t label : results.labels) colors.push_back(segmentColor(label));
+    out.columns.push_back(
+        {{"rgb", 'F', 4, 1, 0}, reinterpret_cast<const std::uint8_t*>(colors.data()), 4});
+  }
+  out.add("label", results.labels.data());
+  out.addRest(block);
+  writer.add(out, size);
+}
+
+}  // namespace
+
+void writeStep(const Plan& plan, const std::string& folder, std::size_t output,
+               const StepProgress& progress) {
+  requireUnchanged(plan);
+  const PlanOutput& to = plan.outputs[output];
+  OutputFile file(to.path);
+  CloudWriter writer(file);
+  std::uint64_t size = 0;
+  for (std::size_t i = to.first_input; i < to.first_input + to.inputs; ++i) {
+    size += plan.inputs[i].rows;
+  }
+  const std::uint64_t first_row = plan.inputs[to.first_input].first_row;
+  Results results(plan, folder, first_row);
+  for (std::size_t i = to.first_input; i < to.first_input + to.inputs; ++i) {
+    CloudStream stream(plan.inputs[i].streamed);
+    CloudTable block;
+    std::uint64_t row = plan.inputs[i].first_row;
+    while (stream.next(block)) {
+      results.take(row, block.size);
+      addBlock(block, results, size, writer);
+      row += block.size;
+      if (progress) progress(static_cast<double>(row - first_row) / static_cast<double>(size));
+    }
+  }
+  file.commit();
+}
+
+}  // namespace segorient::program

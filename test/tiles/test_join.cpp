@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the segorient authors
+#include <gtest/gtest.h>
+#include <segorient/tiles/join_tiles.h>
+
+#include "tiles/piece_graph.h"
+
+namespace segorient::test {
+namespace {
+
+using detail::PieceTie;
+
+PieceTie tie(std::int32_t a, std::int32_t b, float weight, std::uint32_t count) {
+  PieceTie t;
+  t.a = a;
+  t.b = b;
+  t.weight = weight;
+  t.absolute = static_cast<float>(count);
+  t.count = count;
+  t.most = true;
+  return t;
+}
+
+TileVote vote(std::int32_t a, std::int32_t b, float weight) {
+  TileVote v;
+  v.a = a;
+  v.b = b;
+  v.sheet[0] = weight;
+  v.sheet[1] = v.sheet[2] = weight < 0.F ? -weight : weight;
+  v.count = 1;
+  return v;
+}
+
+// Points that both tiles have say how two pieces are turned to each other.
+TEST(Join, PiecesOfTwoTilesVoteByTheirCommonPoints) {
+  const std::vector<BorderVote> votes =
+      detail::gatherVotes({vote(0, 2, 6.F)}, {tie(1, 0, -7.F, 7)});
+  ASSERT_EQ(votes.size(), 2U);
+  EXPECT_EQ(votes[0].a, 0);
+  EXPECT_EQ(votes[0].b, 1);
+  EXPECT_LT(votes[0].weight, -7.F);
+  EXPECT_EQ(votes[0].unanimity(), 1.F);
+  EXPECT_EQ(votes[1].b, 2);
+  EXPECT_FLOAT_EQ(votes[1].weight, 6.F);
+}
+
+// Votes of the same two pieces from two tiles are one border; walls count where they are most.
+TEST(Join, VotesOfOneBorderAddUp) {
+  TileVote wall = vote(0, 1, 0.F);
+  wall.wall[0] = -3.F;
+  wall.wall[1] = wall.wall[2] = 3.F;
+  const auto sheet = detail::gatherVotes({vote(0, 1, 8.F), vote(0, 1, 8.F), wall}, {});
+  ASSERT_EQ(sheet.size(), 1U);
+  EXPECT_FALSE(sheet[0].wall_counts);
+  EXPECT_FLOAT_EQ(sheet[0].weight, 16.F);
+  const auto both = detail::gatherVotes({vote(0, 1, 2.F), wall}, {});
+  ASSERT_EQ(both.size(), 1U);
+  EXPECT_TRUE(both[0].wall_counts);
+  EXPECT_FLOAT_EQ(both[0].weight, -1.F);
+}
+
+TEST(Join, LabelsOfOneSegmentBecomeOneAndAreNumberedBySize) {
+  PieceTie weak = tie(1, 3, 1.F, 1);
+  weak.most = false;
+  std::size_t count = 0;
+  const std::vector<std::uint32_t> labels =
+      detail::uniteLabels({5, 30, 40, 2, 0}, {tie(0, 2, 9.F, 9), weak}, count);
+  EXPECT_EQ(labels[0], labels[2]);
+  EXPECT_EQ(labels[0], 0U);
+  EXPECT_EQ(labels[1], 1U);
+  EXPECT_EQ(labels[3], 2U);
+  EXPECT_EQ(count, 3U);
+}
+
+TEST(Join, NothingAndTilesWithoutPiecesAreJoined) {
+  TileJoiner none;
+  EXPECT_TRUE(none.join({}).tiles.empty());
+  TileJoiner empty;
+  empty.addTile({}, {}, {}, {}, {0.0, 0.0, 0.0});
+  const JoinedTiles joined = empty.join({});
+  ASSERT_EQ(joined.tiles.size(), 1U);
+  EXPECT_TRUE(joined.tiles[0].signs.empty());
+}
+
+}  // namespace
+}  // namespace segorient::test

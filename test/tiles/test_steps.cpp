@@ -1,0 +1,156 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the segorient authors
+// Clouds tile by tile, through the program.
+#include <gtest/gtest.h>
+
+#include <filesystem>
+
+#include "run_program.h"
+#include "tile_clouds.h"
+
+namespace segorient::test {
+namespace {
+
+namespace fs = std::filesystem;
+
+void expectRuns(const std::vector<std::string>& words) {
+  const Outcome run = runProgram(words);
+  ASSERT_EQ(run.status, 0) << run.err;
+}
+
+TEST(Tiles, SignsAreThoseOfTheWholeForAnySizeOfTiles) {
+  const ScratchDirectory scratch;
+  const std::string whole = scratch.file("whole.ply");
+  const std::string tiled = scratch.file("tiled.ply");
+  expectRuns({"orient", fandisk(), whole, "-q"});
+  const std::size_t points = program::readCloud(whole).size;
+  for (const char* most : {"3000", "7000"}) {
+    expectRuns({"orient", fandisk(), tiled, "-q", "--memory", "1G", "--tile-points", most});
+    EXPECT_EQ(sameSides(whole, tiled), points) << most;
+  }
+  EXPECT_EQ(scratch.entries(), 2U) << "the work folders are still there";
+}
+
+// No tile sees that it is a closed body, nor which of its walls is a cavity's. At the size of UTM
+// coordinates, where floats have steps of half a metre.
+TEST(Tiles, AClosedBodyLargerThanAnyTileEndsOutwardAndItsCavityToo) {
+  const ScratchDirectory scratch;
+  const double middle[3] = {500000.125, 5400000.5, 312.25};
+  const std::string in =
+      writeDoubles(scratch.file("in.ply"), hollowSphere(20000, middle[0], middle[1], middle[2]));
+  const std::string out = scratch.file("out.ply");
+  expectRuns({"orient", in, out, "-q", "--memory", "1G", "--tile-points", "3000"});
+  const program::CloudTable cloud = program::readCloud(out);
+  std::size_t wrong = 0;
+  for (std::size_t i = 0; i < cloud.size; ++i) {
+    const auto p = cloud.position(i);
+    const auto n = cloud.triple(cloud.normals(), i);
+    double outward = i % 5 == 4 ? -1.0 : 1.0;
+    double dot = 0.0;
+    for (std::size_t a = 0; a < 3; ++a) dot += n[a] * (p[a] - middle[a]);
+    wrong += outward * dot > 0.0 ? 0 : 1;
+  }
+  EXPECT_EQ(wrong, 0U);
+}
+
+// Any order, any number of threads, each step twice: the same bytes as all in one.
+TEST(Tiles, StepsOneByOneGiveTheBytesOfTheCommand) {
+  const ScratchDirectory scratch;
+  const std::string at_once = scratch.file("once.ply");
+  const std::string by_steps = scratch.file("steps.ply");
+  const std::string folder = scratch.file("work");
+  const std::vector<std::string> how{"--memory", "1G", "--tile-points", "5000"};
+  std::vector<std::string> words{"orient", fandisk(), at_once, "-q"};
+  words.insert(words.end(), how.begin(), how.end());
+  expectRuns(words);
+  words = {"tiles", "plan", folder, fandisk(), by_steps};
+  words.insert(words.end(), how.begin(), how.end());
+  const Outcome plan = runProgram(words);
+  ASSERT_EQ(plan.status, 0) << plan.err;
+  EXPECT_EQ(plan.out, runProgram(words).out);
+  ASSERT_EQ(plan.out.rfind("tiles 4\n", 0), 0U) << plan.out;
+  for (const char* tile : {"2", "0", "3"}) {
+    expectRuns({"tiles", "tile", folder, tile, "--threads", "1"});
+  }
+  const Outcome early = runProgram({"tiles", "join", folder});
+  EXPECT_EQ(early.status, 1);
+  EXPECT_TRUE(isOneLine(early.err)) << early.err;
+  EXPECT_EQ(runProgram({"tiles", "tile", folder, "4"}).status, 2);
+  expectRuns({"tiles", "tile", folder});
+  for (int i = 0; i < 2; ++i) {
+    expectRuns({"tiles", "join", folder});
+    expectRuns({"tiles", "write", folder});
+    EXPECT_TRUE(readFile(at_once) == readFile(by_steps));
+  }
+}
+
+TEST(Tiles, AFolderOfInputsGetsAFolderOfOutputs) {
+  const ScratchDirectory scratch;
+  fs::create_directory(scratch.file("in"));
+  fs::create_directory(scratch.file("out"));
+  const std::vector<double> body = hollowSphere(9000, 0.0, 0.0, 0.0);
+  const auto half = static_cast<std::ptrdiff_t>(body.size() / 2 / 3 * 3);
+  writeDoubles(scratch.file("in/a.ply"), {body.begin(), body.begin() + half});
+  writeDoubles(scratch.file("in/b.ply"), {body.begin() + half, body.end()});
+  const std::string all = writeDoubles(scratch.file("all.ply"), body);
+  const std::vector<std::string> how{"-q", "--memory", "1G", "--tile-points", "2500"};
+  std::vector<std::string> words{"orient", scratch.file("in"), scratch.file("out")};
+  words.insert(words.end(), how.begin(), how.end());
+  expectRuns(words);
+  words = {"orient", all, scratch.file("one.ply")};
+  words.insert(words.end(), how.begin(), how.end());
+  expectRuns(words);
+  const program::CloudTable one = program::readCloud(scratch.file("one.ply"));
+  std::size_t row = 0;
+  for (const char* name : {"out/a.ply", "out/b.ply"}) {
+    const program::CloudTable part = program::readCloud(scratch.file(name));
+    for (std::size_t i = 0; i < part.size; ++i, ++row) {
+      ASSERT_EQ(part.triple(part.normals(), i), one.triple(one.normals(), row)) << name << i;
+    }
+  }
+  EXPECT_EQ(row, one.size);
+}
+
+// Text can't be read from the middle; three points and a thousand in one place have no surface.
+TEST(Tiles, OddCloudsAreOrientedOrGetNaN) {
+  const ScratchDirectory scratch;
+  const std::string out = scratch.file("out.pcd");
+  const std::string text = scratch.write("three.xyz", "0 0 0\n1 0 0\n0 1 0\n");
+  const std::string place = writeDoubles(scratch.file("place.ply"), std::vector<double>(3000, 1.5));
+  std::vector<double> gaps = hollowSphere(6000, 0.0, 0.0, 0.0);
+  for (std::size_t i = 0; i < gaps.size(); i += 300) gaps[i] = std::nan("");
+  for (const std::string& in : {text, place, writeDoubles(scratch.file("gaps.ply"), gaps)}) {
+    const Outcome run =
+        runProgram({"orient", in, out, "-q", "--memory", "1G", "--tile-points", "500"});
+    EXPECT_EQ(run.status, 0) << run.err;
+    const program::CloudTable cloud = program::readCloud(out);
+    EXPECT_EQ(cloud.size, program::readCloud(in).size);
+    std::size_t with_normal = 0;
+    for (std::size_t i = 0; i < cloud.size; ++i) {
+      with_normal += std::isfinite(cloud.triple(cloud.normals(), i)[0]) ? 1 : 0;
+    }
+    const bool surface = in == scratch.file("gaps.ply");
+    EXPECT_EQ(with_normal, surface ? 5940U : (in == text ? with_normal : 0U)) << in;
+  }
+}
+
+TEST(Tiles, WhatDoesNotGoWithTilesIsWrongUsage) {
+  const ScratchDirectory scratch;
+  const std::string out = scratch.file("out.ply");
+  for (const std::vector<std::string>& wrong :
+       std::vector<std::vector<std::string>>{{"--memory", "x"},
+                                             {"--memory", "1M"},
+                                             {"--memory", "1G", "--method", "hoppe"},
+                                             {"--memory", "1G", "--seeds", fandisk()}}) {
+    std::vector<std::string> words{"orient", fandisk(), out};
+    words.insert(words.end(), wrong.begin(), wrong.end());
+    const Outcome run = runProgram(words);
+    EXPECT_EQ(run.status, 2) << run.err;
+    EXPECT_TRUE(isOneLine(run.err)) << run.err;
+  }
+  EXPECT_EQ(runProgram({"orient", fandisk(), scratch.file("out.las"), "--memory", "1G"}).status, 2);
+  EXPECT_EQ(scratch.entries(), 0U);
+}
+
+}  // namespace
+}  // namespace segorient::test

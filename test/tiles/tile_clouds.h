@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the segorient authors
+#pragma once
+
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <fstream>
+#include <string>
+#include <vector>
+
+#include "io/readers.h"
+
+namespace segorient::test {
+
+/// A sphere of radius 1 with a cavity of radius 1/2, closed, around a place.
+inline std::vector<double> hollowSphere(std::size_t n, double x, double y, double z) {
+  std::vector<double> out;
+  for (std::size_t i = 0; i < n; ++i) {
+    const bool cavity = i % 5 == 4;
+    const double radius = cavity ? 0.5 : 1.0;
+    const double h = 1.0 - 2.0 * (static_cast<double>(i) + 0.5) / static_cast<double>(n);
+    const double r = std::sqrt(1.0 - h * h);
+    const double angle = 2.399963229728653 * static_cast<double>(i);
+    out.push_back(x + radius * r * std::cos(angle));
+    out.push_back(y + radius * r * std::sin(angle));
+    out.push_back(z + radius * h);
+  }
+  return out;
+}
+
+/// A binary PLY of doubles.
+inline std::string writeDoubles(const std::string& path, const std::vector<double>& xyz) {
+  std::ofstream file(path, std::ios::binary);
+  file << "ply\nformat binary_little_endian 1.0\nelement vertex " << xyz.size() / 3
+       << "\nproperty double x\nproperty double y\nproperty double z\nend_header\n";
+  file.write(reinterpret_cast<const char*>(xyz.data()),
+             static_cast<std::streamsize>(sizeof(double) * xyz.size()));
+  return path;
+}
+
+/// How many normals of `a` are turned as those of `b`; both have the same points.
+inline std::size_t sameSides(const std::string& a, const std::string& b) {
+  const program::CloudTable x = program::readCloud(a);
+  const program::CloudTable y = program::readCloud(b);
+  std::size_t same = 0;
+  for (std::size_t i = 0; i < x.size && x.size == y.size; ++i) {
+    const auto n = x.triple(x.normals(), i);
+    const auto m = y.triple(y.normals(), i);
+    same += n[0] * m[0] + n[1] * m[1] + n[2] * m[2] > 0.0 ? 1 : 0;
+  }
+  return same;
+}
+
+}  // namespace segorient::test
