@@ -1,12 +1,14 @@
 # SPDX-License-Identifier: BSD-3-Clause
 # Copyright (c) 2026, the segorient authors
-"""segorient.distributed against the program's own run, on two local workers, one of which dies."""
+"""segorient.distributed against the program's own run, on two local workers, one of which is killed."""
 
 import os
 import pathlib
+import signal
 import subprocess
 import sys
 import tempfile
+import threading
 import unittest
 
 try:
@@ -33,9 +35,14 @@ class Distributed(unittest.TestCase):
                 n_workers=2, threads_per_worker=1, dashboard_address=None, local_directory=name
             )
             with cluster, distributed.Client(cluster) as client:
+                # At some moment: what it was at is done again, by the other one or the next.
+                worker = next(iter(client.run(os.getpid).values()))
+                killer = threading.Timer(0.7, os.kill, [worker, signal.SIGKILL])
+                killer.start()
                 segorient.distributed.orient(
                     FANDISK, together, client=client, memory="1G", options=tiles[2:], program=PROGRAM
                 )
+                killer.join()
                 self.assertEqual(alone.read_bytes(), together.read_bytes())
                 self.assertFalse((scratch / "together.ply.work").exists())
                 with self.assertRaisesRegex(RuntimeError, "nowhere.ply"):
