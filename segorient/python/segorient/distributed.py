@@ -16,6 +16,7 @@ import os
 import pathlib
 import shutil
 import subprocess
+import time
 from typing import Any, List, Optional, Sequence, Union
 
 try:
@@ -31,13 +32,23 @@ __all__ = ["orient"]
 _Path = Union[str, "os.PathLike[str]"]
 
 
+# The step of a worker that was killed goes on without it and holds the folder; what it leaves is
+# what the repeated step would make.
+_PATIENCE = 3600.0  # seconds
+
+
 def _step(words: List[str]) -> str:
     """Runs one step on the worker; what it says on standard error is the exception."""
-    run = subprocess.run(words, stdin=subprocess.DEVNULL, capture_output=True, text=True, check=False)
-    if run.returncode != 0:
-        reason = run.stderr.strip() or f"ended with status {run.returncode}"
-        raise RuntimeError(reason)
-    return run.stdout
+    end = time.monotonic() + _PATIENCE
+    while True:
+        run = subprocess.run(
+            words, stdin=subprocess.DEVNULL, capture_output=True, text=True, check=False
+        )
+        if run.returncode == 0:
+            return run.stdout
+        if "is in use by another run" not in run.stderr or time.monotonic() > end:
+            raise RuntimeError(run.stderr.strip() or f"ended with status {run.returncode}")
+        time.sleep(1.0)
 
 
 def _absolute(path: _Path) -> str:
