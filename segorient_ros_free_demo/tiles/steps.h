@@ -35,8 +35,8 @@ JoinSummary joinStep(const Plan& plan, const std::string& folder, int threads);
 void writeStep(const Plan& plan, const std::string& folder, std::size_t output,
                const StepProgress& progress = {});
 
-/// Bytes that a step takes for each point of its tile (395 were measured), and for each patch in joining
-/// (180, and as much again for pieces and votes where the surface is rough); beside what
+/// Bytes that a step takes for each point of its tile (395 were measured), and for each patch in
+/// joining (180, and as much again for pieces and votes where the surface is rough); beside what
 /// the program takes anyway.
 constexpr std::uint64_t kBytesPerPoint = 450;
 constexpr std::uint64_t kBytesPerPatch = 1000;
