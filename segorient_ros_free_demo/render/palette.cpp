@@ -170,27 +170,29 @@ double Palette::confidence(std::size_t row) const {
   return value < 0.F ? NAN : static_cast<double>(value);
 }
 
-void Palette::setSides(std::size_t row, const std::array<float, 3>& normal, std::uint32_t& front,
-                       std::uint32_t& back) const {
-  front = kFront;
-  back = kBack;
-  if (coloring_ == Coloring::Orientation) {
-    const std::uint32_t label = labelOf(table_, label_, row);
-    const bool hard = label < facts_.segments.size() && facts_.segments[label].hard;
-    front = hard ? kHard : tinted(segmentColor(label));
-    back = hard ? kHardBack : kBack;
-  }
+// Where the sensor of a point is known, its true side is: the one that faces it.
+Side Palette::sideToSensor(std::size_t row, const std::array<float, 3>& normal, Side side) const {
   std::array<double, 3> sensor{};
-  if (!sensors_.at(row, sensor)) return;
+  if (!sensors_.at(row, sensor)) return side;
   const std::array<double, 3> at = table_.position(row);
   const std::array<double, 3> to{sensor[0] - at[0], sensor[1] - at[1], sensor[2] - at[2]};
   double facing = 0.0;
   for (std::size_t a = 0; a < 3; ++a) facing += to[a] * static_cast<double>(normal[a]);
-  if (facing < -kGrazing * std::hypot(to[0], to[1], to[2])) {
-    front = back = kBack;
-  } else {
-    back = kBehind;
+  return facing < -kGrazing * std::hypot(to[0], to[1], to[2]) ? Side::Contrary : Side::Outer;
+}
+
+void Palette::setSides(std::size_t row, Side side, std::uint32_t& front,
+                       std::uint32_t& back) const {
+  front = kFront;
+  back = kBehind;
+  std::uint32_t wrong = kBack;
+  if (coloring_ == Coloring::Orientation) {
+    const std::uint32_t label = labelOf(table_, label_, row);
+    const bool hard = label < facts_.segments.size() && facts_.segments[label].hard;
+    front = hard ? kHard : tinted(segmentColor(label));
+    if (hard) back = wrong = kHardBack;
   }
+  if (isWrong(side)) front = back = wrong;
 }
 
 std::uint32_t Palette::plain(std::size_t row) const {
@@ -204,15 +206,24 @@ std::uint32_t Palette::plain(std::size_t row) const {
   return packedColor(table_, *field_, row);
 }
 
-void Palette::set(std::size_t row, const std::array<float, 3>& normal, std::uint32_t& front,
-                  std::uint32_t& back) const {
+Side Palette::set(std::size_t row, const std::array<float, 3>& normal, Side side,
+                  std::uint32_t& front, std::uint32_t& back) const {
+  const bool none = !std::isfinite(normal[0]);
+  if (!none) side = sideToSensor(row, normal, side);
   if (coloring_ != Coloring::Normal && coloring_ != Coloring::Orientation) {
     front = back = plain(row);
-  } else if (!std::isfinite(normal[0])) {
+  } else if (none) {
     front = back = kNoNormal;
   } else {
-    setSides(row, normal, front, back);
+    setSides(row, side, front, back);
   }
+  return side;
+}
+
+void Palette::setTriangle(std::size_t row, const std::array<float, 3>& normal, std::uint32_t& front,
+                          std::uint32_t& back) const {
+  const Side side = set(row, normal, Side::Open, front, back);
+  if (side == Side::Open && back == kBehind) back = kBack;
 }
 
 Legend Palette::legend() const {

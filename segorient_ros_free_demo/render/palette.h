@@ -7,6 +7,7 @@
 
 #include "io/cloud_table.h"
 #include "render/legend.h"
+#include "render/page/sides.h"
 #include "support/report_facts.h"
 
 namespace segorient::program {
@@ -54,24 +55,25 @@ class PointSensors {
 /// The different places that the points were seen from, a sample of them where they are many.
 std::vector<std::array<double, 3>> sensorsOfPoints(const CloudTable& table);
 
-/// Colours of both sides of a point's splat.
-///
-/// Where the sensor of a point is known, its true side is: the normal of a point that is right
-/// faces it. Such points are light from there and brown from behind, and those whose normal faces
-/// away from their sensor are red from both sides.
+/// Colours of both sides of a point's splat: light where it is seen from its true side, brown from
+/// behind, and red from both sides where its normal points the wrong way.
 class Palette {
  public:
   /// \param facts must outlive this object, and so must the table
   Palette(const CloudTable& table, Coloring coloring, const Facts& facts);
   /// \param normal unit, NaN without one
-  void set(std::size_t row, const std::array<float, 3>& normal, std::uint32_t& front,
+  /// \return side, or what the sensor of the point says of it
+  Side set(std::size_t row, const std::array<float, 3>& normal, Side side, std::uint32_t& front,
            std::uint32_t& back) const;
+  /// Colours of a triangle: its back is red.
+  void setTriangle(std::size_t row, const std::array<float, 3>& normal, std::uint32_t& front,
+                   std::uint32_t& back) const;
   /// What the colours mean; empty where they mean nothing to be told.
   Legend legend() const;
 
  private:
-  void setSides(std::size_t row, const std::array<float, 3>& normal, std::uint32_t& front,
-                std::uint32_t& back) const;
+  Side sideToSensor(std::size_t row, const std::array<float, 3>& normal, Side side) const;
+  void setSides(std::size_t row, Side side, std::uint32_t& front, std::uint32_t& back) const;
   std::uint32_t plain(std::size_t row) const;
   double height(std::size_t row) const;
   double confidence(std::size_t row) const;

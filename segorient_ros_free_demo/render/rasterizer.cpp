@@ -89,6 +89,7 @@ class SplatDrawing {
       FlatSplat& f = flat_[static_cast<std::size_t>(i)];
       f.center = projection.point(s.position);
       f.normal = projection.direction(s.normal);
+      if (isWrong(s.side)) f.normal = {-f.normal[0], -f.normal[1], -f.normal[2]};
       if (!std::isfinite(dot(f.normal, f.normal))) f.normal = {0.F, 0.F, 1.F};
       f.radius = std::max(kLeastRadius, s.radius * projection.scale());
     }
@@ -100,7 +101,7 @@ class SplatDrawing {
     const auto bands = static_cast<std::size_t>((canvas.height() + kBand - 1) / kBand);
     std::vector<std::vector<std::uint32_t>> members(bands);
     for (std::size_t i = 0; i < splats_.size(); ++i) {
-      if (sides_[i] == Side::Hidden) continue;
+      if (sides_[i] == Seen::Hidden) continue;
       const FlatSplat& f = flat_[i];
       const auto rows = canvas.rows(f.center[1] - f.radius, f.center[1] + f.radius);
       for (int b = rows.begin / kBand; b * kBand < rows.end; ++b) {
@@ -122,7 +123,7 @@ class SplatDrawing {
     const FlatSplat& f = flat_[i];
     const Vec& c = f.center;
     const Vec& n = f.normal;
-    const auto color = shade(sides_[i] == Side::Front ? splats_[i].front : splats_[i].back, n);
+    const auto color = shade(sides_[i] == Seen::Front ? splats_[i].front : splats_[i].back, n);
     const float nz = std::copysign(std::max(std::abs(n[2]), kLeastSlope), n[2]);
     const float r = f.radius;
     const Cuts cuts(flat_, f, splats_[i]);
@@ -144,7 +145,7 @@ class SplatDrawing {
   const std::vector<Splat>& splats_;
   int threads_;
   std::vector<FlatSplat> flat_;
-  std::vector<Side> sides_;
+  std::vector<Seen> sides_;
 };
 
 void drawTriangle(const Scene& scene, std::size_t i, const Projection& projection, Canvas& canvas) {

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "io/cloud_table.h"
+#include "render/page/sides.h"
 #include "render/picture.h"
 
 namespace segorient::program {
@@ -21,8 +22,10 @@ struct Splat {
   float radius = 0.F;
   float turn =
       0.F;  ///< sine of the angle by which the surface turns from the middle to its neighbours
-  float noise = 0.F;        ///< how far the points around lie off its plane
-  std::uint32_t front = 0;  ///< packed rgb of the side that the normal points to
+  float noise = 0.F;  ///< how far the points around lie off its plane
+  Side side = Side::Open;
+  std::uint32_t front = 0;  ///< packed rgb of the true side: where the normal points, unless `side`
+                            ///< says that it is wrong
   std::uint32_t back = 0;
   /// Splats across sharp edges: the disc ends at their planes.
   std::array<std::uint32_t, kMostCutters> cutters{};

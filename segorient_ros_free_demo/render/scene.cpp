@@ -34,7 +34,7 @@ void addMesh(const CloudTable& table, const PointView& points, const Palette& pa
     const float length = std::hypot(normal[0], normal[1], normal[2]);
     const bool flat = length > 0.F && std::isfinite(length);
     for (float& v : normal) v = flat ? v / length : 0.F;
-    palette.set(t[0], normal, scene.front.emplace_back(), scene.back.emplace_back());
+    palette.setTriangle(t[0], normal, scene.front.emplace_back(), scene.back.emplace_back());
   }
   // Vertices of no triangle are not seen and shall not stretch the picture.
   std::vector<char> used(scene.vertices.size(), 0);
@@ -73,7 +73,7 @@ Scene makeScene(const CloudTable& table, const LocalPoints& points, const float*
 #pragma omp parallel for num_threads(resolveThreads(threads))
     for (std::ptrdiff_t i = 0; i < count; ++i) {
       Splat& s = scene.splats[static_cast<std::size_t>(i)];
-      palette.set(rows[static_cast<std::size_t>(i)], s.normal, s.front, s.back);
+      s.side = palette.set(rows[static_cast<std::size_t>(i)], s.normal, s.side, s.front, s.back);
     }
   }
   addMarkers(facts.sensors, Marker::Kind::Sensor, points, scene);

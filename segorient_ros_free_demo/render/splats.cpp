@@ -8,15 +8,13 @@
 #include <algorithm>
 #include <cmath>
 
+#include "render/page/disc_radii.h"
+
 namespace segorient::program {
 namespace {
 
-// With eight neighbours within its radius, three in ten thousand spots of a randomly sampled
-// surface stay open.
-constexpr int kCover = 8;
 // Of so many, those across an edge end the disc: nearly all discs that reach an edge have one.
 constexpr int kAround = 16;
-constexpr float kLargestSplat = 3.F;  // times the median: stray points stay small
 constexpr float kEdgeCosine = 0.82F;  // normals 35 degrees apart: an edge
 // The neighbours that turn least tell how the surface turns: along the edge of a face they are
 // those of the face, of a point on the edge itself, whose normal is between two faces', they are
@@ -27,25 +25,6 @@ using Vec = std::array<float, 3>;
 
 float dot(const Vec& a, const Vec& b) {
   return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
-// Radius of each row's splat: the distance of its eighth neighbour.
-std::vector<float> splatRadii(const Neighborhoods& neighborhoods) {
-  std::vector<float> radii(neighborhoods.size(), 0.F);
-  std::vector<float> known;
-  for (std::size_t i = 0; i < radii.size(); ++i) {
-    const int count = neighborhoods.count(i);
-    if (count < 2) continue;
-    const float radius = std::sqrt(neighborhoods.sqrDistances(i)[std::min(kCover, count - 1)]);
-    if (!std::isfinite(radius)) continue;  // its square overflows; a dot does
-    radii[i] = radius;
-    known.push_back(radius);
-  }
-  if (known.empty()) return radii;
-  const auto middle = known.begin() + static_cast<std::ptrdiff_t>(known.size() / 2);
-  std::nth_element(known.begin(), middle, known.end());
-  for (float& r : radii) r = std::min(r, kLargestSplat * *middle);
-  return radii;
 }
 
 // What the neighbours of a splat tell of the surface around. Signs of normals play no part.
@@ -87,6 +66,17 @@ void lookAround(const std::vector<Splat>& splats, const std::vector<std::int32_t
   s.turn = std::sqrt(std::max(0.F, 0.5F * (1.F - *at)));  // half way, where the discs meet
 }
 
+void setSides(const PointView& points, const Neighborhoods& neighborhoods,
+              const std::vector<float>& radii, float middle, int threads,
+              const std::vector<std::size_t>& rows, std::vector<Splat>& splats) {
+  std::vector<float> normals(3 * points.size, NAN);
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    std::copy_n(splats[i].normal.begin(), 3, &normals[3 * rows[i]]);
+  }
+  const std::vector<Side> sides = findSides(points, normals, neighborhoods, radii, middle, threads);
+  for (std::size_t i = 0; i < rows.size(); ++i) splats[i].side = sides[rows[i]];
+}
+
 }  // namespace
 
 std::array<float, 3> NormalSource::at(std::size_t row) const {
@@ -111,7 +101,8 @@ std::vector<Splat> makeSplats(const PointView& points, const NormalSource& norma
   Neighborhoods neighborhoods;
   index.nearestKAll(kAround + 1, neighborhoods);
 
-  const std::vector<float> radii = splatRadii(neighborhoods);
+  float middle = 0.F;
+  const std::vector<float> radii = discRadii(neighborhoods, middle);
   std::vector<std::int32_t> splat_of(points.size, -1);
   rows.clear();
   for (std::size_t i = 0; i < points.size; ++i) {
@@ -131,6 +122,7 @@ std::vector<Splat> makeSplats(const PointView& points, const NormalSource& norma
     s.radius = radii[row];
   }
   if (!normals.any()) return splats;
+  setSides(points, neighborhoods, radii, middle, threads, rows, splats);
 #pragma omp parallel for schedule(static, 4096) num_threads(workers)
   for (std::ptrdiff_t i = 0; i < count; ++i) {
     const std::size_t row = rows[static_cast<std::size_t>(i)];

@@ -128,7 +128,7 @@ float tolerance(const Splat& splat, const FlatSplat& flat, float scale) {
 // Returns the nearest that faces the viewer in each pixel, or kNone.
 std::vector<std::uint32_t> hideFarBehind(const std::vector<Splat>& splats,
                                          const std::vector<FlatSplat>& flat, const View& view,
-                                         float scale, std::vector<Side>& sides,
+                                         float scale, std::vector<Seen>& sides,
                                          std::vector<std::uint32_t>& backs) {
   std::vector<std::uint32_t> nearest(view.width * view.height, kNone);
   const auto pixelOf = [&](const Vec& c) {
@@ -137,7 +137,7 @@ std::vector<std::uint32_t> hideFarBehind(const std::vector<Splat>& splats,
     return static_cast<std::size_t>(y) * view.width + static_cast<std::size_t>(x);
   };
   for (std::size_t i = 0; i < flat.size(); ++i) {
-    if (sides[i] != Side::Front) continue;
+    if (sides[i] != Seen::Front) continue;
     std::uint32_t& first = nearest[pixelOf(flat[i].center)];
     if (first == kNone || flat[i].center[2] > flat[first].center[2]) {
       first = static_cast<std::uint32_t>(i);
@@ -150,7 +150,7 @@ std::vector<std::uint32_t> hideFarBehind(const std::vector<Splat>& splats,
     if (!(before > kFarBehind * std::max(reachOf(flat[q]), tolerance(splats[i], flat[i], scale)))) {
       return false;
     }
-    sides[i] = Side::Hidden;
+    sides[i] = Seen::Hidden;
     return true;
   };
   backs.erase(std::remove_if(backs.begin(), backs.end(), isHidden), backs.end());
@@ -159,13 +159,17 @@ std::vector<std::uint32_t> hideFarBehind(const std::vector<Splat>& splats,
 
 }  // namespace
 
-std::vector<Side> judgeSides(const std::vector<Splat>& splats, const std::vector<FlatSplat>& flat,
+std::vector<Seen> judgeSides(const std::vector<Splat>& splats, const std::vector<FlatSplat>& flat,
                              const View& view, float scale) {
-  std::vector<Side> sides(splats.size(), Side::Front);
+  std::vector<Seen> sides(splats.size(), Seen::Front);
   std::vector<std::uint32_t> backs;
   for (std::size_t i = 0; i < splats.size(); ++i) {
     if (flat[i].normal[2] >= 0.F) continue;
-    sides[i] = Side::Back;
+    if (isClosed(splats[i].side)) {
+      if (-flat[i].normal[2] >= splats[i].turn) sides[i] = Seen::Hidden;
+      continue;
+    }
+    sides[i] = Seen::Back;
     backs.push_back(static_cast<std::uint32_t>(i));
   }
   if (backs.empty()) return sides;
@@ -178,9 +182,9 @@ std::vector<Side> judgeSides(const std::vector<Splat>& splats, const std::vector
     const FlatSplat& p = flat[i];
     const float noise = tolerance(splats[i], p, scale);
     if (tiles.any(p.center, [&](std::uint32_t q) { return hides(flat[q], p, noise); })) {
-      sides[i] = Side::Hidden;
+      sides[i] = Seen::Hidden;
     } else if (-p.normal[2] < splats[i].turn) {
-      sides[i] = Side::Front;
+      sides[i] = Seen::Front;
     }
   }
   return sides;
