@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026, the segorient authors
 #include "commands/commands.h"
+
+#include <algorithm>
+
 #include "io/file_endings.h"
 #include "io/output_file.h"
 #include "io/readers.h"
@@ -67,13 +70,15 @@ int runRender(const std::vector<std::string>& words) {
   CommandLine line(
       "render IN OUT.png|OUT.html [options]",
       "OUT.png: a cloud as closed surfaces, from two opposite sides. Needs no screen.\n"
-      "Colours by normal: light where normals point to the viewer, red where they point\n"
-      "away, blue where there is none; a closed object that is right has no red. By\n"
-      "orientation: the same with a tint for each segment, and hard ones marked: those\n"
-      "that the report lists as decided by no method. Where fields vp_x, vp_y, vp_z say\n"
-      "where points were seen from, red are those whose normal faces away from there,\n"
-      "from both sides, and brown is the back of the others. A PLY with faces is drawn\n"
-      "as the mesh that it is.\n"
+      "Colours by normal: light is the side that normals point to, brown the other where\n"
+      "it may be seen, blue has no normal, and red is wrong: the normal points away from\n"
+      "the side that shows. Which that is, is found by where points can be seen from all\n"
+      "around; a closed object inside out is red all over. Of an open sheet either side\n"
+      "may be the right one: red there is only what contradicts nearly all around it.\n"
+      "Where fields vp_x, vp_y, vp_z say where points were seen from, they tell the right\n"
+      "side; a scan from inside a closed room needs them. By orientation: the same with a\n"
+      "tint for each segment, and hard ones marked: those that the report lists as decided\n"
+      "by no method. A PLY with faces is drawn as the mesh that it is, its backs red.\n"
       "OUT.html: one file that any browser with WebGL 2 shows, to turn, cut and pick.",
       "segorient render oriented.pcd oriented.png --color normal");
   View view;
@@ -118,7 +123,9 @@ int runRender(const std::vector<std::string>& words) {
   const Scene scene = makeScene(table, points, nullptr, coloring, common.threads, facts);
   view.threads = common.threads;
   Picture picture = drawViews(scene, view, !single);
-  drawLegend(Palette(table, coloring, facts).legend(), picture);
+  const bool backs = std::any_of(scene.splats.begin(), scene.splats.end(),
+                                 [](const Splat& s) { return !isClosed(s.side); });
+  drawLegend(Palette(table, coloring, facts).legend(backs), picture);
   writePng(picture, out);
   out.commit();
   return 0;

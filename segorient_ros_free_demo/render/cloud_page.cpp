@@ -50,14 +50,20 @@ PageCloud pageCloud(const CloudTable& table, const LocalPoints& points, const Fa
   cloud.origin = points.origin();
   if (table.hasNormals()) {
     const NormalSource normals(table, nullptr);
+    const PointSensors sensors(table);
     cloud.normals.reserve(3 * table.size);
     for (std::size_t i = 0; i < table.size; ++i) {
       const auto n = normals.at(i);
       cloud.normals.insert(cloud.normals.end(), n.begin(), n.end());
+      if (sensors.any()) cloud.sides.push_back(sensors.side(i, n, Side::Open));
     }
   }
   addLabels(table, cloud);
   addColors(table, cloud);
+  if (const Field* field = scanField(table)) {
+    cloud.scans.resize(table.size);
+    for (std::size_t i = 0; i < table.size; ++i) cloud.scans[i] = labelOf(table, field, i);
+  }
   if (const Field* field = table.find("confidence")) {
     cloud.confidences.resize(table.size);
     for (std::size_t i = 0; i < table.size; ++i) {

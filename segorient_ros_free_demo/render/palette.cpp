@@ -89,6 +89,16 @@ bool PointSensors::at(std::size_t row, std::array<double, 3>& place) const {
   return std::isfinite(place[0]) && std::isfinite(place[1]) && std::isfinite(place[2]);
 }
 
+Side PointSensors::side(std::size_t row, const std::array<float, 3>& normal, Side side) const {
+  std::array<double, 3> sensor{};
+  if (!std::isfinite(normal[0]) || !at(row, sensor)) return side;
+  const std::array<double, 3> from = table_.position(row);
+  const std::array<double, 3> to{sensor[0] - from[0], sensor[1] - from[1], sensor[2] - from[2]};
+  double facing = 0.0;
+  for (std::size_t a = 0; a < 3; ++a) facing += to[a] * static_cast<double>(normal[a]);
+  return facing < -kGrazing * std::hypot(to[0], to[1], to[2]) ? Side::Contrary : Side::Outer;
+}
+
 std::vector<std::array<double, 3>> sensorsOfPoints(const CloudTable& table) {
   const PointSensors sensors(table);
   std::set<std::array<double, 3>> places;
@@ -170,17 +180,6 @@ double Palette::confidence(std::size_t row) const {
   return value < 0.F ? NAN : static_cast<double>(value);
 }
 
-// Where the sensor of a point is known, its true side is: the one that faces it.
-Side Palette::sideToSensor(std::size_t row, const std::array<float, 3>& normal, Side side) const {
-  std::array<double, 3> sensor{};
-  if (!sensors_.at(row, sensor)) return side;
-  const std::array<double, 3> at = table_.position(row);
-  const std::array<double, 3> to{sensor[0] - at[0], sensor[1] - at[1], sensor[2] - at[2]};
-  double facing = 0.0;
-  for (std::size_t a = 0; a < 3; ++a) facing += to[a] * static_cast<double>(normal[a]);
-  return facing < -kGrazing * std::hypot(to[0], to[1], to[2]) ? Side::Contrary : Side::Outer;
-}
-
 void Palette::setSides(std::size_t row, Side side, std::uint32_t& front,
                        std::uint32_t& back) const {
   front = kFront;
@@ -209,7 +208,7 @@ std::uint32_t Palette::plain(std::size_t row) const {
 Side Palette::set(std::size_t row, const std::array<float, 3>& normal, Side side,
                   std::uint32_t& front, std::uint32_t& back) const {
   const bool none = !std::isfinite(normal[0]);
-  if (!none) side = sideToSensor(row, normal, side);
+  side = sensors_.side(row, normal, side);
   if (coloring_ != Coloring::Normal && coloring_ != Coloring::Orientation) {
     front = back = plain(row);
   } else if (none) {
@@ -226,7 +225,7 @@ void Palette::setTriangle(std::size_t row, const std::array<float, 3>& normal, s
   if (side == Side::Open && back == kBehind) back = kBack;
 }
 
-Legend Palette::legend() const {
+Legend Palette::legend(bool backs) const {
   Legend legend;
   if (coloring_ == Coloring::Height && low_ <= high_) {
     legend = {"height (z)", shortNumber(low_), shortNumber(high_), {}};
@@ -245,9 +244,12 @@ Legend Palette::legend() const {
                                scans[i] == kNoSegment ? "none" : std::to_string(scans[i]));
     }
     if (scans.size() > kMostKeys) legend.keys.emplace_back(0xffffffU, "...");
-  } else if (sensors_.any() &&
-             (coloring_ == Coloring::Normal || coloring_ == Coloring::Orientation)) {
-    legend.keys = {{kFront, "faces its sensor"}, {kBehind, "from behind"}};
+  } else if (coloring_ == Coloring::Normal || coloring_ == Coloring::Orientation) {
+    if (sensors_.any()) {
+      legend.keys = {{kFront, "faces its sensor"}, {kBehind, "from behind"}};
+    } else if (backs && table_.hasNormals()) {
+      legend.keys = {{kFront, "front"}, {kBehind, "from behind"}};
+    }
   }
   return legend;
 }

@@ -46,6 +46,8 @@ class PointSensors {
   bool any() const { return fields_[2] != nullptr; }
   /// False where it is not known.
   bool at(std::size_t row, std::array<double, 3>& place) const;
+  /// The side of a point whose sensor is known: its true one faces it. `side` where it is not.
+  Side side(std::size_t row, const std::array<float, 3>& normal, Side side) const;
 
  private:
   const CloudTable& table_;
@@ -69,10 +71,10 @@ class Palette {
   void setTriangle(std::size_t row, const std::array<float, 3>& normal, std::uint32_t& front,
                    std::uint32_t& back) const;
   /// What the colours mean; empty where they mean nothing to be told.
-  Legend legend() const;
+  /// \param backs whether backs may be seen
+  Legend legend(bool backs = false) const;
 
  private:
-  Side sideToSensor(std::size_t row, const std::array<float, 3>& normal, Side side) const;
   void setSides(std::size_t row, Side side, std::uint32_t& front, std::uint32_t& back) const;
   std::uint32_t plain(std::size_t row) const;
   double height(std::size_t row) const;

@@ -109,6 +109,16 @@ class PageTest(unittest.TestCase):
         run("render", cls.at / "turned.ply", cls.at / "turned.html", "--sensors", cls.at / "sensors.xyz")
         ball(cls.at / "colored.ply", 2, colors=True)
         run("render", cls.at / "colored.ply", cls.at / "colored.html", "--points", "2000")
+        chance = random.Random(4)
+        lines = []
+        for i in range(3000):
+            p = [chance.gauss(0, 1) for _ in range(3)]
+            p = [v / math.hypot(*p) for v in p]
+            lines.append(" ".join(f"{v:.5f}" for v in p + p) + f" {i % 2}")
+        (cls.at / "scans.txt").write_text("x y z normal_x normal_y normal_z scan\n" + "\n".join(lines) + "\n")
+        run("render", cls.at / "scans.txt", cls.at / "scans.html")
+        (cls.at / "large.xyz").write_text("".join(f"{i % 300} {i // 300} {chance.random():.3f}\n" for i in range(60000)))
+        run("render", cls.at / "large.xyz", cls.at / "large.html")
         cls.browser = browser.Browser(WIDTH, HEIGHT)
 
     @classmethod
@@ -213,13 +223,37 @@ class PageTest(unittest.TestCase):
         self.browser.click(WIDTH / 2, HEIGHT / 2)
         facts = dict(self.run_js("[...document.querySelectorAll('#picked dt')].map((t) => [t.textContent,"
                                  " t.nextSibling.textContent])"))
-        self.assertEqual(list(facts), ["point", "normal", "segment", "decided", "confidence"])
+        self.assertEqual(list(facts), ["point", "normal", "segment", "decided", "side", "confidence"])
         self.assertIn("by global", facts["decided"])
         normal = [float(v) for v in facts["normal"].split(",")]
         self.assertAlmostEqual(math.hypot(*normal), 1, delta=0.01)
         self.assertGreaterEqual(float(facts["confidence"]), 0)
         self.browser.click(3, HEIGHT - 3)  # beside the cloud
         self.assertEqual(self.run_js("document.getElementById('picked').textContent"), "")
+
+    def test_scans_have_colours_and_sides_are_told(self):
+        self.load("scans.html")
+        self.assertEqual(self.run_js("[...document.getElementById('coloring').options].map((o) => o.value)"),
+                         ["orientation", "normal", "scan", "height"])
+        self.browser.click(WIDTH / 2, HEIGHT / 2)
+        told = "Object.fromEntries([...document.querySelectorAll('#picked dt')].map((t) => [t.textContent, t.nextSibling.textContent]))"
+        facts = self.run_js(told)
+        self.assertIn(facts["scan"], ("0", "1"))
+        self.assertEqual(facts["side"], "outside")
+        before = self.pixels()["sum"]
+        self.run_js("segorient.color('scan')")
+        self.assertNotEqual(self.pixels()["sum"], before)
+        self.load("turned.html")
+        self.run_js("segorient.camera.turn(0, 90)")  # from above, where normals point inward
+        self.run_js("segorient.pick(320, 200)")
+        self.assertEqual(self.run_js(told)["side"], "wrong")
+
+    def test_the_first_points_come_before_the_others(self):
+        self.load("large.html")
+        self.run_js("new Promise((done) => setTimeout(done, 1500))")
+        self.assertEqual(self.run_js("segorient.cloud.loaded"), 60000)
+        self.assertEqual(self.run_js("segorient.cloud.points"), 60000)
+        self.assertEqual(self.run_js("segorient.drawing.cloud === segorient.cloud"), True)
 
     def test_sensors_are_marked(self):
         self.load("turned.html")

@@ -2,12 +2,15 @@
 // Copyright (c) 2026, the segorient authors
 // A cloud that is right has no red in any picture, and a face that is turned over is red.
 #include <gtest/gtest.h>
+#include <segorient/search/median_hash_index.h>
 
 #include <cmath>
 #include <random>
 
 #include "io/readers.h"
 #include "render/legend.h"
+#include "render/page/disc_radii.h"
+#include "render/page/sides.h"
 #include "render/page/thinning.h"
 #include "render/scene.h"
 #include "scratch_directory.h"
@@ -175,6 +178,83 @@ TEST(Pictures, KnownSensorsTellTheTrueSide) {
     EXPECT_EQ(redPixels(draw(sheet(1.0), 0.0, elevation)), 0U);
     EXPECT_GT(redPixels(draw(sheet(-1.0), 0.0, elevation)), 20000U);
   }
+}
+
+bool isBrown(const std::uint8_t* p) {
+  return p[0] > p[2] + 12 && !isRed(p) && p[0] < 190;
+}
+
+// Of an open sheet either side may be seen, and neither is wrong; a point that contradicts all
+// around it is.
+TEST(Pictures, AnOpenSheetHasABackButNoWrongSide) {
+  const ScratchDirectory directory;
+  std::mt19937 random(8);
+  std::uniform_real_distribution<double> unit(-1.0, 1.0);
+  std::vector<Vertex> sheet;
+  for (int i = 0; i < 4000; ++i) sheet.push_back({{unit(random), unit(random), 0}, {0, 0, 1}});
+  const auto count = [&](double elevation, bool red) {
+    const Picture picture = draw(tableOf(directory, sheet), 0.0, elevation);
+    std::size_t found = 0;
+    for (std::size_t i = 0; i < picture.rgb.size(); i += 3) {
+      found += (red ? isRed(&picture.rgb[i]) : isBrown(&picture.rgb[i])) ? 1U : 0U;
+    }
+    return found;
+  };
+  EXPECT_EQ(count(60.0, true) + count(-60.0, true), 0U);
+  EXPECT_EQ(count(60.0, false), 0U);
+  EXPECT_GT(count(-60.0, false), 30000U);
+  sheet[0].n[2] = -1.0;
+  EXPECT_GT(count(60.0, true), 4U);  // its share among the discs around
+  EXPECT_GT(count(-60.0, true), 4U);
+}
+
+TEST(Pictures, AnObjectInsideOutIsRedAllOver) {
+  const ScratchDirectory directory;
+  std::vector<Vertex> points = box(6000, 0.002);
+  for (Vertex& v : points) {
+    for (double& n : v.n) n = -n;
+  }
+  const Picture picture = draw(tableOf(directory, points), 35.0, 25.0);
+  std::size_t drawn = 0;
+  for (std::size_t i = 0; i < picture.rgb.size(); i += 3) {
+    drawn += picture.rgb[i + 1] < 250 ? 1U : 0U;
+  }
+  EXPECT_GT(redPixels(picture), drawn * 95 / 100);
+}
+
+TEST(Sides, DoNotDependOnThreadsNorOnTheOrderOfRows) {
+  const std::vector<Vertex> points = box(5000, 0.003);
+  const auto sides = [&](bool reversed, int threads) {
+    std::vector<float> rows;
+    std::vector<float> normals;
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      const Vertex& v = points[reversed ? points.size() - 1 - i : i];
+      for (const double p : v.p) rows.push_back(static_cast<float>(p));
+      const double sign = v.p[0] > 0.5 ? -1.0 : 1.0;
+      for (const double n : v.n) normals.push_back(static_cast<float>(sign * n));
+    }
+    PointView view;
+    view.data = rows.data();
+    view.stride = 3;
+    view.size = points.size();
+    search::MedianHashIndex index;
+    index.build(view, nullptr, {});
+    Neighborhoods neighborhoods;
+    index.nearestKAll(17, neighborhoods);
+    float middle = 0.F;
+    const auto radii = program::discRadii(neighborhoods, middle);
+    auto found = program::findSides(view, normals, neighborhoods, radii, middle, threads);
+    if (reversed) std::reverse(found.begin(), found.end());
+    return found;
+  };
+  const auto expected = sides(false, 1);
+  EXPECT_EQ(sides(false, 3), expected);
+  EXPECT_EQ(sides(true, 2), expected);
+  std::size_t right = 0;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    right += program::isWrong(expected[i]) == (points[i].p[0] > 0.5) ? 1U : 0U;
+  }
+  EXPECT_GT(right, points.size() * 99 / 100);
 }
 
 TEST(Pictures, HeightsAreDarkBelowAndLightAboveAndTheLegendSaysSo) {

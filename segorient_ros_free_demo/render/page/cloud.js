@@ -2,15 +2,14 @@
 // Copyright (c) 2026, the segorient authors
 // The cloud in the page: arrays as the page writer packed them, and colours by what is wanted.
 
-const FRONT = 0xe6e2d8, BACK = 0xd03020, NONE = 0x3060c0, GREY = 0x909090;
+// As in the program: the true side, the wrong one, the true one from behind, and no normal.
+const FRONT = 0xe6e2d8, WRONG = 0xd03020, BEHIND = 0x94836c, NONE = 0x3060c0, GREY = 0x909090;
 const RAMP = [[48, 37, 107], [43, 122, 155], [88, 179, 104], [242, 227, 90]];
 
-function decode(name) {  // five letters are four bytes
-  const element = document.getElementById(name);
-  if (!element) return null;
-  const text = element.textContent;
-  element.remove();  // its text is as large as the array
-  const words = new Uint32Array(text.length / 5);
+function decode(name, bytes) {  // the first bytes of an array, or null; five letters are four bytes
+  const text = document.getElementById(name)?.textContent;
+  if (!text) return null;
+  const words = new Uint32Array(Math.ceil(bytes / 4));
   for (let i = 0, at = 0; i < words.length; ++i) {
     let word = 0;
     for (let c = 0; c < 5; ++c) {
@@ -37,19 +36,21 @@ function mix(color, other) {  // one part of the first and three of the other
 }
 
 class Cloud {
-  constructor() {
+  constructor(most) {  // with the first points only: they are spread evenly
     Object.assign(this, JSON.parse(document.getElementById("head").textContent));
-    const n = this.points;
-    const array = (name, Type, length) => {
-      const buffer = decode(name);
-      return buffer && new Type(buffer, 0, length);
+    const n = this.loaded = Math.min(most, this.points);
+    const array = (name, Type, size) => {
+      const buffer = Type && decode(name, n * size * Type.BYTES_PER_ELEMENT);
+      return buffer ? new Type(buffer, 0, n * size) : null;
     };
-    this.positions = array("positions", Uint16Array, 3 * n);
-    this.normals = array("normals", Int8Array, 2 * n);
-    const Label = {1: Uint8Array, 2: Uint16Array, 4: Uint32Array}[this.labelBytes];
-    this.labels = Label ? array("labels", Label, n) : null;
-    this.confidences = array("confidences", Uint8Array, n);
-    this.colors = array("colors", Uint16Array, n);
+    const whole = {1: Uint8Array, 2: Uint16Array, 4: Uint32Array};
+    this.positions = array("positions", Uint16Array, 3);
+    this.normals = array("normals", Int8Array, 2);
+    this.sides = array("sides", Uint8Array, 1);
+    this.labels = array("labels", whole[this.labelBytes], 1);
+    this.scanOf = array("scans", whole[this.scanBytes], 1);
+    this.confidences = array("confidences", Uint8Array, 1);
+    this.colors = array("colors", Uint16Array, 1);
     for (const segment of this.segments) segment.tint = mix(segment.color, FRONT);
     this.ramps = Array.from({length: 256}, (_, i) => ramp(i / 255));
   }
@@ -62,6 +63,7 @@ class Cloud {
       ["normal", "direction of normals", this.normals],
       ["confidence", "confidence", this.confidences || known],
       ["rgb", "the input's colours", this.colors],
+      ["scan", "scan", this.scanOf],
       ["height", "height", true],
     ].filter((c) => c[2]).map((c) => c.slice(0, 2));
   }
@@ -77,11 +79,9 @@ class Cloud {
 
   box() {  // lower and upper corner in the cube
     const low = [65535, 65535, 65535], high = [0, 0, 0], p = this.positions;
-    for (let i = 0; i < p.length; i += 3) {
-      for (let k = 0; k < 3; ++k) {
-        if (p[i + k] < low[k]) low[k] = p[i + k];
-        if (p[i + k] > high[k]) high[k] = p[i + k];
-      }
+    for (let i = 0; i < p.length; ++i) {
+      if (p[i] < low[i % 3]) low[i % 3] = p[i];
+      if (p[i] > high[i % 3]) high[i % 3] = p[i];
     }
     this.height = [low[2], Math.max(1, high[2] - low[2])];
     return [low, high].map((corner) => corner.map((v) => v / 65535));
@@ -98,6 +98,7 @@ class Cloud {
 
   colorOf(coloring, i) {  // packed rgb of the side that is seen, of the front in "orientation"
     if (coloring === "segment") return this.segments[this.labels[i]].color;
+    if (coloring === "scan") return this.scans[this.scanOf[i]].color;
     if (coloring === "rgb") {
       const c = this.colors[i];
       return (c >> 11) * 255 / 31 << 16 | (c >> 5 & 63) * 255 / 63 << 8 | (c & 31) * 255 / 31;
@@ -111,15 +112,14 @@ class Cloud {
     return this.normal(i).reduce((rgb, v) => rgb << 8 | Math.round(127.5 * (1 + v)), 0);
   }
 
-  paint(coloring) {  // four bytes a point; the last: 1 where the back is red
-    const out = new Uint8Array(4 * this.points);
-    const sided = coloring === "orientation";
-    for (let i = 0; i < this.points; ++i) {
+  paint(coloring) {  // four bytes a point; the last is its side
+    const out = new Uint8Array(4 * this.loaded);
+    for (let i = 0; i < this.loaded; ++i) {
       const c = this.colorOf(coloring, i);
       out[4 * i] = c >> 16;
       out[4 * i + 1] = c >> 8;
       out[4 * i + 2] = c;
-      out[4 * i + 3] = sided && this.normals[2 * i] !== -128 ? 255 : 0;
+      out[4 * i + 3] = this.sides ? this.sides[i] : 0;
     }
     return out;
   }

@@ -22,36 +22,35 @@ vec3 direction(vec2 packed) {
 const POINT = `${COMMON}
 in vec3 position;
 in vec2 normal;
-in vec4 color;
+in vec4 color;          // and the side, see sides.h: 0 open, 1 outer, 2 right, 3 contrary, 4 wrong
 uniform float radius;   // of discs, in the cube
 uniform float pixels;   // for the cube's side
 uniform bool numbers;
-uniform int part;       // 0 all, 1 without backs, 2 a shield before the backs, 3 the backs
+uniform bool sided;     // colours tell sides
 out vec3 shown;
-flat out vec3 across;   // the normal as seen
+flat out vec3 across;   // the true normal as seen
 flat out float size;
 void main() {
   gl_Position = place(position);
+  int side = int(color.a * 255.0 + 0.5);
   vec3 n = direction(normal / 127.0) * axes;
-  bool none = dot(n, n) == 0.0;
-  across = none ? vec3(0.0, 0.0, 1.0) : n;
-  // Nearly from the edge either side may be seen.
-  bool back = color.a > 0.5 && across.z < -0.15;
+  bool wrong = side > 2;
+  across = n == vec3(0.0) ? vec3(0.0, 0.0, 1.0) : wrong ? -n : n;
+  // Nearly from the edge either side may be seen. The back of a closed surface is not, unless it is cut.
+  bool back = across.z < -0.15;
+  bool closed = side == 2 || side == 4;
   size = radius * (back ? 0.75 : 1.0);
-  // A disc that is seen from behind may stick out from behind what hides its point, or be seen through
-  // a gap there. So the backs come last, and behind spots without colour for all that faces the viewer.
-  if (part == 2) gl_Position.z += 0.25 * radius / max(across.z, 0.5);
-  if (part == 3) gl_Position.z += 0.25 * 3.0 * radius;
   gl_PointSize = max(2.0, 2.0 * size * pixels);
-  vec3 base = back ? vec3(208.0, 48.0, 32.0) / 255.0 : color.rgb;
+  vec3 base = !sided ? color.rgb : wrong ? vec3(208.0, 48.0, 32.0) / 255.0
+    : back ? vec3(148.0, 131.0, 108.0) / 255.0 : color.rgb;
   const vec3 light = normalize(vec3(-0.35, 0.45, 1.0));
   shown = base * (0.45 + 0.55 * abs(dot(across, light)));
   if (numbers) {
     int id = gl_VertexID + 1;
     shown = vec3(float(id & 255), float(id >> 8 & 255), float(id >> 16 & 255)) / 255.0;
   }
-  bool left = part == 1 ? back : part == 2 ? none || across.z < 0.02 : part == 3 && !back;
-  if (left || dot(cut.xyz, position) > cut.w) gl_Position = vec4(2.0, 2.0, 2.0, 1.0);
+  bool hidden = back && closed && cut.w >= 2.0;
+  if (hidden || dot(cut.xyz, position) > cut.w) gl_Position = vec4(2.0, 2.0, 2.0, 1.0);
 }`;
 const DISC = `#version 300 es
 precision highp float;
@@ -98,20 +97,14 @@ const STROKES = 20000;  // more would hide each other; the first points are spre
 class Drawing {
   constructor(canvas, cloud) {
     this.canvas = canvas;
-    this.cloud = cloud;
-    const gl = canvas.getContext("webgl2", {antialias: true, preserveDrawingBuffer: true});
+    const gl = canvas.getContext("webgl2", {antialias: false, preserveDrawingBuffer: true});
     if (!gl) throw new Error("no WebGL 2");
     this.gl = gl;
     this.discs = this.program(POINT, DISC);
     this.squares = this.program(POINT, SQUARE);
     this.lines = this.program(STROKE, SQUARE);
     this.marks = this.program(MARK, SQUARE);
-    const positions = this.buffer(cloud.positions);
-    const normals = this.buffer(cloud.normals || new Int8Array(2 * cloud.points).fill(-128));
-    this.colors = this.buffer(new Uint8Array(4 * cloud.points));
-    this.points = this.arrays([[0, positions, 3, gl.UNSIGNED_SHORT, true, 0],
-      [1, normals, 2, gl.BYTE, false, 0], [2, this.colors, 4, gl.UNSIGNED_BYTE, true, 0]]);
-    this.strokes = this.arrays([[0, positions, 3, gl.UNSIGNED_SHORT, true, 1], [1, normals, 2, gl.BYTE, false, 1]]);
+    this.load(cloud);
     const places = [...cloud.sensors.map((s) => [s, [20, 90, 220, 255]]),
       ...cloud.contradictions.map((s) => [s, [190, 0, 150, 255]])];
     this.marked = places.length;
@@ -119,6 +112,16 @@ class Drawing {
       [0, this.buffer(new Float32Array(places.flatMap(([s]) => [s.x, s.y, s.z]))), 3, gl.FLOAT, false, 0],
       [2, this.buffer(new Uint8Array(places.flatMap((p) => p[1]))), 4, gl.UNSIGNED_BYTE, true, 0]]);
     gl.enable(gl.DEPTH_TEST);
+  }
+
+  load(cloud) {
+    const gl = this.gl, positions = this.buffer(cloud.positions);
+    const normals = this.buffer(cloud.normals || new Int8Array(2 * cloud.loaded).fill(-128));
+    this.cloud = cloud;
+    this.colors = this.buffer(new Uint8Array(4 * cloud.loaded));
+    this.points = this.arrays([[0, positions, 3, gl.UNSIGNED_SHORT, true, 0],
+      [1, normals, 2, gl.BYTE, false, 0], [2, this.colors, 4, gl.UNSIGNED_BYTE, true, 0]]);
+    this.strokes = this.arrays([[0, positions, 3, gl.UNSIGNED_SHORT, true, 1], [1, normals, 2, gl.BYTE, false, 1]]);
   }
 
   program(vertex, fragment) {
@@ -181,26 +184,20 @@ class Drawing {
 
   // fine: all points as discs; else `count` of them as squares, for pictures that move.
   draw(camera, {cut, fine, count, sided, strokes, marks, numbers}) {
-    const gl = this.gl, cloud = this.cloud, all = cloud.points;
-    const n = fine ? all : Math.min(count, all);
+    const gl = this.gl, cloud = this.cloud, n = fine ? cloud.loaded : Math.min(count, cloud.loaded);
     // Fewer points stand for more surface each. Squares cover with less.
-    const radius = cloud.radius * Math.sqrt(all / Math.max(1, n)) * (fine ? 1.1 : 0.55);
+    const radius = this.spacing(n) * (fine ? 1.1 : 0.55), program = fine ? this.discs : this.squares;
     gl.viewport(0, 0, this.canvas.width, this.canvas.height);
     if (numbers) gl.clearColor(0, 0, 0, 0); else gl.clearColor(1, 1, 1, 1);
     gl.clear(gl.COLOR_BUFFER_BIT | gl.DEPTH_BUFFER_BIT);
     gl.bindVertexArray(this.points);
-    // [part, program]
-    const discs = fine ? this.discs : this.squares;
-    for (const [part, program] of sided ? [[1, discs], [2, this.squares], [3, discs]] : [[0, discs]]) {
-      this.use(program, camera, cut, radius, numbers);
-      gl.uniform1i(program.places.part, part);
-      gl.colorMask(part !== 2, part !== 2, part !== 2, part !== 2);
-      gl.drawArrays(gl.POINTS, 0, n);
-    }
+    this.use(program, camera, cut, radius, numbers);
+    gl.uniform1i(program.places.sided, sided ? 1 : 0);
+    gl.drawArrays(gl.POINTS, 0, n);
     if (numbers) return;
     if (strokes && cloud.normals) {
-      const shown = Math.min(STROKES, all);
-      this.use(this.lines, camera, cut, cloud.radius * Math.sqrt(all / shown));
+      const shown = Math.min(STROKES, cloud.loaded);
+      this.use(this.lines, camera, cut, this.spacing(shown));
       gl.bindVertexArray(this.strokes);
       gl.drawArraysInstanced(gl.LINES, 0, 2, shown);
     }
@@ -211,26 +208,18 @@ class Drawing {
     }
   }
 
-  // The point that is seen at a pixel from the top left, or -1.
+  spacing(count) {  // radius of discs if so many points stand for the surface
+    return this.cloud.radius * Math.sqrt(this.cloud.points / Math.max(1, count));
+  }
+
+  // The point that is seen at a pixel from the top left, or -1. Leaves its number in the picture.
   pick(camera, options, x, y) {
-    const gl = this.gl, {width, height} = this.canvas, pixel = new Uint8Array(4);
-    if (!this.picking) {
-      this.picking = {frame: gl.createFramebuffer(), color: gl.createRenderbuffer(), depth: gl.createRenderbuffer()};
-    }
-    const {frame, color, depth} = this.picking;
-    gl.bindFramebuffer(gl.FRAMEBUFFER, frame);
-    for (const [buffer, format, at] of [[color, gl.RGBA8, gl.COLOR_ATTACHMENT0],
-      [depth, gl.DEPTH_COMPONENT24, gl.DEPTH_ATTACHMENT]]) {
-      gl.bindRenderbuffer(gl.RENDERBUFFER, buffer);
-      gl.renderbufferStorage(gl.RENDERBUFFER, format, width, height);
-      gl.framebufferRenderbuffer(gl.FRAMEBUFFER, at, gl.RENDERBUFFER, buffer);
-    }
+    const gl = this.gl, pixel = new Uint8Array(4), up = this.canvas.height - 1 - y;
     gl.enable(gl.SCISSOR_TEST);
-    gl.scissor(x, height - 1 - y, 1, 1);
+    gl.scissor(x, up, 1, 1);
     this.draw(camera, {...options, fine: true, numbers: true});
     gl.disable(gl.SCISSOR_TEST);
-    gl.readPixels(x, height - 1 - y, 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, pixel);
-    gl.bindFramebuffer(gl.FRAMEBUFFER, null);
+    gl.readPixels(x, up, 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, pixel);
     return (pixel[0] | pixel[1] << 8 | pixel[2] << 16) - 1;
   }
 }

@@ -10,6 +10,7 @@
 #include <map>
 
 #include "page_files.h"
+#include "render/page/disc_radii.h"
 #include "render/page/thinning.h"
 #include "support/colors.h"
 #include "support/json.h"
@@ -17,7 +18,7 @@
 namespace segorient::program {
 namespace {
 
-constexpr int kCover = 8;  // neighbours within a disc, as in pictures
+constexpr int kAround = 16;  // neighbours, as in pictures
 constexpr double kSteps = 65535.0;
 
 using Bytes = std::vector<std::uint8_t>;
@@ -83,32 +84,64 @@ Cube cubeOf(const PointView& points, const std::vector<std::uint32_t>& rows) {
   return cube;
 }
 
-// Middle distance of the eighth neighbour among the points shown.
-double discRadius(const PointView& points, const std::vector<std::uint32_t>& rows, int threads) {
-  std::vector<float> shown;
-  shown.reserve(3 * rows.size());
-  for (const std::uint32_t row : rows) shown.insert(shown.end(), points[row], points[row] + 3);
-  PointView view;
-  view.data = shown.data();
-  view.stride = 3;
-  view.size = rows.size();
-  search::MedianHashIndex index;
-  search::MedianHashIndex::Options options;
-  options.threads = threads;
-  index.build(view, nullptr, options);
-  Neighborhoods neighborhoods;
-  index.nearestKAll(kCover + 1, neighborhoods);
-  std::vector<float> radii;
-  for (std::size_t i = 0; i < neighborhoods.size(); ++i) {
-    const int count = neighborhoods.count(i);
-    const float radius = count < 2 ? NAN : std::sqrt(neighborhoods.sqrDistances(i)[count - 1]);
-    if (std::isfinite(radius) && radius > 0.F) radii.push_back(radius);
+// What the points shown tell of each other: the size of discs, and sides.
+struct Surroundings {
+  double radius = 0.0;
+  std::vector<Side> sides;  // empty without normals
+
+  Surroundings(const PageCloud& cloud, const std::vector<std::uint32_t>& rows, int threads) {
+    std::vector<float> shown;
+    std::vector<float> normals;
+    shown.reserve(3 * rows.size());
+    for (const std::uint32_t row : rows) {
+      shown.insert(shown.end(), cloud.points[row], cloud.points[row] + 3);
+      if (cloud.normals.empty()) continue;
+      const float* n = &cloud.normals[3 * std::size_t{row}];
+      const float length = std::hypot(n[0], n[1], n[2]);
+      for (int a = 0; a < 3; ++a) normals.push_back(n[a] / length);
+    }
+    PointView view;
+    view.data = shown.data();
+    view.stride = 3;
+    view.size = rows.size();
+    search::MedianHashIndex index;
+    search::MedianHashIndex::Options options;
+    options.threads = threads;
+    index.build(view, nullptr, options);
+    Neighborhoods neighborhoods;
+    index.nearestKAll(kAround + 1, neighborhoods);
+    float middle = 0.F;
+    const std::vector<float> radii = discRadii(neighborhoods, middle);
+    radius = static_cast<double>(middle);
+    if (normals.empty()) return;
+    sides = findSides(view, normals, neighborhoods, radii, middle, threads);
+    for (std::size_t i = 0; i < sides.size() && !cloud.sides.empty(); ++i) {
+      const Side told = cloud.sides[rows[i]];
+      if (told != Side::Open) sides[i] = told;
+    }
   }
-  if (radii.empty()) return 0.0;
-  const auto middle = radii.begin() + static_cast<std::ptrdiff_t>(radii.size() / 2);
-  std::nth_element(radii.begin(), middle, radii.end());
-  return static_cast<double>(*middle);
-}
+};
+
+// Numbers that points have, each once, and where it stands in the table of them.
+class Numbering {
+ public:
+  Numbering(const std::vector<std::uint32_t>& numbers, const std::vector<std::uint32_t>& rows) {
+    for (const std::uint32_t row : rows) {
+      if (!numbers.empty()) places_.emplace(numbers[row], 0U);
+    }
+    std::uint32_t next = 0;
+    for (auto& [number, place] : places_) place = next++;
+  }
+  std::size_t bytes() const {
+    if (places_.empty()) return 0;
+    return places_.size() <= 0x100 ? 1 : places_.size() <= 0x10000 ? 2 : 4;
+  }
+  std::uint32_t at(std::uint32_t number) const { return places_.at(number); }
+  const std::map<std::uint32_t, std::uint32_t>& all() const { return places_; }
+
+ private:
+  std::map<std::uint32_t, std::uint32_t> places_;
+};
 
 class PageWriter {
  public:
@@ -116,13 +149,9 @@ class PageWriter {
       : cloud_(cloud),
         rows_(blueNoiseOrder(cloud.points, options.points)),
         cube_(cubeOf(cloud.points, rows_)),
-        radius_(discRadius(cloud.points, rows_, options.threads)) {
-    for (const std::uint32_t row : rows_) {
-      if (!cloud.labels.empty()) places_.emplace(cloud.labels[row], 0U);
-    }
-    std::uint32_t next = 0;
-    for (auto& [label, place] : places_) place = next++;
-  }
+        around_(cloud, rows_, options.threads),
+        labels_(cloud.labels, rows_),
+        scans_(cloud.scans, rows_) {}
   std::size_t points() const { return rows_.size(); }
 
   std::string head() {
@@ -134,9 +163,11 @@ class PageWriter {
     for (std::size_t a = 0; a < 3; ++a) json.item(cube_.low[a] + cloud_.origin[a]);
     json.endArray();
     json.field("extent", cube_.extent);
-    json.field("radius", radius_ / cube_.extent);
-    json.field("labelBytes", cloud_.labels.empty() ? 0 : labelBytes());
-    writeSegments(json);
+    json.field("radius", around_.radius / cube_.extent);
+    json.field("labelBytes", labels_.bytes());
+    json.field("scanBytes", scans_.bytes());
+    writeTable(json, "segments", labels_, true);
+    writeTable(json, "scans", scans_, false);
     writePlaces(json, "sensors", cloud_.sensors);
     writePlaces(json, "contradictions", cloud_.contradictions);
     std::string text = json.finish();
@@ -160,8 +191,13 @@ class PageWriter {
       });
     }
     if (!cloud_.labels.empty()) {
-      write(sink, "labels", labelBytes(), [&](std::uint32_t row, Bytes& out) {
-        append(out, places_.at(cloud_.labels[row]), labelBytes());
+      writeNumbers(sink, "labels", cloud_.labels, labels_);
+    }
+    if (!cloud_.scans.empty()) writeNumbers(sink, "scans", cloud_.scans, scans_);
+    if (!around_.sides.empty()) {
+      std::size_t next = 0;
+      write(sink, "sides", 1, [&](std::uint32_t, Bytes& out) {
+        append(out, static_cast<std::uint32_t>(around_.sides[next++]), 1);
       });
     }
     if (!cloud_.confidences.empty()) {
@@ -180,9 +216,6 @@ class PageWriter {
   }
 
  private:
-  std::size_t labelBytes() const {
-    return places_.size() <= 0x100 ? 1 : places_.size() <= 0x10000 ? 2 : 4;
-  }
   template <typename Row>
   void write(const PageSink& sink, const char* name, std::size_t size, const Row& row) const {
     Bytes bytes;
@@ -192,14 +225,20 @@ class PageWriter {
     sink(base85(std::move(bytes)));
     sink("</script>\n");
   }
-  void writeSegments(JsonWriter& json) const {
-    json.beginArray("segments");
-    for (const auto& [label, place] : places_) {
+  void writeNumbers(const PageSink& sink, const char* name,
+                    const std::vector<std::uint32_t>& numbers, const Numbering& table) const {
+    write(sink, name, table.bytes(), [&](std::uint32_t row, Bytes& out) {
+      append(out, table.at(numbers[row]), table.bytes());
+    });
+  }
+  void writeTable(JsonWriter& json, const char* name, const Numbering& table, bool facts) const {
+    json.beginArray(name);
+    for (const auto& [number, place] : table.all()) {
       json.beginItem();
-      if (label != kNoSegment) json.field("label", label);
-      json.field("color", segmentColor(label));
-      if (label < cloud_.segments.size()) {
-        const PageSegment& s = cloud_.segments[label];
+      if (number != kNoSegment) json.field("label", number);
+      json.field("color", segmentColor(number));
+      if (facts && number < cloud_.segments.size()) {
+        const PageSegment& s = cloud_.segments[number];
         if (s.confidence >= 0.F) json.field("confidence", s.confidence);
         if (!s.text.empty()) json.field("text", s.text);
       }
@@ -224,8 +263,9 @@ class PageWriter {
   const PageCloud& cloud_;
   std::vector<std::uint32_t> rows_;
   Cube cube_;
-  double radius_;
-  std::map<std::uint32_t, std::uint32_t> places_;  // of labels in the table of segments
+  Surroundings around_;
+  Numbering labels_;
+  Numbering scans_;
 };
 
 std::string escaped(const std::string& text) {

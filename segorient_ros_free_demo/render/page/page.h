@@ -11,6 +11,8 @@
 #include <string_view>
 #include <vector>
 
+#include "render/page/sides.h"
+
 namespace segorient::program {
 
 /// What the page tells of a segment.
@@ -22,14 +24,17 @@ struct PageSegment {
 /// A cloud for a page. What is empty is not known and cannot be switched to.
 struct PageCloud {
   std::string title;
-  PointView points;                            ///< not finite: left out
-  std::array<double, 3> origin{0, 0, 0};       ///< is added to where points are said to be
-  std::vector<float> normals;                  ///< 3 a point; NaN: none
-  std::vector<std::uint32_t> labels;           ///< 0xffffffff: no segment
-  std::vector<PageSegment> segments;           ///< by label; may be shorter than there are labels
-  std::vector<float> confidences;              ///< of points, 0 to 1; NaN: not known
-  std::vector<std::uint32_t> colors;           ///< packed rgb
-  std::vector<std::array<double, 3>> sensors;  ///< with the origin
+  PointView points;                       ///< not finite: left out
+  std::array<double, 3> origin{0, 0, 0};  ///< is added to where points are said to be
+  std::vector<float> normals;             ///< 3 a point; NaN: none
+  std::vector<std::uint32_t> labels;      ///< 0xffffffff: no segment
+  std::vector<PageSegment> segments;      ///< by label; may be shorter than there are labels
+  std::vector<float> confidences;         ///< of points, 0 to 1; NaN: not known
+  std::vector<std::uint32_t> colors;      ///< packed rgb
+  std::vector<std::uint32_t> scans;       ///< 0xffffffff: none
+  /// Side of each point where its sensor tells it; Open: found by how the points lie. May be empty.
+  std::vector<Side> sides;
+  std::vector<std::array<double, 3>> sensors;         ///< with the origin
   std::vector<std::array<double, 3>> contradictions;  ///< with the origin
 };
 

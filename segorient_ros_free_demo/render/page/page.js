@@ -4,15 +4,21 @@
 
 const FRAME = 45;        // milliseconds that a moving picture may take
 const LEAST = 20000;     // points that it has at least
-const FIRST = 200000;    // and at first
+const FIRST = 50000;     // and at first, before the others are unpacked
 const REST = 160;        // milliseconds without a movement until all points are drawn
+const SIDES = ["may be either", "outside", "outside", "wrong", "wrong"];
 const element = (id) => document.getElementById(id);
+const make = (tag, ...children) => {
+  const made = document.createElement(tag);
+  made.append(...children);
+  return made;
+};
 
 class Page {
   constructor() {
     this.canvas = element("view");
-    this.cloud = new Cloud();
-    this.count = Math.min(this.cloud.points, FIRST);
+    this.cloud = new Cloud(FIRST);
+    this.count = FIRST;
     this.coloring = "";
     this.drawing = new Drawing(this.canvas, this.cloud);
     this.camera = new Camera(this.cloud.positions);
@@ -24,6 +30,14 @@ class Page {
     new ResizeObserver(() => this.resize()).observe(this.canvas);
     this.resize();
     this.color(this.cloud.colorings()[0][0]);
+  }
+
+  // All points, once the first have been drawn.
+  load() {
+    this.cloud = new Cloud(this.cloud.points);
+    this.box = this.cloud.box();
+    this.drawing.load(this.cloud);
+    this.color(this.coloring);
   }
 
   counts() {
@@ -56,23 +70,18 @@ class Page {
 
   legend() {
     const hex = (rgb) => "#" + rgb.toString(16).padStart(6, "0");
-    const key = (rgb, text) => {
-      const span = document.createElement("span"), box = document.createElement("i");
-      box.style.background = hex(rgb);
-      span.append(box, text);
-      return span;
+    const box = (background, className = "") => {
+      const color = make("i");
+      Object.assign(color, {className}).style.background = background;
+      return color;
     };
-    const bar = (low, high) => {
-      const span = document.createElement("span"), box = document.createElement("i");
-      box.className = "bar";
-      box.style.background = `linear-gradient(90deg, ${[0, 1 / 3, 2 / 3, 1].map((t) => hex(ramp(t)))})`;
-      span.append(low, box, high);
-      return span;
-    };
+    const key = (rgb, text) => make("span", box(hex(rgb)), text);
+    const stops = [0, 1 / 3, 2 / 3, 1].map((t) => hex(ramp(t)));
+    const bar = (low, high) => make("span", low, box(`linear-gradient(90deg, ${stops})`, "bar"), high);
     const {low, extent} = this.cloud, heights = this.box.map((b) => (low[2] + extent * b[2]).toPrecision(4));
     const count = key(0xffffff, this.counts());
     element("legend").replaceChildren(...{
-      orientation: [key(FRONT, "front"), key(BACK, "back"), key(NONE, "no normal")],
+      orientation: [key(FRONT, "true side"), key(BEHIND, "from behind"), key(WRONG, "wrong side"), key(NONE, "no normal")],
       normal: [key(0xff8080, "+x"), key(0x80ff80, "+y"), key(0x8080ff, "+z")],
       confidence: [bar("0", "1 confidence"), key(GREY, "not known")],
       height: [bar(heights[0], heights[1] + " height (z)")],
@@ -102,12 +111,13 @@ class Page {
   frame(now) {
     this.wanted = 0;
     this.draw(false);
+    if (this.cloud.loaded < this.cloud.points) this.loading ??= setTimeout(() => this.load());
     // As many points as a frame has time for, by what the last ones took while the picture moved.
     const took = now - (this.last || 0);
     this.last = now;
     if (took > 4 * REST) return;
     const count = this.count * Math.max(0.5, Math.min(1.2, FRAME / took));
-    this.count = Math.round(Math.max(Math.min(LEAST, this.cloud.points), Math.min(this.cloud.points, count)));
+    this.count = Math.round(Math.max(LEAST, Math.min(this.cloud.points, count)));
   }
 
   resize() {
@@ -162,26 +172,21 @@ class Page {
     const step = {ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, -1], ArrowDown: [0, 1]}[event.key];
     const {clientWidth, clientHeight} = this.canvas;
     if (event.ctrlKey || event.metaKey || event.altKey) return;
-    if (step && event.shiftKey) {
-      this.camera.pan(20 * step[0], 20 * step[1], this.camera.scale(clientWidth, clientHeight));
-    } else if (step) {
-      this.camera.turn(5 * step[0], 5 * step[1]);
-    } else if (event.key === "+" || event.key === "=") {
-      this.camera.zoomBy(1.2);
-    } else if (event.key === "-") {
-      this.camera.zoomBy(1 / 1.2);
-    } else if (event.key === "0") {
-      this.reset();
-    } else if (event.key === "Enter") {
-      this.pick(clientWidth / 2, clientHeight / 2);
-    } else if (event.key === "n") {
-      element("strokes").click();
-    } else if (event.key === "c") {
-      const names = this.cloud.colorings().map((c) => c[0]);
-      this.color(names[(names.indexOf(this.coloring) + 1) % names.length]);
-    } else {
-      return;
-    }
+    const names = this.cloud.colorings().map((c) => c[0]);
+    const action = step ? () => {
+      if (event.shiftKey) this.camera.pan(20 * step[0], 20 * step[1], this.camera.scale(clientWidth, clientHeight));
+      else this.camera.turn(5 * step[0], 5 * step[1]);
+    } : {
+      "+": () => this.camera.zoomBy(1.2),
+      "=": () => this.camera.zoomBy(1.2),
+      "-": () => this.camera.zoomBy(1 / 1.2),
+      "0": () => this.reset(),
+      "n": () => element("strokes").click(),
+      "c": () => this.color(names[(names.indexOf(this.coloring) + 1) % names.length]),
+      "Enter": () => this.pick(clientWidth / 2, clientHeight / 2),
+    }[event.key];
+    if (!action) return;
+    action();
     event.preventDefault();
     this.redraw();
   }
@@ -189,14 +194,10 @@ class Page {
   pick(x, y) {  // in the page's pixels
     const ratio = this.canvas.width / this.canvas.clientWidth;
     const i = this.drawing.pick(this.camera, {...this.options(), sided: false}, Math.floor(x * ratio), Math.floor(y * ratio));
-    const facts = i < 0 ? [] : this.facts(i), list = document.createElement("dl");
-    for (const [name, value] of facts) {
-      const term = document.createElement("dt"), text = document.createElement("dd");
-      term.textContent = name;
-      text.textContent = value;
-      list.append(term, text);
-    }
+    const facts = i < 0 ? [] : this.facts(i);
+    const list = make("dl", ...facts.flatMap(([name, value]) => [make("dt", name), make("dd", value)]));
     element("picked").replaceChildren(...(facts.length ? [list] : []));
+    this.draw(true);
     return i;
   }
 
@@ -209,6 +210,8 @@ class Page {
       facts.push(["segment", segment.label ?? "none"]);
       if (segment.text) facts.push(["decided", segment.text]);
     }
+    if (cloud.scanOf) facts.push(["scan", cloud.scans[cloud.scanOf[i]].label ?? "none"]);
+    if (cloud.sides) facts.push(["side", SIDES[cloud.sides[i]]]);
     if (confidence !== undefined) facts.push(["confidence", confidence.toFixed(2)]);
     return facts;
   }

@@ -36,8 +36,8 @@ constexpr float kQuartile = 0.32F;   // of them, one in four is smaller than so 
 constexpr float kSameSheet = 0.82F;  // cosine of 35 degrees, as for edges
 constexpr float kLevel = 0.5F;       // sine of 30 degrees: neighbours lie along the plane
 constexpr float kFlat = 0.1F;        // sine of 6 degrees: they lie in it
-// Fewer of sixteen neighbours are no surface that would tell that a point is wrong.
-constexpr int kSurface = 5;
+// Fewer neighbours are no surface that would tell that a point is wrong.
+constexpr int kSurface = 4;
 // Seen from one side so many times as often as from the other: that one is outside. More, and the
 // other is closed: where a surface ends in a sharp edge, one in some ten looks past it.
 constexpr int kOuter = 3;
