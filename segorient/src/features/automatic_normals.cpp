@@ -77,6 +77,13 @@ std::vector<int> sizesFor(double noise, int available) {
   return sizes;
 }
 
+/// Neighbours that the widest of what is tried needs.
+int neighborsFor(const CloudNoise& noise) {
+  const std::vector<int> sizes =
+      sizesFor(std::max(detail::kLeastNoise, noise.in_spacings), kMostAutomaticNeighbors);
+  return std::max({sizes.front(), kTriangulationNeighbors, kCubicNeighbors});
+}
+
 // Standard deviation of the nearest neighbours, the point itself among them, from their plane;
 // infinite where they have none.
 double planeResidual(const PointView& points, const Neighborhoods& table, std::size_t row, int k,
@@ -118,19 +125,21 @@ std::vector<pcl::index_t> allRows(std::size_t size) {
 class Estimation {
  public:
   Estimation(const PointView& points, const Neighborhoods& table, const CloudNoise& noise,
-             int threads, float* normals)
+             int threads, float* normals, const std::vector<pcl::index_t>* rows)
       : points_(points),
         table_(table),
         noise_(noise.length),
         in_spacings_(std::max(detail::kLeastNoise, noise.in_spacings)),
         threads_(threads),
         normals_(normals),
-        open_(allRows(table.size())) {
+        rows_(rows != nullptr ? *rows : allRows(table.size())),
+        open_(rows_) {
     report_.noise = static_cast<float>(noise.in_spacings);
   }
 
-  AutomaticNormalReport run() {
+  AutomaticNormalReport run(std::vector<pcl::index_t>* unexplained) {
     takeQuadratics();
+    if (unexplained != nullptr) *unexplained = open_;
     if (in_spacings_ < kCleanNoise) {
       keepEdges();
       if (isAnalytic()) takeCubics();
@@ -143,8 +152,8 @@ class Estimation {
     } else {
       takeCubicsAtEdges();
     }
-    for (std::size_t i = 0; i < table_.size(); ++i) {
-      report_.undefined += isFinite(normals_ + 4 * i) ? 0 : 1;
+    for (const pcl::index_t r : rows_) {
+      report_.undefined += isFinite(normals_ + 4 * static_cast<std::size_t>(r)) ? 0 : 1;
     }
     return report_;
   }
@@ -209,7 +218,7 @@ class Estimation {
   /// makes it: then what quadratic surfaces leave is the next term of its series.
   bool isAnalytic() {
     if (available() < kCubicNeighbors) return false;
-    const std::vector<pcl::index_t> rows = detail::sampleRows(table_.size());
+    const std::vector<pcl::index_t> rows = detail::sampleRows(rows_);
     Surfaces cubics(NormalEstimator::AwASCubic);
     cubics.fit(points_, table_, kCubicNeighbors, threads_, rows);
     return areCubic(rows, cubics, kNextTerm);
@@ -218,12 +227,13 @@ class Estimation {
   /// Cubic surfaces wherever they leave less than the quadratic ones, and where only they fit.
   void takeCubics() {
     Surfaces cubics(NormalEstimator::AwASCubic);
-    cubics.fit(points_, table_, kCubicNeighbors, threads_, allRows(table_.size()));
+    cubics.fit(points_, table_, kCubicNeighbors, threads_, rows_);
     report_.analytic = true;
     const auto nearer = [&](std::size_t i) {
       return cubics.residuals[i] < quadratics_.residuals[i];
     };
-    for (std::size_t i = 0; i < table_.size(); ++i) {
+    for (const pcl::index_t r : rows_) {
+      const auto i = static_cast<std::size_t>(r);
       if (nearer(i)) cubics.copyNormal(i, normals_);
     }
     report_.surfaces.back().second += closeExplained(kCubicNeighbors + 1 - 10, [&](std::size_t i) {
@@ -270,6 +280,7 @@ class Estimation {
   int threads_;
   float* normals_;
   AutomaticNormalReport report_;
+  std::vector<pcl::index_t> rows_;
   std::vector<pcl::index_t> open_;
   Surfaces quadratics_;
 };
@@ -280,29 +291,35 @@ float estimateNoise(const PointView& points, const Neighborhoods& neighborhoods,
   return static_cast<float>(detail::sampleNoise(points, neighborhoods, threads).in_spacings);
 }
 
+int automaticNeighbors(const PointView& points, const Neighborhoods& neighborhoods, int threads) {
+  return neighborsFor(detail::sampleNoise(points, neighborhoods, threads));
+}
+
 AutomaticNormalReport estimateNormalsAutomatically(const PointView& points,
                                                    const Neighborhoods& neighborhoods, int threads,
-                                                   float* normals) {
+                                                   float* normals,
+                                                   std::vector<pcl::index_t>* unexplained,
+                                                   const std::vector<pcl::index_t>* rows) {
   const CloudNoise noise = detail::sampleNoise(points, neighborhoods, threads);
-  return Estimation(points, neighborhoods, noise, threads, normals).run();
+  return Estimation(points, neighborhoods, noise, threads, normals, rows).run(unexplained);
 }
 
 AutomaticNormalReport estimateNormalsAutomatically(const PointView& points,
                                                    const search::MedianHashIndex& index,
                                                    const Neighborhoods& neighborhoods, int threads,
-                                                   float* normals) {
+                                                   float* normals,
+                                                   std::vector<pcl::index_t>* unexplained,
+                                                   const std::vector<pcl::index_t>* rows) {
   const CloudNoise noise = detail::sampleNoise(points, neighborhoods, threads);
-  const std::vector<int> sizes =
-      sizesFor(std::max(detail::kLeastNoise, noise.in_spacings), kMostAutomaticNeighbors);
-  const int wanted = std::max({sizes.front(), kTriangulationNeighbors, kCubicNeighbors});
+  const int wanted = neighborsFor(noise);
   const bool all = static_cast<std::size_t>(neighborhoods.k()) >= points.size;
   if (all || neighborhoods.k() > wanted) {
-    return Estimation(points, neighborhoods, noise, threads, normals).run();
+    return Estimation(points, neighborhoods, noise, threads, normals, rows).run(unexplained);
   }
   // The nearest of each point, which the noise comes from, are the same.
   Neighborhoods wider;
   index.nearestKAll(wanted + 1, wider, false);
-  return Estimation(points, wider, noise, threads, normals).run();
+  return Estimation(points, wider, noise, threads, normals, rows).run(unexplained);
 }
 
 std::string AutomaticNormalReport::text() const {

@@ -47,16 +47,27 @@ constexpr int kMostAutomaticNeighbors = 64;
 /// \param points distinct points \param neighborhoods of them, the wider the table the better up to
 ///        kMostAutomaticNeighbors; with a narrow one noisy clouds are served less well
 /// \param normals 4 floats a row, as from estimateNormals()
+/// \param unexplained where not null: rows at which noise explains the residual of none of the
+///        quadratic surfaces, ascending
+/// \param rows ascending rows to do, or null for all; others are left as they are
 AutomaticNormalReport estimateNormalsAutomatically(const PointView& points,
                                                    const Neighborhoods& neighborhoods, int threads,
-                                                   float* normals);
+                                                   float* normals,
+                                                   std::vector<pcl::index_t>* unexplained = nullptr,
+                                                   const std::vector<pcl::index_t>* rows = nullptr);
 
 /// The same, with more neighbours where the noise asks for them: then they are sought again.
 /// \param index built on `points`
 AutomaticNormalReport estimateNormalsAutomatically(const PointView& points,
                                                    const search::MedianHashIndex& index,
                                                    const Neighborhoods& neighborhoods, int threads,
-                                                   float* normals);
+                                                   float* normals,
+                                                   std::vector<pcl::index_t>* unexplained = nullptr,
+                                                   const std::vector<pcl::index_t>* rows = nullptr);
+
+/// How many neighbours beside the point itself estimateNormalsAutomatically() makes use of.
+int automaticNeighbors(const PointView& points, const Neighborhoods& neighborhoods,
+                       int threads = 0);
 
 /// Standard deviation of the noise over the local spacing (mean distance to the six nearest), from
 /// the residuals of quadratic surfaces at a few thousand points. 0 for fewer than 16 points.

@@ -62,6 +62,12 @@ std::vector<pcl::index_t> sampleRows(std::size_t size) {
   return rows;
 }
 
+std::vector<pcl::index_t> sampleRows(const std::vector<pcl::index_t>& of) {
+  std::vector<pcl::index_t> rows = sampleRows(of.size());
+  for (pcl::index_t& row : rows) row = of[static_cast<std::size_t>(row)];
+  return rows;
+}
+
 CloudNoise sampleNoise(const PointView& points, const Neighborhoods& neighborhoods, int threads) {
   if (points.size < kFewestPoints || neighborhoods.size() != points.size) return {};
   const std::vector<pcl::index_t> rows = sampleRows(points.size);

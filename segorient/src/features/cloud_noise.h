@@ -32,8 +32,9 @@ struct CloudNoise {
   double in_spacings = 0.0;  ///< the same over the local spacing
 };
 
-/// Some thousand rows spread evenly over a table.
+/// Some thousand rows spread evenly over a table, or over some of its rows.
 std::vector<pcl::index_t> sampleRows(std::size_t size);
+std::vector<pcl::index_t> sampleRows(const std::vector<pcl::index_t>& of);
 
 /// Medians over a sample: edges and creases, where surfaces do not fit, are the minority. 0 for
 /// fewer than 16 points.

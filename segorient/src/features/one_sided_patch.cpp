@@ -56,6 +56,14 @@ void OneSidedPatch::fitNearest(const Accept& accept, OneSidedFit& fit) {
   fit.fit(points_.data(), points_.size());
 }
 
+void OneSidedPatch::addNormals(Side& side) const {
+  for (const Candidate* c : chosen_) {
+    const float* n = &scene_.normals[4 * c->point];
+    if (!isFinite(n)) continue;
+    for (std::size_t a = 0; a < 3; ++a) side.toward[a] += static_cast<double>(n[a]);
+  }
+}
+
 void OneSidedPatch::build(std::size_t middle) {
   collect(middle);
   whole_known_ = false;
@@ -67,6 +75,7 @@ void OneSidedPatch::build(std::size_t middle) {
     sides_.emplace_back();
     sides_.back().label = c.label;
     fitNearest([&](std::int32_t label) { return label == c.label; }, sides_.back().fit);
+    addNormals(sides_.back());
   }
 }
 

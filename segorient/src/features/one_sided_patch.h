@@ -19,6 +19,7 @@ class OneSidedPatch {
   struct Side {
     std::int32_t label = -1;
     OneSidedFit fit;
+    double toward[3] = {0, 0, 0};  ///< sum of the normals of the points that it was fitted to
   };
 
   explicit OneSidedPatch(const RecomputationScene& scene) : scene_(scene) {}
@@ -40,6 +41,7 @@ class OneSidedPatch {
   void collect(std::size_t middle);
   template <typename Accept>
   void fitNearest(const Accept& accept, OneSidedFit& fit);
+  void addNormals(Side& side) const;
 
   const RecomputationScene& scene_;
   PointSet seen_;

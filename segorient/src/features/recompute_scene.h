@@ -68,13 +68,25 @@ struct RecomputationScene {
 struct Recomputed {
   std::size_t point = 0;
   bool accepted = false;
+  /// The point lies on an edge itself and so has no face: not accepted.
+  bool on_edge = false;
   std::int32_t label = -1;
   float normal[3] = {0, 0, 0};
 };
 
+/// What the one-sided rule gives a point.
+enum class OneSidedNormal : std::uint8_t {
+  LIKELIEST,  ///< normal of the side that the point most likely belongs to
+  /// Mean of the sides' normals, each by how likely the point belongs to it: what noise leaves open
+  /// stays in between. The scene's normals must be oriented, and so are the result's. Where many
+  /// points lie on the edges themselves, as vertices of a mesh do, these are told.
+  EXPECTED
+};
+
 /// One entry for each point that was looked at, ascending by point.
 std::vector<Recomputed> applyOneSidedRule(const RecomputationScene& scene,
-                                          const RecomputationOptions& options);
+                                          const RecomputationOptions& options,
+                                          OneSidedNormal which = OneSidedNormal::LIKELIEST);
 std::vector<Recomputed> applyModifiedNeighborhoods(const RecomputationScene& scene,
                                                    const RecomputationOptions& options);
 

@@ -62,6 +62,10 @@ struct AutomaticOptions {
   /// Where noise leaves two faces possible, the field of all oriented points decides; needs
   /// filter_rounds.
   bool winding_normals = true;
+  /// Surfaces are fitted around each point at last, on one side of sharp edges, as
+  /// NormalEstimator::Automatic does it; with noise, averaged with the above. Not for scans that
+  /// chose the scale of their planes point by point.
+  bool fit_normals = true;
 };
 
 /// How segments are oriented. Angles in radians.

@@ -31,6 +31,25 @@ void dropCutOff(const PointView& points, const Neighborhoods& nb, const std::vec
   }
 }
 
+std::vector<std::uint8_t> lookAround(const SheetNormals& sheets,
+                                     const std::vector<float>& agreement) {
+  // Residuals in spacings, the agreement as that of unit normals within some degrees.
+  constexpr float kExact = 1e-3F;
+  constexpr float kWithoutNoise = 0.01F;
+  constexpr float kSettled = 0.999F;
+  std::vector<std::uint8_t> out(agreement.size());
+  for (std::size_t i = 0; i < out.size(); ++i) {
+    const float residual = sheets.normals[4 * i + 3];
+    unsigned bits = 0;
+    if (residual < kExact && agreement[i] > kSettled) bits |= ONE_PLANE;
+    if (residual < kWithoutNoise) bits |= ON_A_FACE;
+    if (std::isfinite(sheets.below[i]) || std::isfinite(sheets.above[i])) bits |= SECOND_WALL;
+    out[i] = static_cast<std::uint8_t>(bits);
+  }
+  return out;
+}
+
+
 AutoNormals orientAtOneScale(const PointView& points, const Neighborhoods& neighborhoods,
                              const AutomaticOptions& settings, const PointHints& hints, int threads,
                              const std::function<void(const char*, double)>& begin,
@@ -91,7 +110,9 @@ AutoNormals orientAtOneScale(const PointView& points, const Neighborhoods& neigh
         has_normal && !std::isfinite(sheets.curvature[i]) ? 0.F : sheets.curvature[i];
     out.normals[4 * i + 3] = has_normal ? curvature : out.normals[4 * i];
   }
+  out.around = lookAround(sheets, filtered.confidences);
   out.confidences = std::move(filtered.confidences);
+  out.scan_scales = sheets.scan_scales;
   out.components = result.point_components;
   // The less of both: do the normals around agree, and is their segment sure? Of a part of a cloud
   // only the first is known yet.

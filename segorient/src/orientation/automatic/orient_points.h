@@ -16,11 +16,20 @@
 
 namespace segorient::detail {
 
+/// What the sheet around a point is like.
+enum Around : std::uint8_t {
+  ONE_PLANE = 1,    ///< an exact plane, and so are its surroundings
+  ON_A_FACE = 2,    ///< a plane as well as data without noise have them
+  SECOND_WALL = 4,  ///< another wall is near
+};
+
 /// Oriented normals of points whose neighbours are known.
 struct AutoNormals {
   std::vector<float> normals;            ///< 4 floats a point: oriented normal, residual
   std::vector<float> confidences;        ///< of the orientation, 0 to 1
   std::vector<std::int32_t> components;  ///< -1 where there is no normal
+  std::vector<std::uint8_t> around;      ///< what is around each point: bits of Around
+  bool scan_scales = false;              ///< see SheetNormals
   AutoOrientation orientation;           ///< of the sheets' segments
   float spacing = 0.F;                   ///< median
   float level = 0.F;                     ///< see followCoarserLevels()

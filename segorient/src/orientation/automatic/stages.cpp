@@ -9,6 +9,7 @@
 
 #include "features/sheet_denoise.h"
 #include "features/sheet_normals.h"
+#include "orientation/automatic/final_normals.h"
 #include "segmentation/segmentation_rows.h"
 #include "segmentation/sheet_segmentation.h"
 
@@ -40,13 +41,14 @@ void findNeighbors(PreparedCloud& cloud, const PipelineOptions& options, const S
   cloud.dropIndex();
 }
 
-// Segments of the final normals, turned as most of their points are.
-void segmentFinal(const PointView& points, const Neighborhoods& table, SegmentationOptions settings,
-                  int threads, AutoStages& out) {
+// Segments of the oriented normals, turned as most of their points are.
+void segmentOriented(const PointView& points, const Neighborhoods& table,
+                     SegmentationOptions settings, int threads, const AutoNormals& oriented,
+                     AutoStages& out) {
   settings.neighbors = kSheetDegree;
   settings.threads = threads;
   out.segmentation =
-      segmentByNormals(points, {out.normals.data(), 4, points.size}, table, settings);
+      segmentByNormals(points, {oriented.normals.data(), 4, points.size}, table, settings);
   Segmentation& segmentation = out.segmentation;
   out.segments.resize(segmentation.segments.size());
   for (std::size_t s = 0; s < segmentation.segments.size(); ++s) {
@@ -54,7 +56,7 @@ void segmentFinal(const PointView& points, const Neighborhoods& table, Segmentat
     double confidence = 0.0;
     for (const auto* p = segmentation.begin(s); p != segmentation.end(s); ++p) {
       balance += segmentation.signs[static_cast<std::size_t>(*p)];
-      confidence += static_cast<double>(out.confidences[static_cast<std::size_t>(*p)]);
+      confidence += static_cast<double>(oriented.confidences[static_cast<std::size_t>(*p)]);
     }
     if (balance < 0) {
       for (const auto* p = segmentation.begin(s); p != segmentation.end(s); ++p) {
@@ -70,7 +72,7 @@ void segmentFinal(const PointView& points, const Neighborhoods& table, Segmentat
     result.sign = 1;
     result.by = DecidedBy::GLOBAL;
     result.confidence = static_cast<float>(confidence / size * unanimous);
-    result.component = out.components[static_cast<std::size_t>(*segmentation.begin(s))];
+    result.component = oriented.components[static_cast<std::size_t>(*segmentation.begin(s))];
     result.hard = confidence <= 0.0;
   }
 }
@@ -89,17 +91,21 @@ AutoStages runAutoStages(PreparedCloud& cloud, const PipelineOptions& options,
   const PointView points =
       out.denoised ? PointView{smoothed.data(), 4, cloud.size()} : cloud.points();
   const Neighborhoods& table = out.denoised ? of_smoothed : cloud.neighborhoods();
-  AutoNormals oriented = orientPoints(points, table, options.orientation.automatic, hints,
-                                      options.threads, begin, record);
+  const AutomaticOptions& settings = options.orientation.automatic;
+  AutoNormals oriented = orientPoints(points, table, settings, hints, options.threads, begin, record);
+  begin("segmentation", 0.78);
+  segmentOriented(points, table, segmentation::inUnitOf(cloud, options.segmentation),
+                  options.threads, oriented, out);
+  if (settings.fit_normals && !out.denoised && !oriented.scan_scales) {
+    begin("recomputation", 0.88);
+    fitFinalNormals(cloud, out.segmentation, options.k > 0, options.threads, oriented);
+  }
   out.normals = std::move(oriented.normals);
   out.confidences = std::move(oriented.confidences);
   out.components = std::move(oriented.components);
   out.orientation = std::move(oriented.orientation);
   out.spacing = oriented.spacing;
   out.level = oriented.level;
-  begin("segmentation", 0.81);
-  segmentFinal(points, table, segmentation::inUnitOf(cloud, options.segmentation), options.threads,
-               out);
   if (record != nullptr) record->smoothed = std::move(smoothed);
   return out;
 }

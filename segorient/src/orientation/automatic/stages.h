@@ -16,8 +16,8 @@ namespace segorient::detail {
 struct AutoStages {
   std::vector<float> normals;      ///< 4 floats a point: oriented normal, curvature; NaN where none
   std::vector<float> confidences;  ///< of the orientation, 0 to 1
-  std::vector<std::int32_t> components;  ///< -1 where there is no normal
-  Segmentation segmentation;  ///< by the final normals, reference normals and signs oriented
+  std::vector<std::int32_t> components;            ///< -1 where there is no normal
+  Segmentation segmentation;                       ///< reference normals and signs oriented
   std::vector<SegmentOrientationResult> segments;  ///< by label of `segmentation`
   AutoOrientation orientation;                     ///< of the sheets' segments
   int k = 0;
@@ -28,9 +28,9 @@ struct AutoStages {
 };
 
 /// The default method, from distinct points to oriented normals and segments: neighbours, sheet
-/// normals, sheet segments, their orientation, the filter that makes the final normals, and the
-/// paper's segmentation of those. \param begin called with a stage's name and the fraction of the
-/// work done before it
+/// normals, sheet segments, their orientation, the filter that settles the signs, the paper's
+/// segmentation of that, and the final normals. \param begin called with a stage's name and the
+/// fraction of the work done before it
 /// \param record null unless the cloud is part of a larger one
 AutoStages runAutoStages(PreparedCloud& cloud, const PipelineOptions& options,
                          const PointHints& hints,

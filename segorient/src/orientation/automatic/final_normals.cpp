@@ -1,0 +1,217 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the segorient authors
+#include "orientation/automatic/final_normals.h"
+
+#include <segorient/common/threads.h>
+#include <segorient/features/recompute_normals.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <vector>
+
+#include "common/dot.h"
+#include "features/automatic_normals.h"
+#include "features/recompute_scene.h"
+#include "features/sheet_normals.h"
+
+namespace segorient::detail {
+namespace {
+
+// Up to this noise, in spacings, a fitted surface is nearer than any mean with its surroundings: it
+// turns the normal of ten neighbours by half a degree.
+constexpr float kClean = 0.05F;
+// Beyond this noise the faces at an edge cannot be told apart, as estimateNormalsAutomatically()
+// has it for cubic surfaces.
+constexpr float kEdgesHidden = 0.35F;
+// Without that, surfaces of the fewest neighbours are all that is tried.
+constexpr int kFewest = 10;
+// Neighbours for the surfaces on both sides of an edge, as `normals --recompute` has them.
+constexpr int kEdgeNeighbors = 12;
+// The first round's labels are those of means over the edge, the next ones' of its own result.
+constexpr int kRounds = 2;
+// 143 degrees: normals of two walls, or of both sides of a blade.
+constexpr float kOtherWall = -0.8F;
+// 45 degrees: beyond, the fit and the surroundings speak of different faces, and signs are guesses.
+constexpr float kSameFace = 0.7F;
+
+/// How the fit at a point came about.
+enum class Fit : std::uint8_t { EXPLAINED, UNEXPLAINED, ONE_SIDED, ON_EDGE };
+
+class FinalNormals {
+ public:
+  FinalNormals(PreparedCloud& cloud, const Segmentation& segments, int threads,
+               const AutoNormals& oriented)
+      : cloud_(cloud),
+        points_(cloud.points()),
+        table_(cloud.neighborhoods()),
+        segments_(segments),
+        threads_(threads),
+        oriented_(oriented),
+        toward_(oriented.orientation.toward) {}
+
+  /// Normals of all points, 4 floats each; empty where the filtered ones are the best there are.
+  std::vector<float> run(bool only_known) {
+    fitSurfaces(only_known);
+    // Depth cameras round what they measure: that is no noise which a mean could lessen.
+    if (!toward_.empty() && noise_ > kEdgesHidden) return {};
+    if (noise_ <= kEdgesHidden) recomputeAtEdges();
+    const auto n = static_cast<std::ptrdiff_t>(points_.size);
+#pragma omp parallel for schedule(static) num_threads(resolveThreads(threads_, points_.size, 50.0))
+    for (std::ptrdiff_t p = 0; p < n; ++p) {
+      const auto i = static_cast<std::size_t>(p);
+      std::array<float, 4> chosen;
+      std::copy_n(filtered(i), 4, chosen.begin());
+      choose(i, chosen.data());
+      std::copy(chosen.begin(), chosen.end(), &fitted_[4 * i]);
+    }
+    return std::move(fitted_);
+  }
+
+ private:
+  const float* filtered(std::size_t i) const {
+    return &oriented_.normals[4 * i];
+  }
+
+  bool has(std::size_t i, Around what) const {
+    return (oriented_.around[i] & what) != 0;
+  }
+
+  void fitSurfaces(bool only_known) {
+    fitted_ = oriented_.normals;
+    std::vector<pcl::index_t> rows;
+    for (std::size_t i = 0; i < points_.size; ++i) {
+      // Where all around is one plane, there is nothing to gain.
+      if (!has(i, ONE_PLANE)) rows.push_back(static_cast<pcl::index_t>(i));
+    }
+    std::vector<pcl::index_t> unexplained;
+    const bool wider =
+        !only_known && automaticNeighbors(points_, table_, threads_) > table_.k() - 1;
+    const AutomaticNormalReport report =
+        wider ? estimateNormalsAutomatically(points_, cloud_.index(), table_, threads_,
+                                             fitted_.data(), &unexplained, &rows)
+              : estimateNormalsAutomatically(points_, table_, threads_, fitted_.data(),
+                                             &unexplained, &rows);
+    if (wider) cloud_.dropIndex();
+    noise_ = report.noise;
+    most_ = report.surfaces.empty() ? kFewest : report.surfaces.front().first;
+    fits_.assign(points_.size, Fit::EXPLAINED);
+    for (const pcl::index_t i : unexplained) fits_[static_cast<std::size_t>(i)] = Fit::UNEXPLAINED;
+    for (const pcl::index_t row : rows) {
+      const auto i = static_cast<std::size_t>(row);
+      float* n = &fitted_[4 * i];
+      if (!(dot(n, filtered(i)) < 0.F)) continue;
+      for (std::size_t a = 0; a < 3; ++a) n[a] = -n[a];
+    }
+  }
+
+  // Without noise, what a surface explains needs no other one.
+  bool mayRecompute(std::size_t i) const {
+    return noise_ >= kClean || fits_[i] != Fit::EXPLAINED;
+  }
+
+  void recomputeAtEdges() {
+    std::vector<std::int32_t> labels = segments_.labels;
+    std::vector<std::uint8_t> regular;
+    for (const Segment& s : segments_.segments) {
+      regular.push_back(s.kind == SegmentKind::Regular ? 1 : 0);
+    }
+    const int entries = std::min(kEdgeNeighbors + 1, table_.k());
+    for (int round = 0; round < kRounds; ++round) {
+      const RecomputationScene scene{points_, table_, regular, labels, fitted_, entries, threads_};
+      for (const Recomputed& r : applyOneSidedRule(scene, {}, OneSidedNormal::EXPECTED)) {
+        if (r.on_edge) fits_[r.point] = Fit::ON_EDGE;
+        if (!r.accepted || !isFinite(r.normal)) continue;
+        has_edges_ = true;
+        labels[r.point] = r.label;
+        if (!mayRecompute(r.point)) continue;
+        fits_[r.point] = Fit::ONE_SIDED;
+        std::copy_n(r.normal, 3, &fitted_[4 * r.point]);
+      }
+    }
+  }
+
+  // Whether the neighbours that a surface was fitted to are all of the point's own wall.
+  bool isOneWall(std::size_t i) const {
+    const pcl::index_t* row = table_.indices(i);
+    int most = most_;
+    if (fits_[i] == Fit::UNEXPLAINED) {
+      most = has(i, SECOND_WALL) ? kSheetNeighbors : kEdgeNeighbors;
+    }
+    const int count = std::min(table_.count(i), most + 1);
+    for (int j = 1; j < count; ++j) {
+      if (dot(filtered(i), filtered(static_cast<std::size_t>(row[j]))) < kOtherWall) return false;
+    }
+    return true;
+  }
+
+  void choose(std::size_t i, float* result) const {
+    const float* f = &fitted_[4 * i];
+    if (!isFinite(f) || !isFinite(result)) return;
+    const bool fits_one_side = fits_[i] == Fit::ONE_SIDED;
+    const bool small = noise_ < kClean && most_ <= kFewest;
+    // A few neighbours that one surface explains are of one wall.
+    const bool ask_walls = small ? fits_[i] != Fit::EXPLAINED && !fits_one_side : true;
+    if (ask_walls && !isOneWall(i)) return;
+    if (noise_ < kClean) {
+      takeFit(i, f, result);
+    } else {
+      takeMean(f, result);
+    }
+  }
+
+  void takeFit(std::size_t i, const float* f, float* result) const {
+    if (fits_[i] == Fit::UNEXPLAINED) {
+      if (has(i, ON_A_FACE)) return;
+      if (has_edges_) {
+        takeMean(f, result);
+        return;
+      }
+    }
+    const float along = dot(f, result);
+    // Nothing that a sensor saw turns its back to it.
+    if (!toward_.empty() && along * dot(f, &toward_[3 * i]) < 0.F) return;
+    if (along > kSameFace || (fits_[i] == Fit::ONE_SIDED && along > 0.F)) {
+      std::copy_n(f, 3, result);
+    } else if (fits_[i] != Fit::ONE_SIDED) {
+      addUnit(f, along, result);
+    }
+  }
+
+  // The less the two agree, the more the filtered one counts, which knows its side.
+  static void takeMean(const float* f, float* result) {
+    const float along = dot(f, result);
+    addUnit(f, along * along * along, result);
+  }
+
+  static void addUnit(const float* f, float weight, float* result) {
+    std::array<float, 3> sum;
+    for (std::size_t a = 0; a < 3; ++a) sum[a] = result[a] + weight * f[a];
+    const float length = std::sqrt(dot(sum.data(), sum.data()));
+    for (std::size_t a = 0; a < 3; ++a) result[a] = sum[a] / length;
+  }
+
+  PreparedCloud& cloud_;
+  PointView points_;
+  const Neighborhoods& table_;
+  const Segmentation& segments_;
+  int threads_;
+  const AutoNormals& oriented_;
+  const std::vector<float>& toward_;
+  std::vector<float> fitted_;
+  std::vector<Fit> fits_;
+  float noise_ = 0.F;
+  int most_ = kFewest;      ///< neighbours of the largest surfaces
+  bool has_edges_ = false;  ///< sharp ones
+};
+
+}  // namespace
+
+void fitFinalNormals(PreparedCloud& cloud, const Segmentation& segments, bool only_known,
+                     int threads, AutoNormals& oriented) {
+  std::vector<float> normals = FinalNormals(cloud, segments, threads, oriented).run(only_known);
+  if (!normals.empty()) oriented.normals = std::move(normals);
+}
+
+}  // namespace segorient::detail

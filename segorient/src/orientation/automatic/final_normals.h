@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the segorient authors
+#pragma once
+
+#include <segorient/segmentation/segmentation.h>
+
+#include "orientation/automatic/orient_points.h"
+#include "search/prepared_cloud.h"
+
+namespace segorient::detail {
+
+/// The most accurate normals that the library has for a cloud, with the signs that were found.
+///
+/// The filter that settles the signs averages over neighbours, which costs accuracy where a surface
+/// bends. So each point gets the normal of the surface that estimateNormalsAutomatically() fits,
+/// towards the side that it faces; near sharp edges the mean of the faces' normals by how likely it
+/// belongs to each (OneSidedNormal::EXPECTED). With noise it gets the mean of that and of the
+/// filtered one, which err in different ways: the one by noise, the other by what the surface
+/// bends. The filtered normal stays where neighbours are of another wall, at what cannot be fitted
+/// beside sharp edges, and on scans whose points chose the scale of their planes themselves.
+///
+/// \param cloud whose neighbours are known; more are sought where the noise asks for them, unless
+///        `only_known`
+/// \param segments by the filtered normals
+/// \param oriented normals are replaced; the residuals stay
+void fitFinalNormals(PreparedCloud& cloud, const Segmentation& segments, bool only_known,
+                     int threads, AutoNormals& oriented);
+
+}  // namespace segorient::detail

@@ -1,0 +1,142 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the segorient authors
+// How near the normals of the default method are to the truth, and the one-sided rule behind them.
+#include <gtest/gtest.h>
+#include <segorient/orientation/pipeline.h>
+
+#include <random>
+
+#include "features/automatic_normals.h"
+#include "features/recompute_scene.h"
+#include "sheet_fixture.h"
+
+namespace segorient::test {
+namespace {
+
+constexpr double kDegrees = 180 / M_PI;
+
+double rms(const std::vector<float>& normals, const std::vector<float>& truth) {
+  double sum = 0;
+  for (std::size_t i = 0; i < truth.size(); i += 4) {
+    const double cosine =
+        std::min(1.0, std::fabs(static_cast<double>(dot3(&normals[i], &truth[i]))));
+    sum += std::pow(std::acos(cosine) * kDegrees, 2);
+  }
+  return std::sqrt(sum / (static_cast<double>(truth.size()) / 4));
+}
+
+Face ball() {
+  return {4 * M_PI, [](std::mt19937& rng, Eigen::Vector3d& p, Eigen::Vector3d& n) {
+            std::normal_distribution<double> normal(0, 1);
+            p = n = Eigen::Vector3d(normal(rng), normal(rng), normal(rng)).normalized();
+          }};
+}
+
+OrientedCloud orient(const LabelledCloud& cloud, bool fit = true, int threads = 0) {
+  PipelineOptions options;
+  options.orientation.automatic.fit_normals = fit;
+  options.threads = threads;
+  return orientCloud(viewOf(cloud.xyz), nullptr, options);
+}
+
+TEST(FinalNormals, AreThoseOfTheFittedSurfaceWhereItIsSmooth) {
+  const LabelledCloud cloud = sample("ball", {ball()}, 4000, 3, 0);
+  std::vector<float> fitted(cloud.normals.size());
+  estimateNormalsAutomatically(viewOf(cloud.xyz), neighborsOf(cloud.xyz), 0, fitted.data());
+  const OrientedCloud oriented = orient(cloud);
+  EXPECT_LE(rms(oriented.normals, cloud.normals), 1.02 * rms(fitted, cloud.normals) + 0.02);
+  EXPECT_GT(rms(orient(cloud, false).normals, cloud.normals), 1.0);
+  EXPECT_EQ(shareOutward(oriented.normals, cloud.normals), 1.0);
+}
+
+TEST(FinalNormals, AreOfOneFaceAtSharpEdges) {
+  for (const std::vector<Face>& faces : {cube(), steppedSolid(), bracket()}) {
+    const LabelledCloud cloud = sample("solid", faces, 8000, 5, 0);
+    const OrientedCloud oriented = orient(cloud);
+    const double before = rms(orient(cloud, false).normals, cloud.normals);
+    EXPECT_LT(rms(oriented.normals, cloud.normals), 0.5 * before);
+    EXPECT_GE(shareOutward(oriented.normals, cloud.normals), 0.9995);
+  }
+}
+
+TEST(FinalNormals, NoiseLeavesThemBetterThanEitherAndTurnsNone) {
+  // Up to a quarter of a spacing edges are seen.
+  for (const double sigma : {0.1, 0.25}) {
+    const LabelledCloud cloud = sample("cube", cube(), 8000, 9, sigma);
+    const OrientedCloud before = orient(cloud, false);
+    const OrientedCloud oriented = orient(cloud);
+    EXPECT_LT(rms(oriented.normals, cloud.normals), rms(before.normals, cloud.normals)) << sigma;
+    EXPECT_GE(shareOutward(oriented.normals, cloud.normals),
+              shareOutward(before.normals, cloud.normals) - 2e-4)
+        << sigma;
+  }
+}
+
+TEST(FinalNormals, OfThinWallsStayThoseOfTheirOwnSide) {
+  const LabelledCloud cloud = sample("plate", plate(1, 8000), 8000, 13, 0);
+  const double before = rms(orient(cloud, false).normals, cloud.normals);
+  EXPECT_LE(rms(orient(cloud).normals, cloud.normals), 1.02 * before);
+}
+
+TEST(FinalNormals, DoNotDependOnThreads) {
+  const LabelledCloud cloud = sample("steps", steppedSolid(), 6000, 17, 0.1);
+  EXPECT_EQ(orient(cloud, true, 1).normals, orient(cloud, true, 3).normals);
+}
+
+// Two square grids that meet at a right angle along y, oriented; the rows begin `first` spacings
+// from the edge, so that the first row of the first face is on it for 0.
+struct GridEdge {
+  std::vector<float> xyz;
+  std::vector<float> normals;
+  std::vector<std::int32_t> labels;
+
+  explicit GridEdge(float first) {
+    for (int face = 0; face < 2; ++face) {
+      for (int row = 0; row < 20; ++row) {
+        const float from_edge =
+            static_cast<float>(row) + (first > 0.F ? first : (face == 0 ? 0.F : 1.F));
+        for (int along = 0; along < 40; ++along) {
+          const auto y = static_cast<float>(along);
+          if (face == 0) xyz.insert(xyz.end(), {from_edge, y, 0.F, 0.F});
+          if (face == 1) xyz.insert(xyz.end(), {0.F, y, -from_edge, 0.F});
+          if (face == 0) normals.insert(normals.end(), {0.F, 0.F, 1.F, 0.F});
+          if (face == 1) normals.insert(normals.end(), {-1.F, 0.F, 0.F, 0.F});
+          labels.push_back(face);
+        }
+      }
+    }
+  }
+  std::vector<detail::Recomputed> run() const {
+    const Neighborhoods table = neighborsOf(xyz, 12);
+    const std::vector<std::uint8_t> regular{1, 1};
+    const detail::RecomputationScene scene{viewOf(xyz), table, regular, labels, normals, 13, 1};
+    return detail::applyOneSidedRule(scene, {}, detail::OneSidedNormal::EXPECTED);
+  }
+};
+
+TEST(ExpectedNormals, AreToldWherePointsLieOnTheEdgeItself) {
+  const GridEdge grid(0.F);
+  std::size_t on_edge = 0;
+  for (const detail::Recomputed& r : grid.run()) {
+    const bool on = grid.xyz[4 * r.point] == 0.F && grid.xyz[4 * r.point + 2] == 0.F;
+    EXPECT_TRUE(!r.on_edge || (on && !r.accepted)) << r.point;
+    on_edge += r.on_edge ? 1 : 0;
+  }
+  EXPECT_GE(on_edge, 30U);
+}
+
+TEST(ExpectedNormals, KeepTheirFaceAndItsSideBesideTheEdge) {
+  const GridEdge grid(0.5F);
+  std::size_t accepted = 0;
+  for (const detail::Recomputed& r : grid.run()) {
+    EXPECT_FALSE(r.on_edge);
+    if (!r.accepted) continue;
+    ++accepted;
+    EXPECT_EQ(r.label, grid.labels[r.point]);
+    EXPECT_GT(dot3(r.normal, &grid.normals[4 * r.point]), 0.999F) << r.point;
+  }
+  EXPECT_GE(accepted, 60U);
+}
+
+}  // namespace
+}  // namespace segorient::test
