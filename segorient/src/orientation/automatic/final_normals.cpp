@@ -30,7 +30,7 @@ constexpr int kFewest = 10;
 // Neighbours for the surfaces on both sides of an edge, as `normals --recompute` has them.
 constexpr int kEdgeNeighbors = 12;
 // The first round's labels are those of means over the edge, the next ones' of its own result.
-constexpr int kRounds = 2;
+constexpr int kRounds = 3;
 // 143 degrees: normals of two walls, or of both sides of a blade.
 constexpr float kOtherWall = -0.8F;
 // 45 degrees: beyond, the fit and the surroundings speak of different faces, and signs are guesses.

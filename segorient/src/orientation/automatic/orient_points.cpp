@@ -34,7 +34,7 @@ void dropCutOff(const PointView& points, const Neighborhoods& nb, const std::vec
 std::vector<std::uint8_t> lookAround(const SheetNormals& sheets,
                                      const std::vector<float>& agreement) {
   // Residuals in spacings, the agreement as that of unit normals within some degrees.
-  constexpr float kExact = 1e-3F;
+  constexpr float kExact = 1e-4F;
   constexpr float kWithoutNoise = 0.01F;
   constexpr float kSettled = 0.999F;
   std::vector<std::uint8_t> out(agreement.size());
