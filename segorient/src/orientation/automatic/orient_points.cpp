@@ -49,7 +49,6 @@ std::vector<std::uint8_t> lookAround(const SheetNormals& sheets,
   return out;
 }
 
-
 AutoNormals orientAtOneScale(const PointView& points, const Neighborhoods& neighborhoods,
                              const AutomaticOptions& settings, const PointHints& hints, int threads,
                              const std::function<void(const char*, double)>& begin,
