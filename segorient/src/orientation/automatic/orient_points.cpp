@@ -136,7 +136,10 @@ AutoNormals orientPoints(const PointView& points, const Neighborhoods& neighborh
   const auto orient = [&](const PointView& subset, const Neighborhoods& table) {
     return orientAtOneScale(subset, table, settings, hints, threads, {}, nullptr);
   };
+  // A coarser level knows nothing of what is around each point.
+  const std::vector<std::uint8_t> around = out.around;
   out.level = followCoarserLevels(points, neighborhoods, orient, threads, out);
+  out.around = around;
   return out;
 }
 
