@@ -111,7 +111,7 @@ AutoNormals orientAtOneScale(const PointView& points, const Neighborhoods& neigh
   }
   out.around = lookAround(sheets, filtered.confidences);
   out.confidences = std::move(filtered.confidences);
-  out.scan_scales = sheets.scan_scales;
+  out.scan_scales = sheets.traits.scan_scales;
   out.components = result.point_components;
   // The less of both: do the normals around agree, and is their segment sure? Of a part of a cloud
   // only the first is known yet.

@@ -92,7 +92,8 @@ AutoStages runAutoStages(PreparedCloud& cloud, const PipelineOptions& options,
       out.denoised ? PointView{smoothed.data(), 4, cloud.size()} : cloud.points();
   const Neighborhoods& table = out.denoised ? of_smoothed : cloud.neighborhoods();
   const AutomaticOptions& settings = options.orientation.automatic;
-  AutoNormals oriented = orientPoints(points, table, settings, hints, options.threads, begin, record);
+  AutoNormals oriented =
+      orientPoints(points, table, settings, hints, options.threads, begin, record);
   begin("segmentation", 0.78);
   segmentOriented(points, table, segmentation::inUnitOf(cloud, options.segmentation),
                   options.threads, oriented, out);
