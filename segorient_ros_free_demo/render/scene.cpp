@@ -67,13 +67,13 @@ Scene makeScene(const CloudTable& table, const LocalPoints& points, const float*
   if (!table.triangles.empty()) {
     addMesh(table, points.view(), palette, scene);
   } else {
-    std::vector<std::size_t> rows;
-    scene.splats = makeSplats(points.view(), NormalSource(table, normals), threads, rows);
-    const auto count = static_cast<std::ptrdiff_t>(rows.size());
+    scene.splats = makeSplats(points.view(), NormalSource(table, normals), threads, scene.rows);
+    const auto count = static_cast<std::ptrdiff_t>(scene.rows.size());
 #pragma omp parallel for num_threads(resolveThreads(threads))
     for (std::ptrdiff_t i = 0; i < count; ++i) {
       Splat& s = scene.splats[static_cast<std::size_t>(i)];
-      s.side = palette.set(rows[static_cast<std::size_t>(i)], s.normal, s.side, s.front, s.back);
+      s.side =
+          palette.set(scene.rows[static_cast<std::size_t>(i)], s.normal, s.side, s.front, s.back);
     }
   }
   addMarkers(facts.sensors, Marker::Kind::Sensor, points, scene);

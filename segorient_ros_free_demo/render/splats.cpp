@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "render/page/disc_radii.h"
 
@@ -28,16 +29,15 @@ float dot(const Vec& a, const Vec& b) {
 }
 
 // What the neighbours of a splat tell of the surface around. Signs of normals play no part.
-void lookAround(const std::vector<Splat>& splats, const std::vector<std::int32_t>& splat_of,
-                const pcl::index_t* neighbors, int count, Splat& s) {
+void lookAround(const std::vector<Splat>& splats, const pcl::index_t* neighbors, int count,
+                Splat& s) {
   std::array<float, kCover> cosines{};
   std::array<float, kCover> heights{};
   std::size_t seen = 0;
   std::size_t same = 0;
   for (int j = 1; j < count; ++j) {
-    const std::int32_t other = splat_of[static_cast<std::size_t>(neighbors[j])];
-    if (other < 0) continue;
-    const Splat& o = splats[static_cast<std::size_t>(other)];
+    const auto other = static_cast<std::size_t>(neighbors[j]);
+    const Splat& o = splats[other];
     const float cosine = std::abs(dot(s.normal, o.normal));
     if (!std::isfinite(cosine)) continue;
     if (j <= kCover) cosines[seen++] = cosine;
@@ -66,15 +66,59 @@ void lookAround(const std::vector<Splat>& splats, const std::vector<std::int32_t
   s.turn = std::sqrt(std::max(0.F, 0.5F * (1.F - *at)));  // half way, where the discs meet
 }
 
+// The lowest 21 bits of a number, two free bits after each.
+std::uint64_t spread(std::uint64_t v) {
+  v = (v | v << 32) & 0x1f00000000ffffULL;
+  v = (v | v << 16) & 0x1f0000ff0000ffULL;
+  v = (v | v << 8) & 0x100f00f00f00f00fULL;
+  v = (v | v << 4) & 0x10c30c30c30c30c3ULL;
+  return (v | v << 2) & 0x1249249249249249ULL;
+}
+
+// Rows of finite points, neighbours in space near each other (Morton's order): all that follows
+// looks from points to those around, and a large cloud in random order does not fit into caches.
+std::vector<std::size_t> orderedRows(const PointView& points) {
+  constexpr double kCells = 2097151.0;
+  std::vector<std::size_t> rows;
+  std::array<double, 3> low;
+  low.fill(std::numeric_limits<double>::max());
+  double extent = 0.0;
+  for (std::size_t i = 0; i < points.size; ++i) {
+    if (!isFinite(points[i])) continue;
+    rows.push_back(i);
+    for (std::size_t a = 0; a < 3; ++a) {
+      low[a] = std::min(low[a], static_cast<double>(points[i][a]));
+    }
+  }
+  for (const std::size_t i : rows) {
+    for (std::size_t a = 0; a < 3; ++a) {
+      extent = std::max(extent, static_cast<double>(points[i][a]) - low[a]);
+    }
+  }
+  if (!(extent > 0.0)) return rows;
+  std::vector<std::pair<std::uint64_t, std::size_t>> keyed;
+  keyed.reserve(rows.size());
+  for (const std::size_t i : rows) {
+    std::uint64_t key = 0;
+    for (std::size_t a = 0; a < 3; ++a) {
+      const double cell = (static_cast<double>(points[i][a]) - low[a]) / extent * kCells;
+      key |= spread(static_cast<std::uint64_t>(cell)) << a;
+    }
+    keyed.emplace_back(key, i);
+  }
+  std::sort(keyed.begin(), keyed.end());
+  std::transform(keyed.begin(), keyed.end(), rows.begin(), [](const auto& k) { return k.second; });
+  return rows;
+}
+
 void setSides(const PointView& points, const Neighborhoods& neighborhoods,
               const std::vector<float>& radii, float middle, int threads,
-              const std::vector<std::size_t>& rows, std::vector<Splat>& splats) {
-  std::vector<float> normals(3 * points.size, NAN);
-  for (std::size_t i = 0; i < rows.size(); ++i) {
-    std::copy_n(splats[i].normal.begin(), 3, &normals[3 * rows[i]]);
-  }
+              std::vector<Splat>& splats) {
+  std::vector<float> normals;
+  normals.reserve(3 * splats.size());
+  for (const Splat& s : splats) normals.insert(normals.end(), s.normal.begin(), s.normal.end());
   const std::vector<Side> sides = findSides(points, normals, neighborhoods, radii, middle, threads);
-  for (std::size_t i = 0; i < rows.size(); ++i) splats[i].side = sides[rows[i]];
+  for (std::size_t i = 0; i < splats.size(); ++i) splats[i].side = sides[i];
 }
 
 }  // namespace
@@ -92,8 +136,16 @@ std::array<float, 3> NormalSource::at(std::size_t row) const {
           static_cast<float>(n[2] / length)};
 }
 
-std::vector<Splat> makeSplats(const PointView& points, const NormalSource& normals, int threads,
+std::vector<Splat> makeSplats(const PointView& all, const NormalSource& normals, int threads,
                               std::vector<std::size_t>& rows) {
+  rows = orderedRows(all);
+  std::vector<float> near;
+  near.reserve(3 * rows.size());
+  for (const std::size_t row : rows) near.insert(near.end(), all[row], all[row] + 3);
+  PointView points;
+  points.data = near.data();
+  points.stride = 3;
+  points.size = rows.size();
   search::MedianHashIndex index;
   search::MedianHashIndex::Options options;
   options.threads = threads;
@@ -103,31 +155,23 @@ std::vector<Splat> makeSplats(const PointView& points, const NormalSource& norma
 
   float middle = 0.F;
   const std::vector<float> radii = discRadii(neighborhoods, middle);
-  std::vector<std::int32_t> splat_of(points.size, -1);
-  rows.clear();
-  for (std::size_t i = 0; i < points.size; ++i) {
-    if (!isFinite(points[i])) continue;
-    splat_of[i] = static_cast<std::int32_t>(rows.size());
-    rows.push_back(i);
-  }
   std::vector<Splat> splats(rows.size());
   const auto count = static_cast<std::ptrdiff_t>(rows.size());
   const int workers = resolveThreads(threads);
 #pragma omp parallel for num_threads(workers)
-  for (std::ptrdiff_t i = 0; i < count; ++i) {
-    const std::size_t row = rows[static_cast<std::size_t>(i)];
-    Splat& s = splats[static_cast<std::size_t>(i)];
-    s.position = {points[row][0], points[row][1], points[row][2]};
-    s.normal = normals.at(row);
-    s.radius = radii[row];
+  for (std::ptrdiff_t k = 0; k < count; ++k) {
+    const auto i = static_cast<std::size_t>(k);
+    Splat& s = splats[i];
+    s.position = {points[i][0], points[i][1], points[i][2]};
+    s.normal = normals.at(rows[i]);
+    s.radius = radii[i];
   }
   if (!normals.any()) return splats;
-  setSides(points, neighborhoods, radii, middle, threads, rows, splats);
+  setSides(points, neighborhoods, radii, middle, threads, splats);
 #pragma omp parallel for schedule(static, 4096) num_threads(workers)
-  for (std::ptrdiff_t i = 0; i < count; ++i) {
-    const std::size_t row = rows[static_cast<std::size_t>(i)];
-    lookAround(splats, splat_of, neighborhoods.indices(row), neighborhoods.count(row),
-               splats[static_cast<std::size_t>(i)]);
+  for (std::ptrdiff_t k = 0; k < count; ++k) {
+    const auto i = static_cast<std::size_t>(k);
+    lookAround(splats, neighborhoods.indices(i), neighborhoods.count(i), splats[i]);
   }
   return splats;
 }

@@ -25,9 +25,9 @@ class NormalSource {
   const float* normals_;
 };
 
-/// A splat for each point with finite coordinates, without colours.
-/// \param rows of the splats in `points`
-std::vector<Splat> makeSplats(const PointView& points, const NormalSource& normals, int threads,
+/// A splat for each point with finite coordinates, without colours, in an order of their own.
+/// \param rows of the splats in `all`
+std::vector<Splat> makeSplats(const PointView& all, const NormalSource& normals, int threads,
                               std::vector<std::size_t>& rows);
 
 }  // namespace segorient::program

@@ -109,9 +109,12 @@ void addTurned(const Task& task, std::uint32_t segment, const std::vector<View>&
   std::vector<float> turned = task.normals;
   for (std::size_t i = 0; i < task.labels.size(); ++i) {
     const bool member = task.labels[i] == static_cast<std::int32_t>(segment);
+    for (std::size_t a = 0; a < 3 && member; ++a) turned[4 * i + a] *= -1.F;
+  }
+  for (std::size_t i = 0; i < right.splats.size(); ++i) {
+    const bool member = task.labels[right.rows[i]] == static_cast<std::int32_t>(segment);
     right.splats[i].front = member ? kGreen : kGrey;
     right.splats[i].back = kGrey;
-    for (std::size_t a = 0; a < 3 && member; ++a) turned[4 * i + a] *= -1.F;
   }
   const Scene wrong = task.scene(turned);
   for (const View& view : views) {
