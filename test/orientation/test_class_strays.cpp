@@ -139,6 +139,48 @@ TEST(Strays, OfOtherWaysToNeighbors) {
   }
 }
 
+// Normals that strays were given: a point that is nowhere faces nowhere.
+TEST(Strays, OfGivenNormals) {
+  const QuietPcl quiet;
+  const XyzCloud clean = shapes();
+  const NormalCloud normals =
+      runEstimation<PlaneNormalEstimation<pcl::PointXYZ, pcl::Normal>>("", clean.makeShared())
+          .normals;
+  const pcl::PointXYZ places[] = {{1e30F, 1e30F, 1e30F}, {kNaN, 0.F, 0.F}};
+  for (const pcl::PointXYZ& at : places) {
+    const Spoilt spoilt = spoil(clean, 10, at);
+    NormalCloud with_strays;
+    with_strays.resize(spoilt.cloud->size());
+    for (pcl::Normal& n : with_strays) n = pcl::Normal(0.F, 0.F, 1.F);
+    for (std::size_t i = 0; i < clean.size(); ++i) with_strays[spoilt.kept[i]] = normals[i];
+    for (const OrientationMethod method : {OrientationMethod::AUTO, OrientationMethod::COMBINED}) {
+      SCOPED_TRACE(std::string(toString(method)) + ", " + std::to_string(at.x));
+      SegmentOrientation<pcl::PointXYZ, pcl::Normal> orientation;
+      orientation.setMethod(method);
+      NormalCloud expected;
+      orientation.setInputCloud(clean.makeShared());
+      orientation.setInputNormals(normals.makeShared());
+      orientation.compute(expected);
+      NormalCloud found;
+      orientation.setInputCloud(spoilt.cloud);
+      orientation.setInputNormals(with_strays.makeShared());
+      orientation.compute(found);
+      ASSERT_EQ(found.size(), spoilt.cloud->size());
+      EXPECT_FALSE(found.is_dense);
+      std::size_t other = 0;
+      for (std::size_t i = 0; i < clean.size(); ++i) {
+        other += !isSame(found[spoilt.kept[i]], expected[i]);
+      }
+      EXPECT_EQ(other, 0U);
+      for (std::size_t row = 0; row < spoilt.cloud->size(); ++row) {
+        if (std::binary_search(spoilt.kept.begin(), spoilt.kept.end(), row)) continue;
+        EXPECT_TRUE(std::isnan(found[row].normal_x)) << row;
+        EXPECT_EQ(orientation.getLabels()[row], -1) << row;
+      }
+    }
+  }
+}
+
 // Near enough to be points: the others keep their signs and, within a hair, their angles.
 TEST(Strays, WithinFloatsChangeNoSign) {
   const QuietPcl quiet;

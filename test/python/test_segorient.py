@@ -545,7 +545,7 @@ class Inputs(unittest.TestCase):
     def test_any_number_of_threads(self):
         points = sphere(1000)[0]
         expected = segorient.orient(points, threads=1).normals
-        for threads in (2, 7, 65536):
+        for threads in (2, 7, 65536, 65537, 2**31 - 1):
             np.testing.assert_array_equal(segorient.orient(points, threads=threads).normals, expected)
 
 

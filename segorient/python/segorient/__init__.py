@@ -260,6 +260,10 @@ def _angle(name: str, value: Optional[float]) -> Optional[float]:
     return float(value)  # type: ignore[arg-type]
 
 
+# As many as the program takes.
+_MOST_THREADS = (1 << 31) - 1
+
+
 def _whole(name: str, value: Optional[int], least: int, most: int) -> Optional[int]:
     if value is None:
         return None
@@ -295,7 +299,7 @@ def _options(
         "delta": _angle("delta", delta),
         "epsilon": _angle("epsilon", epsilon),
         "recompute": _whole("recompute", recompute, 0, 100),
-        "threads": _whole("threads", threads, 0, 1 << 16),
+        "threads": _whole("threads", threads, 0, _MOST_THREADS),
     }
     return {name: value for name, value in options.items() if value is not None}
 
@@ -634,7 +638,7 @@ def knn(
     :raises TypeError, ValueError: for arguments that make no sense
     """
     wanted = _whole("k", k, 1, 1000)
-    cores = _whole("threads", threads, 0, 1 << 16)
+    cores = _whole("threads", threads, 0, _MOST_THREADS)
     if wanted is None or cores is None:
         raise TypeError("k and threads must be whole numbers")
     array, origin = _local(points)
@@ -661,7 +665,7 @@ def sensors(
     :param threads: 0 = as many as the work is worth; results do not depend on it
     :raises TypeError, ValueError: for arguments that make no sense
     """
-    cores = _whole("threads", threads, 0, 1 << 16)
+    cores = _whole("threads", threads, 0, _MOST_THREADS)
     pixels = _whole("width", width, 0, 1 << 30)
     if cores is None or pixels is None:
         raise TypeError("width and threads must be whole numbers")

@@ -35,7 +35,9 @@ namespace segorient {
 /// brings the result over to these: the settings of segments and of the paper's methods do not
 /// change its signs. It does not smooth noisy positions, as OrientedNormalEstimation does.
 ///
-/// Every point that has a normal is oriented; NaN stays NaN. With indices, output i belongs to
+/// Every point that has a normal is oriented. NaN stays NaN, and a point that is nowhere, with NaN
+/// coordinates or farther from the bulk of the points than 2^24 times its extent, gets NaN whatever
+/// normal it had; is_dense is cleared then. With indices, output i belongs to
 /// index i; the whole cloud is oriented all the same. No cloud, normals of another size, segments
 /// of another cloud or a negative k: PCL_ERROR and an empty output.
 template <typename PointT, typename NormalT>

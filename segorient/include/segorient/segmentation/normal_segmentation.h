@@ -107,8 +107,7 @@ class NormalSegmentation : public pcl::PCLBase<PointT> {
 
   /// Points farther than this off the tangent plane of the point that they are reached from join a
   /// segment but do not pass it on, nor are segments united there; in the cloud's unit of length,
-  /// default 0.05. Not above 0 while
-  /// the test is on: no segments, as in PCL.
+  /// default 0.05. Not above 0 while the test is on: no segments, as in PCL.
   void setResidualThreshold(float residual);
   float getResidualThreshold() const { return residual_; }
 
