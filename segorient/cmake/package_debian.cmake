@@ -12,3 +12,5 @@ foreach(file ${staged})
     file(RPATH_REMOVE FILE ${file})
   endif()
 endforeach()
+configure_file(${CMAKE_CURRENT_LIST_DIR}/../packaging/lintian-overrides
+  ${CPACK_TEMPORARY_DIRECTORY}/usr/share/lintian/overrides/segorient COPYONLY)

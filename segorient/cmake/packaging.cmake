@@ -56,8 +56,7 @@ set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "segmented, consistently oriented point cl
 set(CPACK_PACKAGE_DESCRIPTION_FILE ${PROJECT_SOURCE_DIR}/segorient/packaging/description.txt)
 set(CPACK_DEBIAN_PACKAGE_PRIORITY optional)
 set(CPACK_DEBIAN_PACKAGE_GENERATE_SHLIBS ON)
-# lintian has no errors to tell. Its warnings: CPack writes scripts that call ldconfig beside the
-# trigger, and library, headers and program are in one package, which Debian itself would part.
+# lintian has no errors to tell; packaging/lintian-overrides says what its warnings are about.
 set(CPACK_DEBIAN_PACKAGE_CONTROL_EXTRA ${PROJECT_SOURCE_DIR}/segorient/packaging/triggers)
 set(CPACK_DEBIAN_PACKAGE_CONTROL_STRICT_PERMISSION TRUE)
 set(CPACK_PRE_BUILD_SCRIPTS ${PROJECT_SOURCE_DIR}/segorient/cmake/package_debian.cmake)
