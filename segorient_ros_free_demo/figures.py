@@ -7,7 +7,7 @@ usage: figures.py [BUILD_DIRECTORY [CLOUDS]]
        figures.py BUILD_DIRECTORY --worst PICTURE CLOUD.ply ...
 
 The shipped Fandisk is enough for most of them. With CLOUDS, a directory of clouds with true normals
-and their manifest.tsv, those of the paper's other objects, a real scan (in its folder real) and the
+and their manifest.tsv, those of the paper's other objects, a real scan and the
 worst places are drawn (which needs matplotlib), and the table of the methods of orientation is printed (target
 orientation_benchmark). Where the target search_benchmark was built, the plot of the search is drawn
 as well, which takes minutes. The second form draws only the worst place of each CLOUD, whose
@@ -99,9 +99,9 @@ def figures(build):
 
 
 def scan(build, cloud):
-    """A real scan, PCL's normals beside ours: an ISPRS filter test scene from the air (PCL's data, BSD)."""
+    """A real scan, PCL's normals beside ours: ten range scans of the Stanford Bunny, merged."""
     run(build / "bin/segorient", "compare", cloud, "--picture", PICTURES / "scan.png",
-        "--azimuth", 20, "--elevation", 65, "--quiet")
+        "--azimuth", 265, "--elevation", 65, "--quiet")
 
 
 def read_ply(path, np):
@@ -163,7 +163,7 @@ def main():
     if len(sys.argv) > 2:
         names = ("thorlike_71292", "demosthenes_20k", "wingnut_20k")
         worst(build, [Path(sys.argv[2]) / f"{name}.ply" for name in names], PICTURES / "worst.png")
-        scan(build, Path(sys.argv[2]) / "real/als_isprs_samp11.ply")
+        scan(build, Path(sys.argv[2]) / "real_bunny10scans_60k.ply")
         run(ROOT / "segorient_ros_free_demo/paper_figures.sh", sys.argv[2], build)
         run(build / "bin/orientation_benchmark", sys.argv[2])
     if (build / "bin/search_benchmark").exists():

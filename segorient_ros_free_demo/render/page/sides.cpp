@@ -10,32 +10,18 @@
 #include <cstring>
 #include <limits>
 
+#include "render/page/depth_maps.h"
+
 namespace segorient::program {
 namespace {
 
-using Vec = std::array<float, 3>;
-
-constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
-
-constexpr int kAxes = 32;  // looked along both ways: some 17 degrees apart
-// A point counts from directions within 60 degrees of its normal: flatter ones see its
-// neighbourhood more than itself.
-constexpr float kLeastCosine = 0.5F;
-// A square as large as a disc, with eight points of a surface in it.
-constexpr float kPixel = 1.77F;
-constexpr double kMostPixels = 400'000.0;  // of a map: two of them stay in a core's cache
-// Points of the map of one direction: ten a pixel leave none of a surface empty.
-constexpr std::size_t kMostDrawn = 2'000'000;
 // Points that ask from one direction. Larger clouds take turns: neighbours ask from the others.
 constexpr std::size_t kMostAsked = 500'000;
-constexpr float kLift = 0.5F;        // radii: what lies less far before a point's plane is its own
-constexpr float kThin = 0.15F;       // radii: the same for what is parallel; walls are thicker
-constexpr float kNoise = 2.F;        // standard deviations
-constexpr float kUneven = 2.F;       // times the middle noise
-constexpr float kQuartile = 0.32F;   // of them, one in four is smaller than so many
-constexpr float kSameSheet = 0.82F;  // cosine of 35 degrees, as for edges
-constexpr float kLevel = 0.5F;       // sine of 30 degrees: neighbours lie along the plane
-constexpr float kFlat = 0.1F;        // sine of 6 degrees: they lie in it
+constexpr float kNoise = 2.F;       // standard deviations
+constexpr float kUneven = 2.F;      // times the middle noise
+constexpr float kQuartile = 0.32F;  // of them, one in four is smaller than so many
+constexpr float kLevel = 0.5F;      // sine of 30 degrees: neighbours lie along the plane
+constexpr float kFlat = 0.1F;       // sine of 6 degrees: they lie in it
 // Fewer neighbours are no surface that would tell that a point is wrong.
 constexpr int kSurface = 4;
 // Seen from one side so many times as often as from the other: that one is outside. More, and the
@@ -48,164 +34,6 @@ constexpr int kLeastSights = 1;
 constexpr int kFewest = 32;
 // Of the neighbours, so many in four that point the other way contradict a point.
 constexpr int kContradict = 3;
-
-float dot(const Vec& a, const Vec& b) {
-  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
-// Directions of half a sphere, evenly: a spiral by the golden angle.
-Vec axisOf(int i) {
-  const double z = (i + 0.5) / kAxes;
-  const double turn = i * M_PI * (3.0 - std::sqrt(5.0));
-  const double r = std::sqrt(1.0 - z * z);
-  return {static_cast<float>(r * std::cos(turn)), static_cast<float>(r * std::sin(turn)),
-          static_cast<float>(z)};
-}
-
-Vec cross(const Vec& a, const Vec& b) {
-  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
-}
-
-// Points and normals, packed, and what belongs to them.
-struct Sample {
-  std::vector<Vec> points;  // from their middle
-  std::vector<Vec> normals;
-  std::vector<float> radii;
-  std::vector<float> noise;          // so far before its plane its own surface may lie for that
-  std::vector<std::uint32_t> turns;  // whose turn it is: a number that depends on the place alone
-  float middle = 0.F;
-};
-
-// The nearest point of each pixel as seen from both ends of an axis.
-class DepthMaps {
- public:
-  DepthMaps(const Sample& sample, int axis) : sample_(sample), axis_(axis) {
-    towards_ = axisOf(axis);
-    right_ =
-        cross(towards_, std::abs(towards_[0]) < 0.6F ? Vec{1.F, 0.F, 0.F} : Vec{0.F, 1.F, 0.F});
-    const float length = std::sqrt(dot(right_, right_));
-    for (float& v : right_) v /= length;
-    up_ = cross(towards_, right_);
-    measure();
-    draw();
-  }
-
-  // Adds 1 to `front` or `back` of each point whose turn it is, where it is seen from there.
-  void count(std::size_t modulus, std::vector<std::uint8_t>& front,
-             std::vector<std::uint8_t>& back) const {
-    for (std::size_t i = 0; i < sample_.points.size(); ++i) {
-      if (sample_.turns[i] % modulus != static_cast<std::size_t>(axis_) % modulus) continue;
-      const float facing = dot(towards_, sample_.normals[i]);
-      if (!(std::abs(facing) >= kLeastCosine)) continue;
-      const std::size_t pixel = pixelOf(turned(sample_.points[i]));
-      for (const bool near : {true, false}) {
-        // The viewer sees the front if the normal faces there.
-        const bool is_front = (facing > 0.F) == near;
-        if (isHidden(i, (near ? near_ : far_)[pixel].point, is_front ? 1.F : -1.F)) continue;
-        std::uint8_t& counter = (is_front ? front : back)[i];
-#pragma omp atomic
-        ++counter;
-      }
-    }
-  }
-
- private:
-  struct Nearest {
-    float depth;
-    std::uint32_t point;
-  };
-
-  // Whether q lies before the plane of point i, on the side that `sign` says.
-  bool isHidden(std::size_t i, std::uint32_t q, float sign) const {
-    if (q == kNone) return false;
-    const Vec& n = sample_.normals[i];
-    const Vec& m = sample_.normals[q];
-    const Vec& from = sample_.points[i];
-    const Vec& at = sample_.points[q];
-    const Vec to{at[0] - from[0], at[1] - from[1], at[2] - from[2]};
-    const float height = dot(n, to);
-    const float cosine = dot(n, m);
-    const float noise = sample_.noise[i];
-    const float radius = sample_.radii[i];
-    if (std::abs(cosine) < kSameSheet) return sign * height > kLift * radius + noise;
-    // Of one surface, however it bends, the planes of both lie as far off the other point, in
-    // opposite directions.
-    const float level = 0.5F * (height + std::copysign(1.F, cosine) * dot(m, to));
-    return sign * level > kThin * radius + noise;
-  }
-  Vec turned(const Vec& p) const {
-    return {dot(right_, p), dot(up_, p), dot(towards_, p)};
-  }
-  void measure() {
-    std::array<float, 2> high{};
-    low_.fill(std::numeric_limits<float>::max());
-    high.fill(std::numeric_limits<float>::lowest());
-    for (const Vec& point : sample_.points) {
-      const Vec p = turned(point);
-      for (std::size_t a = 0; a < 2; ++a) {
-        low_[a] = std::min(low_[a], p[a]);
-        high[a] = std::max(high[a], p[a]);
-      }
-    }
-    const double width = static_cast<double>(high[0]) - static_cast<double>(low_[0]);
-    const double height = static_cast<double>(high[1]) - static_cast<double>(low_[1]);
-    double pixel = static_cast<double>(kPixel * sample_.middle);
-    pixel = std::max(pixel, std::max(width, height) / kMostPixels);
-    pixel = std::max(pixel, std::sqrt(width * height / kMostPixels));
-    pixel_ = static_cast<float>(pixel);
-    columns_ = static_cast<int>(width / pixel) + 1;
-    rows_ = static_cast<int>(height / pixel) + 1;
-  }
-  int column(float x) const {
-    return cut((x - low_[0]) / pixel_, columns_);
-  }
-  int row(float y) const {
-    return cut((y - low_[1]) / pixel_, rows_);
-  }
-  static int cut(float at, int size) {
-    return static_cast<int>(std::clamp(at, 0.F, static_cast<float>(size - 1)));
-  }
-  std::size_t pixelOf(const Vec& p) const {
-    return static_cast<std::size_t>(row(p[1])) * static_cast<std::size_t>(columns_) +
-           static_cast<std::size_t>(column(p[0]));
-  }
-  void draw() {
-    const std::size_t size = static_cast<std::size_t>(rows_) * static_cast<std::size_t>(columns_);
-    constexpr float kFar = std::numeric_limits<float>::max();
-    near_.assign(size, {-kFar, kNone});
-    far_.assign(size, {kFar, kNone});
-    const std::size_t modulus = sample_.points.size() / kMostDrawn + 1;
-    for (std::size_t i = 0; i < sample_.points.size(); ++i) {
-      if (sample_.turns[i] % modulus != static_cast<std::size_t>(axis_) % modulus) continue;
-      const Vec p = turned(sample_.points[i]);
-      // Where points are far apart, each stands for more than its own pixel.
-      const float reach = std::max(0.F, sample_.radii[i] - 0.5F * kPixel * sample_.middle);
-      const int right = column(p[0] + reach);
-      const int bottom = row(p[1] + reach);
-      for (int y = row(p[1] - reach); y <= bottom; ++y) {
-        for (int x = column(p[0] - reach); x <= right; ++x) {
-          const std::size_t pixel =
-              static_cast<std::size_t>(y) * static_cast<std::size_t>(columns_) +
-              static_cast<std::size_t>(x);
-          if (p[2] > near_[pixel].depth) near_[pixel] = {p[2], static_cast<std::uint32_t>(i)};
-          if (p[2] < far_[pixel].depth) far_[pixel] = {p[2], static_cast<std::uint32_t>(i)};
-        }
-      }
-    }
-  }
-
-  const Sample& sample_;
-  int axis_;
-  Vec towards_{};
-  Vec right_{};
-  Vec up_{};
-  std::array<float, 2> low_{};
-  float pixel_ = 0.F;
-  int columns_ = 0;
-  int rows_ = 0;
-  std::vector<Nearest> near_;
-  std::vector<Nearest> far_;
-};
 
 std::uint32_t turnOf(const float* p) {
   std::uint64_t hash = 0;

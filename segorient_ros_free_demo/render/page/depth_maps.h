@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the segorient authors
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <vector>
+
+namespace segorient::program {
+
+using Vec = std::array<float, 3>;
+
+constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
+constexpr int kAxes = 32;            // looked along both ways: some 17 degrees apart
+constexpr float kSameSheet = 0.82F;  // cosine of 35 degrees, as for edges
+
+inline float dot(const Vec& a, const Vec& b) {
+  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+/// Points and normals, packed, and what belongs to them.
+struct Sample {
+  std::vector<Vec> points;  ///< from their middle
+  std::vector<Vec> normals;
+  std::vector<float> radii;
+  std::vector<float> noise;          ///< so far before its plane its own surface may lie for that
+  std::vector<std::uint32_t> turns;  ///< whose turn it is: a number that depends on the place alone
+  float middle = 0.F;
+};
+
+/// The nearest point of each pixel as seen from both ends of an axis.
+class DepthMaps {
+ public:
+  /// Looks at the sample along one of kAxes directions. The sample must outlive this object.
+  DepthMaps(const Sample& sample, int axis);
+
+  /// Adds 1 to `front` or `back` of each point whose turn it is, where it is seen from there.
+  void count(std::size_t modulus, std::vector<std::uint8_t>& front,
+             std::vector<std::uint8_t>& back) const;
+
+ private:
+  struct Nearest {
+    float depth;
+    std::uint32_t point;
+  };
+
+  bool isHidden(std::size_t i, std::uint32_t q, float sign) const;
+  Vec turned(const Vec& p) const { return {dot(right_, p), dot(up_, p), dot(towards_, p)}; }
+  void measure();
+  int column(float x) const;
+  int row(float y) const;
+  std::size_t pixelOf(const Vec& p) const;
+  void draw();
+
+  const Sample& sample_;
+  int axis_;
+  Vec towards_{};
+  Vec right_{};
+  Vec up_{};
+  std::array<float, 2> low_{};
+  float pixel_ = 1.F;
+  int columns_ = 1;
+  int rows_ = 1;
+  std::vector<Nearest> near_;
+  std::vector<Nearest> far_;
+};
+
+}  // namespace segorient::program
