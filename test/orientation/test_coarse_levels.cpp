@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <memory>
 #include <numeric>
 #include <random>
 #include <string>
@@ -76,15 +77,17 @@ Cloud hollowSphere(std::size_t n, double wall, double noise, unsigned seed) {
   return out;
 }
 
-OrientedCloud orient(const std::vector<float>& xyz, bool coarse_levels = true, int threads = 1) {
+OrientedCloud orient(const std::vector<float>& xyz, bool coarse_levels = true, int threads = 1,
+                     const OrientationHints& hints = {}) {
   PipelineOptions options;
   options.threads = threads;
+  options.orientation.hints = std::make_shared<OrientationHints>(hints);
   options.orientation.automatic.coarse_levels = coarse_levels;
   return orientCloud(viewOf(xyz), nullptr, options);
 }
 
-double right(const Cloud& cloud, bool coarse_levels = true) {
-  return shareOutward(orient(cloud.xyz, coarse_levels).normals, cloud.normals);
+double right(const Cloud& cloud, bool coarse_levels = true, const OrientationHints& hints = {}) {
+  return shareOutward(orient(cloud.xyz, coarse_levels, 1, hints).normals, cloud.normals);
 }
 
 class Layers : public testing::TestWithParam<double> {};
@@ -106,6 +109,48 @@ TEST(CoarseLevels, AreWhatMakesThemOne) {
       components.begin(), components.end(), std::size_t{0},
       [](std::size_t sum, const ComponentOrientationResult& c) { return sum + c.points; });
   EXPECT_EQ(points, cloud.size());
+}
+
+// What is known of single points holds at every scale.
+TEST(CoarseLevels, FollowAViewpoint) {
+  const Cloud cloud = twoScans(6000, 1.0, 1);
+  for (const std::array<float, 3>& place :
+       {std::array<float, 3>{4.F, 1.F, 2.F}, std::array<float, 3>{0.F, 0.F, 30.F}}) {
+    OrientationHints hints;
+    hints.has_viewpoint = true;
+    hints.viewpoint = place;
+    EXPECT_LT(right(cloud, false, hints), 0.95);
+    EXPECT_GE(right(cloud, true, hints), 0.99);
+  }
+}
+
+TEST(CoarseLevels, FollowSeedsAndNormalsThatAreKnown) {
+  const Cloud cloud = twoScans(6000, 1.0, 1);
+  OrientationHints seeds;
+  OrientationHints known;
+  for (std::size_t i = 0; i < cloud.size(); ++i) {
+    const float* p = &cloud.xyz[4 * i];
+    const float* n = &cloud.normals[4 * i];
+    for (std::size_t a = 0; a < 3; ++a) known.normals.push_back(n[a]);
+    if (i % 1000 == 0) seeds.seeds.push_back({{p[0], p[1], p[2]}, {n[0], n[1], n[2]}});
+  }
+  for (const OrientationHints& hints : {seeds, known}) {
+    EXPECT_LT(right(cloud, false, hints), 0.95);
+    EXPECT_GE(right(cloud, true, hints), 0.99);
+  }
+}
+
+// Points seen from within face inward, whatever a scale says of them.
+TEST(CoarseLevels, LeaveSensorsTheLastWord) {
+  const Cloud cloud = twoScans(6000, 1.0, 1);
+  OrientationHints hints;
+  hints.viewpoints.assign(3 * cloud.size(), 0.F);
+  for (std::size_t i = 0; i < cloud.size(); ++i) {
+    for (std::size_t a = 0; a < 3; ++a) {
+      hints.viewpoints[3 * i + a] = cloud.xyz[4 * i + a] - cloud.normals[4 * i + a];
+    }
+  }
+  EXPECT_LE(right(cloud, true, hints), 0.002);
 }
 
 // A closed wall has the same points as two layers, but for its even thickness.

@@ -48,8 +48,9 @@ struct AutomaticOptions {
                                  ///< wind_components
   bool infer_viewpoint = true;   ///< a scan from one place: what disagrees with it is turned over,
                                  ///< but for cavities that the winding number vouches for
-  /// Without hints: where points contradict each other, as in scans that do not quite fit, even
-  /// subsets are oriented as well, and their signs taken where they explain the cloud better.
+  /// Where points contradict each other, as in scans that do not quite fit, even subsets are
+  /// oriented as well, and their signs taken where they explain the cloud better. Not where points
+  /// have sensors of their own, which decide.
   bool coarse_levels = true;
 
   /// Where no sensor is known, look for some, see findSensors(): those that are sure count as if

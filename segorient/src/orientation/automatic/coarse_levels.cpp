@@ -30,10 +30,14 @@ constexpr float kSuspicious = 0.0001F;
 constexpr float kContradictory = 0.001F;
 // Radii in mean distances to the six nearest, sqrt(2) apart: layers up to half a radius apart are
 // one surface to a level. They keep about a fifth, a third and a tenth of the points; the last
-// half of them, which costs as much as all others: for noise on thin walls, where these fail.
+// half of them, which costs as much as all others, for noise on thin walls, where these fail.
 constexpr float kFirst = 2.F;
 constexpr std::array<float, 2> kOthers{1.5F, 2.8F};
 constexpr float kFinest = 1.F;
+// Share of pairs of neighbours with their backs to each other if a hundredth of a surface is wall
+// so thin that half of a point's neighbours are on its other side. Without such walls all levels
+// see the same surface, and where the first is no better, the others are not.
+constexpr float kWalls = 0.005F;
 // Energies of solutions that are equally good differ by less than a tenth, as other points count.
 constexpr float kClearlyLess = 0.9F;
 constexpr int kHeard = 8;
@@ -86,18 +90,51 @@ struct Handed {
   std::vector<float> around;  // 4 floats a point, see Heard::mean(); 0 where nothing was heard
 };
 
-Level orientSubset(const PointView& points, float radius, const OrientOneScale& orient,
-                   int threads) {
+// What is known of single points, for the points of a subset. Whether sensors are to be believed
+// shows in how densely they see, which an even subset does not: that is taken from the cloud.
+PointHints hintsOfSubset(const PointHints& hints, const std::vector<float>& toward,
+                         const BlueNoise& even, const PreparedCloud& subset) {
+  PointHints out;
+  out.surface = hints.surface;
+  out.has_viewpoint = hints.has_viewpoint;
+  for (std::size_t a = 0; a < 3; ++a) out.viewpoint[a] = hints.viewpoint[a] / subset.unit();
+  const auto pointOf = [&](std::size_t cell) {
+    return static_cast<std::size_t>(subset.pointOf(cell));
+  };
+  if (!hints.directions.empty()) {
+    out.directions.assign(3 * subset.size(), 0.F);
+    for (std::size_t i = 0; i < even.cell_of.size(); ++i) {
+      float* sum = &out.directions[3 * pointOf(even.cell_of[i])];
+      for (std::size_t a = 0; a < 3; ++a) sum[a] += hints.directions[3 * i + a];
+    }
+  }
+  if (!toward.empty()) {
+    out.toward.resize(3 * subset.size());
+    for (std::size_t c = 0; c < even.kept.size(); ++c) {
+      std::copy_n(&toward[3 * std::size_t{even.kept[c]}], 3, &out.toward[3 * pointOf(c)]);
+    }
+  }
+  for (PointHints::Seed seed : hints.seeds) {
+    seed.point = pointOf(even.cell_of[seed.point]);
+    out.seeds.push_back(seed);
+  }
+  return out;
+}
+
+Level orientSubset(const PointView& points, const PointHints& hints, const AutoNormals& fine,
+                   float radius, const OrientOneScale& orient, int threads) {
   Level level;
+  const BlueNoise even = thinOut(points, radius);
   std::vector<float> places;
-  for (const std::uint32_t i : thinOut(points, radius).kept) {
+  for (const std::uint32_t i : even.kept) {
     places.insert(places.end(), points[i], points[i] + 3);
     places.push_back(0.F);
   }
   level.cloud = PreparedCloud({places.data(), 4, places.size() / 4}, nullptr, threads);
   if (level.cloud.size() == 0) return level;
   level.cloud.findNeighbors(kSheetNeighbors, false);
-  level.found = orient(level.cloud.points(), level.cloud.neighborhoods());
+  level.found = orient(level.cloud.points(), level.cloud.neighborhoods(),
+                       hintsOfSubset(hints, fine.orientation.toward, even, level.cloud));
   return level;
 }
 
@@ -109,7 +146,10 @@ void listen(const PointView& points, Level& level, float radius, int threads, Ha
     schedule(static, 1024)
   for (std::size_t i = 0; i < points.size; ++i) {
     float* n = &out.found.normals[4 * i];
-    if (!isFinite(n)) continue;
+    if (!isFinite(n)) {
+      out.found.confidences[i] = 0.F;
+      continue;
+    }
     const float x[3] = {points[i][0] / unit, points[i][1] / unit, points[i][2] / unit};
     std::array<pcl::index_t, kHeard> near{};
     std::array<float, kHeard> squares{};
@@ -124,16 +164,20 @@ void listen(const PointView& points, Level& level, float radius, int threads, Ha
         out.found.components[i] = level.found.components[q];
       }
     }
-    out.found.confidences[i] = heard.confidence();
     heard.mean(&out.around[4 * i]);
+    if (!out.found.by_sensor.empty() && out.found.by_sensor[i] != 0) continue;
+    out.found.confidences[i] = heard.confidence();
     if (!heard.against()) continue;
     for (std::size_t a = 0; a < 3; ++a) n[a] = -n[a];
   }
 }
 
 // What the level knows of its own points, in the cloud's unit and by all its points.
-AutoOrientation inTermsOfTheCloud(Level& level, const std::vector<std::int32_t>& components) {
+AutoOrientation inTermsOfTheCloud(Level& level, const std::vector<std::int32_t>& components,
+                                  const AutoOrientation& fine) {
   AutoOrientation out = std::move(level.found.orientation);
+  out.sensors = fine.sensors;
+  out.toward = fine.toward;
   for (Contradiction& c : out.contradictions) {
     for (float& v : c.where) v *= level.cloud.unit();
   }
@@ -149,11 +193,12 @@ Handed handDown(const PointView& points, Level& level, float radius, int threads
   Handed out;
   out.found.spacing = fine.spacing;
   out.found.normals = fine.normals;
-  out.found.confidences.assign(points.size, 0.F);
+  out.found.confidences = fine.confidences;
+  out.found.by_sensor = fine.by_sensor;
   out.found.components.assign(points.size, -1);
   out.around.assign(4 * points.size, 0.F);
   listen(points, level, radius, threads, out);
-  out.found.orientation = inTermsOfTheCloud(level, out.found.components);
+  out.found.orientation = inTermsOfTheCloud(level, out.found.components, fine.orientation);
   return out;
 }
 
@@ -173,10 +218,11 @@ void mendLines(const std::vector<float>& around, std::vector<float>& normals) {
 // The best of the levels that were tried.
 class Choice {
  public:
-  Choice(const PointView& points, const Neighborhoods& neighborhoods, const OrientOneScale& orient,
-         int threads, const AutoNormals& fine)
+  Choice(const PointView& points, const Neighborhoods& neighborhoods, const PointHints& hints,
+         const OrientOneScale& orient, int threads, const AutoNormals& fine)
       : points_(points),
         neighborhoods_(neighborhoods),
+        hints_(hints),
         orient_(orient),
         threads_(threads),
         fine_(fine),
@@ -187,7 +233,7 @@ class Choice {
   // \param f radius in mean distances to the six nearest
   void tryLevel(float f) {
     const float radius = f * fine_.spacing;
-    Level level = orientSubset(points_, radius, orient_, threads_);
+    Level level = orientSubset(points_, hints_, fine_, radius, orient_, threads_);
     if (level.cloud.size() == 0) return;
     Handed coarse = handDown(points_, level, radius, threads_, fine_);
     const SignEnergy energy = judge_.judge(coarse.found.normals);
@@ -200,6 +246,7 @@ class Choice {
   }
 
   bool made() const { return chosen_ > 0.F; }
+  bool hasWalls() const { return own_.pairs.backs >= kWalls; }
   bool explainsHalf() const { return least_ < 0.5F * own_.total(); }
 
   // \return the radius of the best, 0 if it is the cloud itself
@@ -213,6 +260,7 @@ class Choice {
  private:
   const PointView& points_;
   const Neighborhoods& neighborhoods_;
+  const PointHints& hints_;
   const OrientOneScale& orient_;
   const int threads_;
   const AutoNormals& fine_;
@@ -226,12 +274,13 @@ class Choice {
 }  // namespace
 
 float followCoarserLevels(const PointView& points, const Neighborhoods& neighborhoods,
-                          const OrientOneScale& orient, int threads, AutoNormals& fine) {
+                          const PointHints& hints, const OrientOneScale& orient, int threads,
+                          AutoNormals& fine) {
   const float facing = opposedPairs(points, neighborhoods, fine.normals, threads).facing;
   if (facing < kSuspicious) return 0.F;
-  Choice choice(points, neighborhoods, orient, threads, fine);
+  Choice choice(points, neighborhoods, hints, orient, threads, fine);
   choice.tryLevel(kFirst);
-  if (facing < kContradictory && !choice.made()) return 0.F;
+  if (!choice.made() && (facing < kContradictory || !choice.hasWalls())) return 0.F;
   for (const float f : kOthers) choice.tryLevel(f);
   if (!choice.explainsHalf()) choice.tryLevel(kFinest);
   return choice.take(fine);

@@ -12,7 +12,8 @@
 namespace segorient::detail {
 
 /// Orients a cloud whose neighbours are known, at its own scale.
-using OrientOneScale = std::function<AutoNormals(const PointView&, const Neighborhoods&)>;
+using OrientOneScale =
+    std::function<AutoNormals(const PointView&, const Neighborhoods&, const PointHints&)>;
 
 /// Takes the signs of a coarser scale where a cloud's own points contradict each other: scans that
 /// lie half a spacing to a spacing apart are two surfaces at the scale of the points, which cross,
@@ -22,10 +23,14 @@ using OrientOneScale = std::function<AutoNormals(const PointView&, const Neighbo
 /// chooses; the points' own scale stays unless another one has clearly less. Without
 /// contradictions, as in clean clouds and thin walls, nothing is done that costs anything.
 ///
+/// Hints hold at every scale: a subset's points have those of the points that they stand for, and
+/// sensors that the cloud itself made out; points that their sensor decided keep their side.
+///
 /// \param fine what orient() found for all points; signs, confidences and components may be
 ///        replaced
 /// \return the radius of the subset that was chosen, in mean distances to the six nearest; 0 = none
 float followCoarserLevels(const PointView& points, const Neighborhoods& neighborhoods,
-                          const OrientOneScale& orient, int threads, AutoNormals& fine);
+                          const PointHints& hints, const OrientOneScale& orient, int threads,
+                          AutoNormals& fine);
 
 }  // namespace segorient::detail

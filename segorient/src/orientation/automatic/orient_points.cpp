@@ -59,7 +59,9 @@ AutoNormals orientAtOneScale(const PointView& points, const Neighborhoods& neigh
   normal_options.split_walls = settings.split_walls;
   normal_options.dominant_plane = settings.dominant_plane;
   normal_options.threads = threads;
-  normal_options.scan_scales = hints.has_viewpoint || !hints.sensors.empty();
+  // An even subset has lost how densely a sensor sees; its sensors are known already.
+  normal_options.scan_scales =
+      hints.toward.empty() && (hints.has_viewpoint || !hints.sensors.empty());
   if (record != nullptr) normal_options.known = record->traits;
   SheetNormals sheets = estimateSheetNormals(points, neighborhoods, normal_options);
   out.spacing = median(sheets.spacing);
@@ -97,7 +99,7 @@ AutoNormals orientAtOneScale(const PointView& points, const Neighborhoods& neigh
     refineByWinding(points, sheets.spacing, sheets.residual, threads, filtered);
   }
   if (!out.orientation.toward.empty()) {
-    faceSensors(out.orientation.toward, filtered);
+    out.by_sensor = faceSensors(out.orientation.toward, filtered);
     if (sheets.traits.scan_scales) {
       replaceGrazingNormals(points, out.orientation.toward, threads, filtered);
     }
@@ -132,13 +134,15 @@ AutoNormals orientPoints(const PointView& points, const Neighborhoods& neighborh
   AutoNormals out =
       orientAtOneScale(points, neighborhoods, settings, hints, threads, begin, record);
   // Whether a coarser scale is better is for the whole cloud to tell.
-  if (record != nullptr || !settings.coarse_levels || !hints.noneOfPoints()) return out;
-  const auto orient = [&](const PointView& subset, const Neighborhoods& table) {
-    return orientAtOneScale(subset, table, settings, hints, threads, {}, nullptr);
+  // Where points have sensors of their own, those decide.
+  if (record != nullptr || !settings.coarse_levels || !hints.sensors.empty()) return out;
+  const auto orient = [&](const PointView& subset, const Neighborhoods& table,
+                          const PointHints& of_subset) {
+    return orientAtOneScale(subset, table, settings, of_subset, threads, {}, nullptr);
   };
   // A coarser level knows nothing of what is around each point.
   const std::vector<std::uint8_t> around = out.around;
-  out.level = followCoarserLevels(points, neighborhoods, orient, threads, out);
+  out.level = followCoarserLevels(points, neighborhoods, hints, orient, threads, out);
   out.around = around;
   return out;
 }

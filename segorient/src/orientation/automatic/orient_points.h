@@ -31,8 +31,10 @@ struct AutoNormals {
   std::vector<std::uint8_t> around;      ///< what is around each point: bits of Around
   bool scan_scales = false;              ///< see SheetNormals
   AutoOrientation orientation;           ///< of the sheets' segments
-  float spacing = 0.F;                   ///< median
-  float level = 0.F;                     ///< see followCoarserLevels()
+  /// Whether a point's sensor decided its side; empty where no sensor is known.
+  std::vector<std::uint8_t> by_sensor;
+  float spacing = 0.F;  ///< median
+  float level = 0.F;    ///< see followCoarserLevels()
 };
 
 /// For a cloud that is part of a larger one: what is known of that, and what it needs to know.
@@ -52,8 +54,8 @@ struct SheetRecord {
 };
 
 /// Sheet normals, sheet segments, their orientation, and the filter that makes the final normals;
-/// at a coarser scale as well where points contradict each other, see followCoarserLevels(). \param
-/// begin called with a stage's name and the fraction of the work done before it; may be
+/// at a coarser scale as well where points contradict each other, see followCoarserLevels().
+/// \param begin called with a stage's name and the fraction of the work done before it; may be
 ///        empty
 /// \param record null unless the cloud is part of a larger one
 AutoNormals orientPoints(const PointView& points, const Neighborhoods& neighborhoods,

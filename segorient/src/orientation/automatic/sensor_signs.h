@@ -44,6 +44,7 @@ bool isClear(float facing);
 
 /// Final normals turn to their sensors wherever their own error leaves no doubt.
 /// \param toward see AutoOrientation
-void faceSensors(const std::vector<float>& toward, FilteredNormals& filtered);
+/// \return by point, whether its sensor decided
+std::vector<std::uint8_t> faceSensors(const std::vector<float>& toward, FilteredNormals& filtered);
 
 }  // namespace segorient::detail

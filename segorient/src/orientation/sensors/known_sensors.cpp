@@ -248,6 +248,11 @@ void KnownSensors::drop(std::size_t scan_number) {
 
 KnownSensors findKnownSensors(const PointView& points, const Neighborhoods& neighborhoods,
                               const float* spacing, const PointHints& hints, int threads) {
+  if (!hints.toward.empty()) {
+    KnownSensors believed;
+    believed.toward = hints.toward;
+    return believed;
+  }
   if (hints.sensors.empty() && !hints.has_viewpoint) return {};
   return Finder(points, neighborhoods, spacing, threads).run(hints);
 }

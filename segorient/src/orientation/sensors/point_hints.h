@@ -27,11 +27,9 @@ struct PointHints {
   /// 3 floats a point: sum of the unit vectors that its normal is said to point along; empty = none
   std::vector<float> directions;
   std::vector<Seed> seeds;
-
-  /// Whether nothing is said about single points, nor from where they were seen.
-  bool noneOfPoints() const {
-    return !has_viewpoint && sensors.empty() && directions.empty() && seeds.empty();
-  }
+  /// 3 floats a point: unit vector to the sensor that saw it, 0 = unknown; empty unless it is
+  /// already known which sensors are to be believed. Then `sensors` is empty.
+  std::vector<float> toward;
 };
 
 /// \param cloud that that `hints` is about
