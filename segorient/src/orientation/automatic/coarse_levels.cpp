@@ -238,6 +238,7 @@ class Choice {
     Handed coarse = handDown(points_, level, radius, threads_, fine_);
     const SignEnergy energy = judge_.judge(coarse.found.normals);
     if (energy.total() >= least_) return;
+    has_less_ = true;
     const bool merges = energy.pairs.backs < 0.5F * own_.pairs.backs;
     if (merges && !layersCross(points_, neighborhoods_, coarse.around, threads_)) return;
     least_ = energy.total();
@@ -246,6 +247,8 @@ class Choice {
   }
 
   bool made() const { return chosen_ > 0.F; }
+  /// Whether a level had clearly less energy, be it that it was not chosen for uniting walls.
+  bool hasLess() const { return has_less_; }
   bool hasWalls() const { return own_.pairs.backs >= kWalls; }
   bool explainsHalf() const { return least_ < 0.5F * own_.total(); }
 
@@ -268,6 +271,7 @@ class Choice {
   const SignEnergy own_;
   float least_;
   float chosen_ = 0.F;
+  bool has_less_ = false;
   Handed best_;
 };
 
@@ -280,7 +284,8 @@ float followCoarserLevels(const PointView& points, const Neighborhoods& neighbor
   if (facing < kSuspicious) return 0.F;
   Choice choice(points, neighborhoods, hints, orient, threads, fine);
   choice.tryLevel(kFirst);
-  if (!choice.made() && (facing < kContradictory || !choice.hasWalls())) return 0.F;
+  if (!choice.made() && facing < kContradictory) return 0.F;
+  if (!choice.hasLess() && !choice.hasWalls()) return 0.F;
   for (const float f : kOthers) choice.tryLevel(f);
   if (!choice.explainsHalf()) choice.tryLevel(kFinest);
   return choice.take(fine);
