@@ -12,7 +12,7 @@ namespace {
 
 const std::vector<std::string> kCommands{"orient",      "sensors", "normals", "segment",
                                          "triangulate", "knn",     "check",   "compare",
-                                         "evaluate",    "render",  "view"};
+                                         "evaluate",    "render",  "view",    "tiles"};
 
 TEST(Usage, HelpOfTheProgramAndOfEveryCommand) {
   const Outcome help = runProgram({"--help"});
