@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "bad_clouds.h"
 #include "class_clouds.h"
@@ -53,30 +54,28 @@ TEST(Strays, BeyondFloatsAreAsIfTheyWereNotThere) {
   const QuietPcl quiet;
   const XyzCloud clean = shapes();
   const std::vector<ClassResult> expected = runEveryClass(clean.makeShared());
-  const pcl::PointXYZ places[] = {{1e30F, 1e30F, 1e30F}, {-1e20F, 0.F, 3.F}, {kNaN, kNaN, kNaN}};
-  for (const pcl::PointXYZ& at : places) {
-    for (const std::size_t count : {1U, 10U, 100U}) {
-      const Spoilt spoilt = spoil(clean, count, at);
-      const std::vector<ClassResult> found = runEveryClass(spoilt.cloud);
-      for (std::size_t c = 0; c < expected.size(); ++c) {
-        SCOPED_TRACE(expected[c].name + ", " + std::to_string(count) + " at " +
-                     std::to_string(at.x));
-        std::size_t other = 0;
-        for (std::size_t i = 0; i < spoilt.kept.size(); ++i) {
-          const std::size_t row = spoilt.kept[i];
-          if (!expected[c].normals.empty())
-            other += !isSame(found[c].normals[row], expected[c].normals[i]);
-          if (!expected[c].labels.empty()) other += found[c].labels[row] != expected[c].labels[i];
+  const std::pair<pcl::PointXYZ, std::size_t> strays[] = {
+      {{1e30F, 1e30F, 1e30F}, 100}, {{-1e20F, 0.F, 3.F}, 1}, {{kNaN, kNaN, kNaN}, 10}};
+  for (const auto& [at, count] : strays) {
+    const Spoilt spoilt = spoil(clean, count, at);
+    const std::vector<ClassResult> found = runEveryClass(spoilt.cloud);
+    for (std::size_t c = 0; c < expected.size(); ++c) {
+      SCOPED_TRACE(expected[c].name + ", " + std::to_string(count) + " at " + std::to_string(at.x));
+      std::size_t other = 0;
+      for (std::size_t i = 0; i < spoilt.kept.size(); ++i) {
+        const std::size_t row = spoilt.kept[i];
+        if (!expected[c].normals.empty())
+          other += !isSame(found[c].normals[row], expected[c].normals[i]);
+        if (!expected[c].labels.empty()) other += found[c].labels[row] != expected[c].labels[i];
+      }
+      EXPECT_EQ(other, 0U);
+      for (std::size_t row = 0; row < spoilt.cloud->size(); ++row) {
+        if (std::binary_search(spoilt.kept.begin(), spoilt.kept.end(), row)) continue;
+        if (!found[c].normals.empty()) {
+          ASSERT_TRUE(std::isnan(found[c].normals[row].normal_x)) << row;
         }
-        EXPECT_EQ(other, 0U);
-        for (std::size_t row = 0; row < spoilt.cloud->size(); ++row) {
-          if (std::binary_search(spoilt.kept.begin(), spoilt.kept.end(), row)) continue;
-          if (!found[c].normals.empty()) {
-            ASSERT_TRUE(std::isnan(found[c].normals[row].normal_x)) << row;
-          }
-          if (!found[c].labels.empty()) {
-            ASSERT_EQ(found[c].labels[row], -1) << row;
-          }
+        if (!found[c].labels.empty()) {
+          ASSERT_EQ(found[c].labels[row], -1) << row;
         }
       }
     }
@@ -220,7 +219,7 @@ TEST(ExtremeUnits, OfPowersOfTwoChangeNothing) {
   const QuietPcl quiet;
   const XyzCloud clean = shapes();
   const std::vector<ClassResult> expected = runEveryClass(clean.makeShared());
-  for (const int exponent : {-100, -60, 60, 100}) {
+  for (const int exponent : {-100, 100}) {
     const std::vector<ClassResult> found = runEveryClass(inUnit(clean, std::ldexp(1.F, exponent)));
     for (std::size_t c = 0; c < expected.size(); ++c) {
       SCOPED_TRACE(expected[c].name + ", 2^" + std::to_string(exponent));
