@@ -22,6 +22,8 @@ constexpr const char* kPurpose =
     "  segorient tiles plan DIR IN... OUT --memory 2G   once, first; prints how many tiles\n"
     "  segorient tiles tile DIR N                       each tile from 0 on, in any order\n"
     "  segorient tiles join DIR                         once, after all tiles\n"
+    "  segorient tiles tile DIR N                       each tile again, in any order, or not:\n"
+    "                                                   write does what is left of that\n"
     "  segorient tiles write DIR [N]                    each output from 0 on, or all\n"
     "  segorient tiles clean DIR                        removes the steps' files\n"
     "Files are there whole or not at all; a step whose result is there does nothing.\n"
@@ -107,12 +109,14 @@ int runTiles(const std::vector<std::string>& words) {
   const WorkFolder work(folder, step == "join");
   if (step == "join") joinStep(plan, folder, common.threads);
   if (step == "tile") {
-    forEachAsked(number, plan.tiles(), "tile",
-                 [&](std::size_t n) { tileStep(plan, folder, n, common.threads); });
+    forEachAsked(number, plan.tiles(), "tile", [&](std::size_t n) {
+      const bool joined = std::filesystem::exists(joinPath(folder));
+      (joined ? finishStep : tileStep)(plan, folder, n, common.threads);
+    });
   }
   if (step == "write") {
     forEachAsked(number, plan.outputs.size(), "output",
-                 [&](std::size_t n) { writeStep(plan, folder, n); });
+                 [&](std::size_t n) { writeStep(plan, folder, n, common.threads); });
   }
   return 0;
 }

@@ -24,9 +24,11 @@ namespace {
 // Names of files that steps write, and of such files before they are moved to their places.
 bool isOurs(const std::string& name, bool unfinished_only) {
   static const std::regex kFinished(
-      "plan|join|lock|input-[0-9]+\\.ply|tile-[0-9]+\\.(points|rows|share|ties|signs)");
+      "plan|join|labels|lock|input-[0-9]+\\.ply|"
+      "tile-[0-9]+\\.(points|rows|share|ties|signs|rows2|ties2|final)");
   static const std::regex kUnfinished(
-      "(plan|join|input-[0-9]+\\.ply|tile-[0-9]+\\.(points|rows|share|ties|signs))"
+      "(plan|join|labels|input-[0-9]+\\.ply|"
+      "tile-[0-9]+\\.(points|rows|share|ties|signs|rows2|ties2|final))"
       "\\.([A-Za-z0-9]{6}|part)");
   return std::regex_match(name, kUnfinished) ||
          (!unfinished_only && std::regex_match(name, kFinished));

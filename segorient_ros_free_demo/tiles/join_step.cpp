@@ -35,11 +35,12 @@ void match(const std::vector<TieRecord>& a, const std::vector<TieRecord>& b,
 }
 
 // Each tile's own points beside what others say of them.
-void addTies(const Plan& plan, const std::string& folder,
-             const std::vector<std::vector<TieSlice>>& slices, TileJoiner& joiner) {
+// \param file of a tile's ties
+template <typename Joiner, typename File>
+void addTies(const Plan& plan, const std::vector<std::vector<TieSlice>>& slices, const File& file,
+             Joiner& joiner) {
   const auto load = [&](std::size_t tile, const TieSlice& slice) {
-    return loadTies(tilePath(folder, tile, "ties"), plan.run, static_cast<std::uint32_t>(tile),
-                    slice);
+    return loadTies(file(tile), plan.run, static_cast<std::uint32_t>(tile), slice);
   };
   std::vector<std::vector<std::pair<std::size_t, const TieSlice*>>> about(slices.size());
   for (std::size_t t = 0; t < slices.size(); ++t) {
@@ -84,26 +85,60 @@ JoinSummary joinStep(const Plan& plan, const std::string& folder, int threads) {
         loadShare(tilePath(folder, t, "share"), plan.run, static_cast<std::uint32_t>(t));
     std::array<double, 3> offset{};
     for (std::size_t a = 0; a < 3; ++a) offset[a] = plan.tile_origins[t][a] - plan.origin[a];
-    joiner.addTile(share.piece_sizes, share.segment_sizes, share.votes, share.patches, offset);
+    joiner.addTile(share.piece_sizes, share.votes, share.patches, offset);
     options.hints.viewpoints.insert(options.hints.viewpoints.end(), share.viewpoints.begin(),
                                     share.viewpoints.end());
     slices[t] = std::move(share.slices);
   }
-  addTies(plan, folder, slices, joiner);
+  addTies(
+      plan, slices, [&](std::size_t t) { return tilePath(folder, t, "ties"); }, joiner);
   JoinedTiles joined = joiner.join(options);
   for (std::size_t t = 0; t < plan.tiles(); ++t) {
-    JoinedTile& tile = joined.tiles[t];
-    saveSigns({std::move(tile.signs), std::move(tile.toward), std::move(tile.labels)},
-              tilePath(folder, t, "signs"), plan.run, static_cast<std::uint32_t>(t));
+    saveSigns(joined.tiles[t], tilePath(folder, t, "signs"), plan.run,
+              static_cast<std::uint32_t>(t));
   }
   JoinSummary summary;
   summary.pieces = joined.pieces;
-  summary.segments = joined.segments;
   summary.components = joined.components.size();
   TileFileWriter file(joinPath(folder), TileFileKind::JOIN, plan.run);
   file.value(summary);
   file.commit();
   return summary;
+}
+
+std::uint64_t labelStep(const Plan& plan, const std::string& folder) {
+  const auto count = [](const LabelFile& labels) {
+    std::uint64_t segments = 0;
+    for (const auto& of_tile : labels) {
+      for (const std::uint32_t l : of_tile) segments = std::max<std::uint64_t>(segments, l + 1ULL);
+    }
+    return segments;
+  };
+  if (std::filesystem::exists(labelsPath(folder))) {
+    return count(loadLabels(labelsPath(folder), plan.run, plan.tiles()));
+  }
+  LabelJoiner joiner;
+  std::vector<std::vector<TieSlice>> slices(plan.tiles());
+  std::vector<bool> again(plan.tiles());
+  for (std::size_t t = 0; t < plan.tiles(); ++t) {
+    const auto tile = static_cast<std::uint32_t>(t);
+    FinalFile made = loadFinal(tilePath(folder, t, "final"), plan.run, tile);
+    again[t] = made.again;
+    if (!made.again) {
+      ShareFile share = loadShare(tilePath(folder, t, "share"), plan.run, tile);
+      made.segment_sizes = std::move(share.segment_sizes);
+      made.slices = std::move(share.slices);
+    }
+    joiner.addTile(made.segment_sizes);
+    slices[t] = std::move(made.slices);
+  }
+  addTies(
+      plan, slices, [&](std::size_t t) { return tilePath(folder, t, again[t] ? "ties2" : "ties"); },
+      joiner);
+  std::size_t segments = 0;
+  const LabelFile labels = joiner.join(segments);
+  saveLabels(labels, labelsPath(folder), plan.run);
+  return count(labels);
 }
 
 }  // namespace segorient::program

@@ -39,6 +39,10 @@ std::string joinPath(const std::string& folder) {
   return folder + "/join";
 }
 
+std::string labelsPath(const std::string& folder) {
+  return folder + "/labels";
+}
+
 std::string tilePath(const std::string& folder, std::size_t tile, const char* ending) {
   char name[48];
   std::snprintf(name, sizeof(name), "/tile-%06zu.%s", tile, ending);

@@ -70,7 +70,8 @@ class Probe {
     const std::size_t parts = std::min(tree_.tiles(), kParts);
     for (std::size_t p = 0; p < parts; ++p) chosen_[p * tree_.tiles() / parts] = 1;
   }
-  void add(const Place& place) {
+  /// \param seen_from relative to the origin; null where no point carries that
+  void add(const Place& place, const float* seen_from) {
     double reach = 0.0;
     bool wanted = chosen_[tree_.owner(place, reach)] != 0;
     if (!wanted)
@@ -78,17 +79,21 @@ class Probe {
     if (!wanted) return;
     const std::array<float, 3> p = near(place, origin_);
     points_.insert(points_.end(), p.begin(), p.end());
+    if (seen_from != nullptr) viewpoints_.insert(viewpoints_.end(), seen_from, seen_from + 3);
   }
   PointView points() const { return {points_.data(), 3, points_.size() / 3}; }
+  const std::vector<float>& viewpoints() const { return viewpoints_; }
 
  private:
-  // Together about as many points as the sample of the whole.
+  // Together half a million points: traits are medians and shares, and their surroundings are
+  // known.
   static constexpr double kPart = 20000.0;
-  static constexpr std::size_t kParts = 52;
+  static constexpr std::size_t kParts = 26;
   TileTree tree_;
   Place origin_;
   std::vector<std::uint8_t> chosen_;
   std::vector<float> points_;
+  std::vector<float> viewpoints_;
 };
 
 // Where points are said to have been seen from, or where that was found.
@@ -129,7 +134,6 @@ void distribute(const TileTree& tree, const std::string& folder, const StepProgr
       plan, progress, 0.4, 0.95, [&](const CloudTable& layout) { viewpoints.begin(layout); },
       [&](std::uint64_t row, const Place& place, const CloudTable& block, std::size_t i) {
         if (!isFinite(place)) return;
-        probe.add(place);
         double reach = 0.0;
         PointRecord record;
         const std::uint32_t owner = tree.owner(place, reach);
@@ -141,6 +145,7 @@ void distribute(const TileTree& tree, const std::string& folder, const StepProgr
         ++plan.tile_points[owner];
         std::array<float, 3> seen_from{};
         if (plan.has_viewpoints) seen_from = viewpoints.of(block, i, row, place, plan.origin);
+        probe.add(place, plan.has_viewpoints ? seen_from.data() : nullptr);
         tree.forEachWithin(place, reach, [&](std::uint32_t tile, double distance) {
           const std::array<float, 3> p = near(place, plan.tile_origins[tile]);
           std::copy(p.begin(), p.end(), record.position);
@@ -217,9 +222,9 @@ Plan planStep(const TileRequest& request, const std::string& folder, const StepP
   plan.found_sensors = static_cast<std::uint32_t>(sensors.found());
   plan.has_viewpoints = plan.has_viewpoints || sensors.found() > 0;
   distribute(tree, folder, progress, sensors, probe, plan);
-  plan.traits =
-      measureTileTraits(probe.points(), plan.k,
-                        plan.has_viewpoint || plan.has_viewpoints || plan.up, request.threads);
+  OrientationHints hints = hintsOf(plan, plan.origin);
+  hints.viewpoints = probe.viewpoints();
+  plan.traits = measureTileTraits(probe.points(), plan.k, hints, request.threads);
   requireUnchanged(plan);
   savePlan(plan, folder);
   return plan;

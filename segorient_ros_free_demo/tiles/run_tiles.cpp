@@ -18,11 +18,12 @@ namespace {
 
 // Shares of the time.
 constexpr double kPlanned = 0.1;
-constexpr double kTiled = 0.88;
-constexpr double kJoined = 0.93;
+constexpr double kTiled = 0.75;
+constexpr double kJoined = 0.8;
+constexpr double kFinished = 0.93;
 
-std::string stageName(std::size_t tile, std::size_t tiles) {
-  return "tile " + std::to_string(tile + 1) + "/" + std::to_string(tiles);
+std::string stageName(const char* stage, std::size_t tile, std::size_t tiles) {
+  return std::string(stage) + " " + std::to_string(tile + 1) + "/" + std::to_string(tiles);
 }
 
 }  // namespace
@@ -57,6 +58,7 @@ void runAllSteps(const TileRequest& request, std::string folder, bool quiet) {
   WorkFolder work(folder, true);
   work.removeUnfinished();
   JoinSummary joined;
+  std::uint64_t segments = 0;
   {
     ProgressBar bar(!quiet, 0);
     const auto report = [&](const std::string& stage, double from, double to) {
@@ -71,18 +73,24 @@ void runAllSteps(const TileRequest& request, std::string folder, bool quiet) {
       throw;
     }
     bar.setItems(plan.rows);
-    double done = 0.0;
-    for (std::size_t t = 0; t < plan.tiles(); ++t) {
-      bar.update(stageName(t, plan.tiles()), kPlanned + (kTiled - kPlanned) * done);
-      tileStep(plan, folder, t, request.threads);
-      done += static_cast<double>(plan.tile_points[t]) / static_cast<double>(plan.finite);
-    }
+    const auto all_tiles = [&](const char* stage, double from, double to, auto step) {
+      double done = 0.0;
+      for (std::size_t t = 0; t < plan.tiles(); ++t) {
+        bar.update(stageName(stage, t, plan.tiles()), from + (to - from) * done);
+        step(plan, folder, t, request.threads);
+        done += static_cast<double>(plan.tile_points[t]) / static_cast<double>(plan.finite);
+      }
+    };
+    all_tiles("tile", kPlanned, kTiled, tileStep);
     bar.update("join", kTiled);
     joined = joinStep(plan, folder, request.threads);
+    all_tiles("finish", kJoined, kFinished, finishStep);
+    segments = labelStep(plan, folder);
     const auto outputs = static_cast<double>(plan.outputs.size());
     for (std::size_t o = 0; o < plan.outputs.size(); ++o) {
-      const double from = kJoined + (1.0 - kJoined) * static_cast<double>(o) / outputs;
-      writeStep(plan, folder, o, report("write", from, from + (1.0 - kJoined) / outputs));
+      const double from = kFinished + (1.0 - kFinished) * static_cast<double>(o) / outputs;
+      writeStep(plan, folder, o, request.threads,
+                report("write", from, from + (1.0 - kFinished) / outputs));
     }
   }
   work.remove();
@@ -92,7 +100,7 @@ void runAllSteps(const TileRequest& request, std::string folder, bool quiet) {
               static_cast<unsigned long long>(plan.rows - plan.finite));
   std::printf("tiles           %zu\n", plan.tiles());
   std::printf("segments        %llu, of %llu pieces in %llu components\n",
-              static_cast<unsigned long long>(joined.segments),
+              static_cast<unsigned long long>(segments),
               static_cast<unsigned long long>(joined.pieces),
               static_cast<unsigned long long>(joined.components));
   if (plan.found_sensors > 0) std::printf("sensors found   %u\n", plan.found_sensors);

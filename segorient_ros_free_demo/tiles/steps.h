@@ -21,18 +21,23 @@ Plan planStep(const TileRequest& request, const std::string& folder,
 /// Normals, pieces, votes and segments of one tile.
 void tileStep(const Plan& plan, const std::string& folder, std::size_t tile, int threads);
 
+/// After the join: the same tile again with the signs of the whole cloud, if its own were others.
+void finishStep(const Plan& plan, const std::string& folder, std::size_t tile, int threads);
+
+/// After all tiles are finished: the segments of the whole cloud. \return how many they are
+std::uint64_t labelStep(const Plan& plan, const std::string& folder);
+
 /// What was found in joining, for summaries.
 struct JoinSummary {
   std::uint64_t pieces = 0;
-  std::uint64_t segments = 0;
   std::uint64_t components = 0;
 };
 
-/// The signs and labels of all tiles, from what tiles say of their pieces.
+/// The signs of all tiles' pieces, from what tiles say of them.
 JoinSummary joinStep(const Plan& plan, const std::string& folder, int threads);
 
-/// Writes one output: the points of its inputs in their order.
-void writeStep(const Plan& plan, const std::string& folder, std::size_t output,
+/// Writes one output: the points of its inputs in their order. Finishes tiles that are not.
+void writeStep(const Plan& plan, const std::string& folder, std::size_t output, int threads,
                const StepProgress& progress = {});
 
 /// Bytes that a step takes for each point of its tile (395 were measured), and for each patch in

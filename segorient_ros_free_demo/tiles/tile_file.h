@@ -15,7 +15,17 @@
 namespace segorient::program {
 
 /// What a file of a work folder holds.
-enum class TileFileKind : std::uint32_t { PLAN = 1, POINTS, ROWS, SHARE, TIES, SIGNS, JOIN };
+enum class TileFileKind : std::uint32_t {
+  PLAN = 1,
+  POINTS,
+  ROWS,
+  SHARE,
+  TIES,
+  SIGNS,
+  JOIN,
+  FINAL,
+  LABELS
+};
 
 /// The first bytes of every file of a work folder.
 struct TileFileHeader {

@@ -30,6 +30,7 @@ void saveShare(const ShareFile& share, const std::string& path, std::uint64_t ru
                std::uint32_t tile) {
   TileFileWriter file(path, TileFileKind::SHARE, run, tile);
   file.list(share.piece_sizes);
+  file.list(share.piece_signs);
   file.list(share.segment_sizes);
   file.list(share.votes);
   file.list(share.patches);
@@ -42,6 +43,7 @@ ShareFile loadShare(const std::string& path, std::uint64_t run, std::uint32_t ti
   TileFileReader file(path, TileFileKind::SHARE, run, tile);
   ShareFile share;
   share.piece_sizes = file.list<std::uint32_t>();
+  share.piece_signs = file.list<std::int8_t>();
   share.segment_sizes = file.list<std::uint32_t>();
   share.votes = file.list<TileVote>();
   share.patches = file.list<TilePatch>();
@@ -63,23 +65,56 @@ std::vector<TieRecord> loadTies(const std::string& path, std::uint64_t run, std:
   return out;
 }
 
-void saveSigns(const SignsFile& signs, const std::string& path, std::uint64_t run,
+void saveSigns(const TileSigns& signs, const std::string& path, std::uint64_t run,
                std::uint32_t tile) {
   TileFileWriter file(path, TileFileKind::SIGNS, run, tile);
-  file.list(signs.signs);
+  file.list(signs.pieces);
+  file.list(signs.patches);
   file.list(signs.toward);
-  file.list(signs.labels);
   file.commit();
 }
 
-SignsFile loadSigns(const std::string& path, std::uint64_t run, std::uint32_t tile) {
+TileSigns loadSigns(const std::string& path, std::uint64_t run, std::uint32_t tile) {
   TileFileReader file(path, TileFileKind::SIGNS, run, tile);
-  SignsFile signs;
-  signs.signs = file.list<std::int8_t>();
+  TileSigns signs;
+  signs.pieces = file.list<std::int8_t>();
+  signs.patches = file.list<std::int8_t>();
   signs.toward = file.list<float>();
-  signs.labels = file.list<std::uint32_t>();
   file.end();
   return signs;
+}
+
+void saveFinal(const FinalFile& made, const std::string& path, std::uint64_t run,
+               std::uint32_t tile) {
+  TileFileWriter file(path, TileFileKind::FINAL, run, tile);
+  file.value(made.again);
+  file.list(made.segment_sizes);
+  file.list(made.slices);
+  file.commit();
+}
+
+FinalFile loadFinal(const std::string& path, std::uint64_t run, std::uint32_t tile) {
+  TileFileReader file(path, TileFileKind::FINAL, run, tile);
+  FinalFile made;
+  made.again = file.value<bool>();
+  made.segment_sizes = file.list<std::uint32_t>();
+  made.slices = file.list<TieSlice>();
+  file.end();
+  return made;
+}
+
+void saveLabels(const LabelFile& labels, const std::string& path, std::uint64_t run) {
+  TileFileWriter file(path, TileFileKind::LABELS, run);
+  for (const std::vector<std::uint32_t>& of_tile : labels) file.list(of_tile);
+  file.commit();
+}
+
+LabelFile loadLabels(const std::string& path, std::uint64_t run, std::size_t tiles) {
+  TileFileReader file(path, TileFileKind::LABELS, run);
+  LabelFile labels(tiles);
+  for (std::vector<std::uint32_t>& of_tile : labels) of_tile = file.list<std::uint32_t>();
+  file.end();
+  return labels;
 }
 
 void saveRows(const std::vector<RowRecord>& rows, const std::string& path, std::uint64_t run,

@@ -20,9 +20,8 @@ struct RowRecord {
   std::uint32_t row_low = 0;
   std::uint32_t row_high = 0;
   float normal[4] = {0.F, 0.F, 0.F, 0.F};  ///< with the curvature
-  float confidence = 0.F;
-  std::int32_t label = -1;  ///< of the tile
-  std::int32_t patch = -1;
+  std::int32_t label = -1;                 ///< of the tile
+  std::int32_t followed = -1;              ///< see TileShare
 
   std::uint64_t row() const { return std::uint64_t{row_high} << 32 | row_low; }
 };
@@ -48,6 +47,7 @@ struct TieSlice {
 /// The file of shares: all but ties.
 struct ShareFile {
   std::vector<std::uint32_t> piece_sizes;
+  std::vector<std::int8_t> piece_signs;
   std::vector<std::uint32_t> segment_sizes;
   std::vector<TileVote> votes;
   std::vector<TilePatch> patches;
@@ -63,16 +63,26 @@ ShareFile loadShare(const std::string& path, std::uint64_t run, std::uint32_t ti
 std::vector<TieRecord> loadTies(const std::string& path, std::uint64_t run, std::uint32_t tile,
                                 const TieSlice& slice);
 
-/// What join says of a tile.
-struct SignsFile {
-  std::vector<std::int8_t> signs;  ///< by patch
-  std::vector<float> toward;       ///< 3 a patch, or empty
-  std::vector<std::uint32_t> labels;
+void saveSigns(const TileSigns& signs, const std::string& path, std::uint64_t run,
+               std::uint32_t tile);
+TileSigns loadSigns(const std::string& path, std::uint64_t run, std::uint32_t tile);
+
+/// What a tile's second round made: empty where the first one's results stay.
+struct FinalFile {
+  bool again = false;  ///< whether there are rows and ties of it
+  std::vector<std::uint32_t> segment_sizes;
+  std::vector<TieSlice> slices;
 };
 
-void saveSigns(const SignsFile& signs, const std::string& path, std::uint64_t run,
+void saveFinal(const FinalFile& made, const std::string& path, std::uint64_t run,
                std::uint32_t tile);
-SignsFile loadSigns(const std::string& path, std::uint64_t run, std::uint32_t tile);
+FinalFile loadFinal(const std::string& path, std::uint64_t run, std::uint32_t tile);
+
+/// Labels of the whole cloud, by tile and by its own label.
+using LabelFile = std::vector<std::vector<std::uint32_t>>;
+
+void saveLabels(const LabelFile& labels, const std::string& path, std::uint64_t run);
+LabelFile loadLabels(const std::string& path, std::uint64_t run, std::size_t tiles);
 
 /// Writes a file of rows, ascending.
 void saveRows(const std::vector<RowRecord>& rows, const std::string& path, std::uint64_t run,

@@ -56,9 +56,8 @@ std::vector<RowRecord> ownRows(const TilePoints& points, const std::vector<TileR
     r.row_low = points.records[i].row_low;
     r.row_high = points.records[i].row_high;
     std::copy_n(&share.normals[4 * i], 4, r.normal);
-    r.confidence = share.confidences[i];
     r.label = share.labels[i];
-    r.patch = share.patches[i];
+    r.followed = share.followed[i];
     rows.push_back(r);
   }
   return rows;
@@ -100,6 +99,42 @@ std::vector<TieSlice> writeTies(const TilePoints& points, const std::vector<Tile
   return slices;
 }
 
+// All that one tile is worked on with.
+struct Work {
+  TilePoints points;
+  std::vector<TileRole> roles;
+  std::vector<float> xyz;
+  std::vector<float> whole;
+  TileOptions options;
+  PointView view() const { return {xyz.data(), 3, roles.size()}; }
+};
+
+Work prepare(const Plan& plan, const std::string& folder, std::size_t number, int threads) {
+  const auto tile = static_cast<std::uint32_t>(number);
+  Work work;
+  work.points = readPoints(plan, folder, tile);
+  work.roles = rolesOf(work.points.records, tile);
+  work.xyz.reserve(3 * work.roles.size());
+  for (const PointRecord& r : work.points.records) {
+    work.xyz.insert(work.xyz.end(), r.position, r.position + 3);
+    work.whole.push_back(r.whole);
+  }
+  TileOptions& options = work.options;
+  options.traits = plan.traits;
+  options.k = plan.k;
+  options.patch_points = plan.patch_points;
+  options.threads = threads;
+  options.hints = hintsOf(plan, plan.tile_origins[number]);
+  options.hints.viewpoints = work.points.viewpoints;
+  for (std::size_t i = 0; i < options.hints.viewpoints.size(); ++i) {
+    const std::size_t a = i % 3;
+    options.hints.viewpoints[i] =
+        static_cast<float>(static_cast<double>(work.points.viewpoints[i]) + plan.origin[a] -
+                           plan.tile_origins[number][a]);
+  }
+  return work;
+}
+
 }  // namespace
 
 void tileStep(const Plan& plan, const std::string& folder, std::size_t number, int threads) {
@@ -109,41 +144,51 @@ void tileStep(const Plan& plan, const std::string& folder, std::size_t number, i
     loadShare(share_path, plan.run, tile);
     return;
   }
-  TilePoints points = readPoints(plan, folder, tile);
-  const std::vector<TileRole> roles = rolesOf(points.records, tile);
-  std::vector<float> xyz;
-  xyz.reserve(3 * points.records.size());
-  std::vector<float> whole;
-  for (const PointRecord& r : points.records) {
-    xyz.insert(xyz.end(), r.position, r.position + 3);
-    whole.push_back(r.whole);
-  }
-  TileOptions options;
-  options.traits = plan.traits;
-  options.k = plan.k;
-  options.patch_points = plan.patch_points;
-  options.threads = threads;
-  options.hints = hintsOf(plan, plan.tile_origins[number]);
-  options.hints.viewpoints = points.viewpoints;
-  for (std::size_t i = 0; i < options.hints.viewpoints.size(); ++i) {
-    const std::size_t a = i % 3;
-    options.hints.viewpoints[i] = static_cast<float>(static_cast<double>(points.viewpoints[i]) +
-                                                     plan.origin[a] - plan.tile_origins[number][a]);
-  }
-  TileShare share = workOnTile({xyz.data(), 3, points.records.size()}, roles, whole, options);
-  saveRows(ownRows(points, roles, share), tilePath(folder, tile, "rows"), plan.run, tile);
+  const Work work = prepare(plan, folder, number, threads);
+  TileShare share = workOnTile(work.view(), work.roles, work.whole, work.options);
+  saveRows(ownRows(work.points, work.roles, share), tilePath(folder, tile, "rows"), plan.run, tile);
   ShareFile file;
-  file.slices = writeTies(points, share.ties, tilePath(folder, tile, "ties"), plan.run, tile);
+  file.slices = writeTies(work.points, share.ties, tilePath(folder, tile, "ties"), plan.run, tile);
   file.piece_sizes = std::move(share.piece_sizes);
+  file.piece_signs = std::move(share.piece_signs);
   file.segment_sizes = std::move(share.segment_sizes);
   file.votes = std::move(share.votes);
   file.patches = std::move(share.patch_list);
   for (const TilePatch& p : file.patches) {
     if (!plan.has_viewpoints) break;
-    const float* seen_from = &points.viewpoints[std::size_t{3} * p.row];
+    const float* seen_from = &work.points.viewpoints[std::size_t{3} * p.row];
     file.viewpoints.insert(file.viewpoints.end(), seen_from, seen_from + 3);
   }
   saveShare(file, share_path, plan.run, tile);
+}
+
+void finishStep(const Plan& plan, const std::string& folder, std::size_t number, int threads) {
+  const auto tile = static_cast<std::uint32_t>(number);
+  const std::string path = tilePath(folder, tile, "final");
+  if (std::filesystem::exists(path)) {  // the last file that is written
+    loadFinal(path, plan.run, tile);
+    return;
+  }
+  const TileSigns signs = loadSigns(tilePath(folder, tile, "signs"), plan.run, tile);
+  TileShare first;
+  {
+    ShareFile share = loadShare(tilePath(folder, tile, "share"), plan.run, tile);
+    first.piece_sizes = std::move(share.piece_sizes);
+    first.piece_signs = std::move(share.piece_signs);
+    first.votes = std::move(share.votes);
+  }
+  FinalFile file;
+  file.again = needsFinishing(first, signs);
+  if (file.again) {
+    const Work work = prepare(plan, folder, number, threads);
+    TileShare share = finishTile(work.view(), work.roles, work.whole, work.options, signs);
+    saveRows(ownRows(work.points, work.roles, share), tilePath(folder, tile, "rows2"), plan.run,
+             tile);
+    file.slices =
+        writeTies(work.points, share.ties, tilePath(folder, tile, "ties2"), plan.run, tile);
+    file.segment_sizes = std::move(share.segment_sizes);
+  }
+  saveFinal(file, path, plan.run, tile);
 }
 
 }  // namespace segorient::program

@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026, the segorient authors
-#include <segorient/tiles/join_tiles.h>
-
 #include <algorithm>
 #include <cmath>
 #include <functional>
@@ -24,12 +22,14 @@ constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
 // The results of all tiles in the order of the input's rows.
 class Results {
  public:
-  Results(const Plan& plan, const std::string& folder, std::uint64_t first_row) {
+  Results(const Plan& plan, const std::string& folder, std::uint64_t first_row)
+      : labels_(loadLabels(labelsPath(folder), plan.run, plan.tiles())) {
     for (std::size_t t = 0; t < plan.tiles(); ++t) {
       const auto tile = static_cast<std::uint32_t>(t);
-      signs_.push_back(loadSigns(tilePath(folder, t, "signs"), plan.run, tile));
-      rows_.push_back(
-          std::make_unique<RowReader>(tilePath(folder, t, "rows"), plan.run, tile, first_row));
+      signs_.push_back(loadSigns(tilePath(folder, t, "signs"), plan.run, tile).pieces);
+      const bool again = loadFinal(tilePath(folder, t, "final"), plan.run, tile).again;
+      rows_.push_back(std::make_unique<RowReader>(tilePath(folder, t, again ? "rows2" : "rows"),
+                                                  plan.run, tile, first_row));
       if (!rows_[t]->done()) next_.emplace(rows_[t]->row().row(), t);
     }
   }
@@ -37,44 +37,34 @@ class Results {
   // Of the rows from `first_row` on; NaN and no label for those that no tile knows.
   void take(std::uint64_t first_row, std::size_t count) {
     normals.assign(4 * count, kNaN);
-    confidences.assign(count, 0.F);
-    toward.assign(3 * count, 0.F);
     labels.assign(count, kNoSegment);
-    bool sensors = false;
     while (!next_.empty() && next_.top().first < first_row + count) {
       const std::size_t tile = next_.top().second;
       next_.pop();
       RowReader& reader = *rows_[tile];
       const RowRecord& r = reader.row();
       const auto i = static_cast<std::size_t>(r.row() - first_row);
-      sensors = place(signs_[tile], r, i) || sensors;
+      place(tile, r, i);
       reader.next();
       if (!reader.done()) next_.emplace(reader.row().row(), tile);
     }
-    if (sensors) faceSensors(toward, normals, confidences);
   }
 
   std::vector<float> normals;  // 4 a row, with the curvature
-  std::vector<float> confidences;
-  std::vector<float> toward;
   std::vector<std::uint32_t> labels;
 
  private:
-  // \return whether a sensor is known
-  bool place(const SignsFile& signs, const RowRecord& r, std::size_t i) {
+  void place(std::size_t tile, const RowRecord& r, std::size_t i) {
     std::copy_n(r.normal, 4, &normals[4 * i]);
-    confidences[i] = r.confidence;
     const auto label = static_cast<std::size_t>(r.label);
-    if (r.label >= 0 && label < signs.labels.size()) labels[i] = signs.labels[label];
-    const auto patch = static_cast<std::size_t>(r.patch);
-    if (r.patch < 0 || patch >= signs.signs.size()) return false;
-    for (std::size_t a = 0; a < 3; ++a) normals[4 * i + a] *= signs.signs[patch];
-    if (signs.toward.empty()) return false;
-    std::copy_n(&signs.toward[3 * patch], 3, &toward[3 * i]);
-    return true;
+    if (r.label >= 0 && label < labels_[tile].size()) labels[i] = labels_[tile][label];
+    const auto piece = static_cast<std::size_t>(r.followed);
+    if (r.followed < 0 || piece >= signs_[tile].size()) return;
+    for (std::size_t a = 0; a < 3; ++a) normals[4 * i + a] *= signs_[tile][piece];
   }
 
-  std::vector<SignsFile> signs_;
+  LabelFile labels_;
+  std::vector<std::vector<std::int8_t>> signs_;  // of each tile's pieces
   std::vector<std::unique_ptr<RowReader>> rows_;
   using Next = std::pair<std::uint64_t, std::size_t>;
   std::priority_queue<Next, std::vector<Next>, std::greater<>> next_;  // row and tile
@@ -101,9 +91,11 @@ void addBlock(const CloudTable& block, const Results& results, std::uint64_t siz
 
 }  // namespace
 
-void writeStep(const Plan& plan, const std::string& folder, std::size_t output,
+void writeStep(const Plan& plan, const std::string& folder, std::size_t output, int threads,
                const StepProgress& progress) {
   requireUnchanged(plan);
+  for (std::size_t t = 0; t < plan.tiles(); ++t) finishStep(plan, folder, t, threads);
+  labelStep(plan, folder);
   const PlanOutput& to = plan.outputs[output];
   OutputFile file(to.path);
   CloudWriter writer(file);

@@ -125,9 +125,11 @@ std::vector<pcl::index_t> allRows(std::size_t size) {
 class Estimation {
  public:
   Estimation(const PointView& points, const Neighborhoods& table, const CloudNoise& noise,
-             int threads, float* normals, const std::vector<pcl::index_t>* rows)
+             const AutomaticNormalTraits* known, int threads, float* normals,
+             const std::vector<pcl::index_t>* rows)
       : points_(points),
         table_(table),
+        known_(known),
         noise_(noise.length),
         in_spacings_(std::max(detail::kLeastNoise, noise.in_spacings)),
         threads_(threads),
@@ -135,6 +137,8 @@ class Estimation {
         rows_(rows != nullptr ? *rows : allRows(table.size())),
         open_(rows_) {
     report_.noise = static_cast<float>(noise.in_spacings);
+    report_.traits.noise = noise.length;
+    report_.traits.in_spacings = noise.in_spacings;
   }
 
   AutomaticNormalReport run(std::vector<pcl::index_t>* unexplained) {
@@ -144,6 +148,7 @@ class Estimation {
       keepEdges();
       if (isAnalytic()) takeCubics();
     }
+    report_.traits.analytic = report_.analytic;
     report_.at_edges = open_.size();
     report_.triangulated = in_spacings_ < kTriangulationNoise;
     if (report_.triangulated) {
@@ -218,6 +223,7 @@ class Estimation {
   /// makes it: then what quadratic surfaces leave is the next term of its series.
   bool isAnalytic() {
     if (available() < kCubicNeighbors) return false;
+    if (known_ != nullptr) return known_->analytic;
     const std::vector<pcl::index_t> rows = detail::sampleRows(rows_);
     Surfaces cubics(NormalEstimator::AwASCubic);
     cubics.fit(points_, table_, kCubicNeighbors, threads_, rows);
@@ -267,7 +273,9 @@ class Estimation {
     Surfaces cubics(NormalEstimator::AwASCubic);
     quadratics_.fit(points_, table_, k, threads_, open_);
     cubics.fit(points_, table_, k, threads_, open_);
-    if (!areCubic(open_, cubics, kBetter)) return;
+    const bool better = known_ != nullptr ? known_->cubic_edges : areCubic(open_, cubics, kBetter);
+    if (!better) return;
+    report_.traits.cubic_edges = true;
     for (const pcl::index_t o : open_) cubics.copyNormal(static_cast<std::size_t>(o), normals_);
     report_.cubic = true;
     report_.edge_k = k;
@@ -275,6 +283,7 @@ class Estimation {
 
   const PointView& points_;
   const Neighborhoods& table_;
+  const AutomaticNormalTraits* known_;
   double noise_;
   double in_spacings_;
   int threads_;
@@ -285,23 +294,31 @@ class Estimation {
   Surfaces quadratics_;
 };
 
+CloudNoise noiseOf(const PointView& points, const Neighborhoods& neighborhoods, int threads,
+                   const AutomaticNormalTraits* known) {
+  if (known != nullptr) return {known->noise, known->in_spacings};
+  return detail::sampleNoise(points, neighborhoods, threads);
+}
+
 }  // namespace
 
 float estimateNoise(const PointView& points, const Neighborhoods& neighborhoods, int threads) {
   return static_cast<float>(detail::sampleNoise(points, neighborhoods, threads).in_spacings);
 }
 
-int automaticNeighbors(const PointView& points, const Neighborhoods& neighborhoods, int threads) {
-  return neighborsFor(detail::sampleNoise(points, neighborhoods, threads));
+int automaticNeighbors(const PointView& points, const Neighborhoods& neighborhoods, int threads,
+                       const AutomaticNormalTraits* known) {
+  return neighborsFor(noiseOf(points, neighborhoods, threads, known));
 }
 
 AutomaticNormalReport estimateNormalsAutomatically(const PointView& points,
                                                    const Neighborhoods& neighborhoods, int threads,
                                                    float* normals,
                                                    std::vector<pcl::index_t>* unexplained,
-                                                   const std::vector<pcl::index_t>* rows) {
-  const CloudNoise noise = detail::sampleNoise(points, neighborhoods, threads);
-  return Estimation(points, neighborhoods, noise, threads, normals, rows).run(unexplained);
+                                                   const std::vector<pcl::index_t>* rows,
+                                                   const AutomaticNormalTraits* known) {
+  const CloudNoise noise = noiseOf(points, neighborhoods, threads, known);
+  return Estimation(points, neighborhoods, noise, known, threads, normals, rows).run(unexplained);
 }
 
 AutomaticNormalReport estimateNormalsAutomatically(const PointView& points,
@@ -309,17 +326,18 @@ AutomaticNormalReport estimateNormalsAutomatically(const PointView& points,
                                                    const Neighborhoods& neighborhoods, int threads,
                                                    float* normals,
                                                    std::vector<pcl::index_t>* unexplained,
-                                                   const std::vector<pcl::index_t>* rows) {
-  const CloudNoise noise = detail::sampleNoise(points, neighborhoods, threads);
+                                                   const std::vector<pcl::index_t>* rows,
+                                                   const AutomaticNormalTraits* known) {
+  const CloudNoise noise = noiseOf(points, neighborhoods, threads, known);
   const int wanted = neighborsFor(noise);
   const bool all = static_cast<std::size_t>(neighborhoods.k()) >= points.size;
   if (all || neighborhoods.k() > wanted) {
-    return Estimation(points, neighborhoods, noise, threads, normals, rows).run(unexplained);
+    return Estimation(points, neighborhoods, noise, known, threads, normals, rows).run(unexplained);
   }
   // The nearest of each point, which the noise comes from, are the same.
   Neighborhoods wider;
   index.nearestKAll(wanted + 1, wider, false);
-  return Estimation(points, wider, noise, threads, normals, rows).run(unexplained);
+  return Estimation(points, wider, noise, known, threads, normals, rows).run(unexplained);
 }
 
 std::string AutomaticNormalReport::text() const {

@@ -14,19 +14,28 @@
 
 namespace segorient {
 
+/// What estimateNormalsAutomatically() measures of a whole cloud; for a part of one it is told.
+struct AutomaticNormalTraits {
+  double noise = 0.0;        ///< standard deviation, in the points' unit
+  double in_spacings = 0.0;  ///< the same over the local spacing
+  bool analytic = false;     ///< so smooth that cubic surfaces are nearer at most points
+  bool cubic_edges = false;  ///< whether cubic surfaces fit most points at edges better
+};
+
 /// What estimateNormalsAutomatically() found out about a cloud, and what it chose.
 struct AutomaticNormalReport {
   float noise = 0.F;  ///< standard deviation of the noise over the local spacing
   /// Neighbourhoods of quadratic surfaces that were tried, largest first, and how many points they
   /// were taken for; with the last one also bends, and points that only a cubic surface fits.
   std::vector<std::pair<int, std::size_t>> surfaces;
-  bool analytic = false;      ///< so smooth that cubic surfaces are nearer at most points
-  std::size_t at_edges = 0;   ///< the points left
-  std::size_t planes = 0;     ///< of these, those that a plane of six neighbours does fit
-  int edge_k = 0;             ///< neighbourhood used at the others
-  bool triangulated = false;  ///< by local Delaunay triangulation, ...
-  bool cubic = false;         ///< ... by cubic surfaces, else by the smallest quadratic ones
-  std::size_t undefined = 0;  ///< points without a normal
+  bool analytic = false;         ///< so smooth that cubic surfaces are nearer at most points
+  std::size_t at_edges = 0;      ///< the points left
+  std::size_t planes = 0;        ///< of these, those that a plane of six neighbours does fit
+  int edge_k = 0;                ///< neighbourhood used at the others
+  bool triangulated = false;     ///< by local Delaunay triangulation, ...
+  bool cubic = false;            ///< ... by cubic surfaces, else by the smallest quadratic ones
+  std::size_t undefined = 0;     ///< points without a normal
+  AutomaticNormalTraits traits;  ///< as measured, or as told
 
   /// The same in a sentence.
   std::string text() const;
@@ -50,11 +59,13 @@ constexpr int kMostAutomaticNeighbors = 64;
 /// \param unexplained where not null: rows at which noise explains the residual of none of the
 ///        quadratic surfaces, ascending
 /// \param rows ascending rows to do, or null for all; others are left as they are
+/// \param known of the cloud that the points are part of; null = measured
 AutomaticNormalReport estimateNormalsAutomatically(const PointView& points,
                                                    const Neighborhoods& neighborhoods, int threads,
                                                    float* normals,
                                                    std::vector<pcl::index_t>* unexplained = nullptr,
-                                                   const std::vector<pcl::index_t>* rows = nullptr);
+                                                   const std::vector<pcl::index_t>* rows = nullptr,
+                                                   const AutomaticNormalTraits* known = nullptr);
 
 /// The same, with more neighbours where the noise asks for them: then they are sought again.
 /// \param index built on `points`
@@ -63,11 +74,12 @@ AutomaticNormalReport estimateNormalsAutomatically(const PointView& points,
                                                    const Neighborhoods& neighborhoods, int threads,
                                                    float* normals,
                                                    std::vector<pcl::index_t>* unexplained = nullptr,
-                                                   const std::vector<pcl::index_t>* rows = nullptr);
+                                                   const std::vector<pcl::index_t>* rows = nullptr,
+                                                   const AutomaticNormalTraits* known = nullptr);
 
 /// How many neighbours beside the point itself estimateNormalsAutomatically() makes use of.
-int automaticNeighbors(const PointView& points, const Neighborhoods& neighborhoods,
-                       int threads = 0);
+int automaticNeighbors(const PointView& points, const Neighborhoods& neighborhoods, int threads = 0,
+                       const AutomaticNormalTraits* known = nullptr);
 
 /// Standard deviation of the noise over the local spacing (mean distance to the six nearest), from
 /// the residuals of quadratic surfaces at a few thousand points. 0 for fewer than 16 points.

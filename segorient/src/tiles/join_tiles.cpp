@@ -8,7 +8,6 @@
 #include <utility>
 
 #include "orientation/automatic/orient_sheets.h"
-#include "orientation/automatic/sensor_signs.h"
 #include "search/prepared_cloud.h"
 #include "tiles/piece_graph.h"
 
@@ -64,16 +63,13 @@ PointHints hintsOf(const JoinOptions& options, PreparedCloud& cloud) {
 struct TileJoiner::Impl {
   struct First {
     std::int32_t piece = 0;
-    std::int32_t label = 0;
     std::size_t patch = 0;
   };
   std::vector<First> first;  // of each tile, and behind the last one
   std::vector<std::uint32_t> piece_sizes;
-  std::vector<std::uint32_t> segment_sizes;
   std::vector<TileVote> votes;
   std::vector<TilePatch> patches;
   std::vector<PieceTie> piece_ties;
-  std::vector<PieceTie> label_ties;
 
   // Patches as a cloud whose points know their sheets.
   struct PatchCloud {
@@ -86,7 +82,6 @@ struct TileJoiner::Impl {
   PatchCloud makeCloud(const PointView& places, int threads) const;
   void distribute(const AutoOrientation& orientation, const PatchCloud& cloud,
                   JoinedTiles& out) const;
-  void labelSegments(JoinedTiles& out) const;
 };
 
 TileJoiner::Impl::PatchCloud TileJoiner::Impl::makeCloud(const PointView& places,
@@ -117,28 +112,21 @@ TileJoiner::Impl::PatchCloud TileJoiner::Impl::makeCloud(const PointView& places
 void TileJoiner::Impl::distribute(const AutoOrientation& orientation, const PatchCloud& cloud,
                                   JoinedTiles& out) const {
   for (std::size_t t = 0; t < out.tiles.size(); ++t) {
-    JoinedTile& tile = out.tiles[t];
+    TileSigns& tile = out.tiles[t];
+    for (std::int32_t s = first[t].piece; s < first[t + 1].piece; ++s) {
+      tile.pieces.push_back(orientation.result.segments[at(s)].sign);
+    }
     for (std::size_t p = first[t].patch; p < first[t + 1].patch; ++p) {
       // Patches in one place have one point, which is of one of their pieces.
       const pcl::index_t point = cloud.cloud.pointOf(p);
       const auto i = static_cast<std::size_t>(std::max<pcl::index_t>(point, 0));
       const bool own = point >= 0 && cloud.cloud.rowOf(i) == p;
       const SegmentOrientationResult& piece = orientation.result.segments[at(patches[p].piece)];
-      tile.signs.push_back(own ? orientation.result.point_signs[i] : piece.sign);
-      tile.confidences.push_back(own ? orientation.result.point_confidences[i] : piece.confidence);
+      tile.patches.push_back(own ? orientation.result.point_signs[i] : piece.sign);
       for (std::size_t a = 0; a < 3 && !orientation.toward.empty(); ++a) {
         tile.toward.push_back(own ? orientation.toward[3 * i + a] : 0.F);
       }
     }
-  }
-}
-
-void TileJoiner::Impl::labelSegments(JoinedTiles& out) const {
-  const std::vector<std::uint32_t> labels =
-      detail::uniteLabels(segment_sizes, label_ties, out.segments);
-  for (std::size_t t = 0; t < out.tiles.size(); ++t) {
-    out.tiles[t].labels.assign(labels.begin() + first[t].label,
-                               labels.begin() + first[t + 1].label);
   }
 }
 
@@ -148,7 +136,6 @@ TileJoiner::TileJoiner() : impl_(std::make_unique<Impl>()) {
 TileJoiner::~TileJoiner() = default;
 
 void TileJoiner::addTile(const std::vector<std::uint32_t>& piece_sizes,
-                         const std::vector<std::uint32_t>& segment_sizes,
                          const std::vector<TileVote>& votes, const std::vector<TilePatch>& patches,
                          const std::array<double, 3>& offset) {
   Impl& i = *impl_;
@@ -166,9 +153,7 @@ void TileJoiner::addTile(const std::vector<std::uint32_t>& piece_sizes,
     i.patches.push_back(p);
   }
   i.piece_sizes.insert(i.piece_sizes.end(), piece_sizes.begin(), piece_sizes.end());
-  i.segment_sizes.insert(i.segment_sizes.end(), segment_sizes.begin(), segment_sizes.end());
-  i.first.push_back({static_cast<std::int32_t>(i.piece_sizes.size()),
-                     static_cast<std::int32_t>(i.segment_sizes.size()), i.patches.size()});
+  i.first.push_back({static_cast<std::int32_t>(i.piece_sizes.size()), i.patches.size()});
 }
 
 void TileJoiner::tie(std::size_t tile_a, const std::vector<TileTie>& of_a, std::size_t tile_b,
@@ -176,15 +161,11 @@ void TileJoiner::tie(std::size_t tile_a, const std::vector<TileTie>& of_a, std::
   const auto cosine = [](const TileTie& a, const TileTie& b) {
     return a.normal[0] * b.normal[0] + a.normal[1] * b.normal[1] + a.normal[2] * b.normal[2];
   };
-  const auto one = [](const TileTie&, const TileTie&) { return 1.F; };
   const Impl::First& a = impl_->first[tile_a];
   const Impl::First& b = impl_->first[tile_b];
   tally(
       of_a, a.piece, of_b, b.piece, [](const TileTie& t) { return t.piece; }, cosine,
       impl_->piece_ties);
-  tally(
-      of_a, a.label, of_b, b.label, [](const TileTie& t) { return t.label; }, one,
-      impl_->label_ties);
 }
 
 JoinedTiles TileJoiner::join(const JoinOptions& options) {
@@ -192,7 +173,6 @@ JoinedTiles TileJoiner::join(const JoinOptions& options) {
   JoinedTiles out;
   out.tiles.resize(i.first.size() - 1);
   out.pieces = i.piece_sizes.size();
-  i.labelSegments(out);
   if (i.patches.empty()) return out;
   std::vector<float> xyz;
   xyz.reserve(3 * i.patches.size());
@@ -223,11 +203,27 @@ JoinedTiles TileJoiner::join(const JoinOptions& options) {
   return out;
 }
 
-void faceSensors(const std::vector<float>& toward, std::vector<float>& normals,
-                 const std::vector<float>& confidences) {
-  FilteredNormals filtered{std::move(normals), confidences};
-  detail::faceSensors(toward, filtered);
-  normals = std::move(filtered.normals);
+void LabelJoiner::addTile(const std::vector<std::uint32_t>& segment_sizes) {
+  sizes_.insert(sizes_.end(), segment_sizes.begin(), segment_sizes.end());
+  first_.push_back(sizes_.size());
+}
+
+void LabelJoiner::tie(std::size_t tile_a, const std::vector<TileTie>& of_a, std::size_t tile_b,
+                      const std::vector<TileTie>& of_b) {
+  tally(
+      of_a, static_cast<std::int32_t>(first_[tile_a]), of_b,
+      static_cast<std::int32_t>(first_[tile_b]), [](const TileTie& t) { return t.label; },
+      [](const TileTie&, const TileTie&) { return 1.F; }, ties_);
+}
+
+std::vector<std::vector<std::uint32_t>> LabelJoiner::join(std::size_t& count) const {
+  const std::vector<std::uint32_t> labels = detail::uniteLabels(sizes_, ties_, count);
+  std::vector<std::vector<std::uint32_t>> out;
+  for (std::size_t t = 0; t + 1 < first_.size(); ++t) {
+    out.emplace_back(labels.begin() + static_cast<std::ptrdiff_t>(first_[t]),
+                     labels.begin() + static_cast<std::ptrdiff_t>(first_[t + 1]));
+  }
+  return out;
 }
 
 }  // namespace segorient

@@ -2,7 +2,7 @@
 // Copyright (c) 2026, the segorient authors
 #pragma once
 
-#include <segorient/tiles/tile_share.h>
+#include <segorient/tiles/join_tiles.h>
 
 #include <cstddef>
 #include <cstdint>
@@ -11,17 +11,6 @@
 #include "orientation/automatic/border_votes.h"
 
 namespace segorient::detail {
-
-/// What the points that two tiles both have say of a piece (or a segment) of one and one of the
-/// other.
-struct PieceTie {
-  std::int32_t a = 0;
-  std::int32_t b = 0;
-  float weight = 0.F;    ///< sum of the cosines between both tiles' normals
-  float absolute = 0.F;  ///< sum of their absolute values
-  std::uint32_t count = 0;
-  bool most = false;  ///< whether it is most of what each of the two has in the other's tile
-};
 
 /// The votes between the pieces of all tiles, ascending by (a, b): those of borders, and those of
 /// points that two tiles have. Votes of several tiles on the same two add up.

@@ -49,32 +49,37 @@ class Tile {
   }
 
   TileShare work(const TileOptions& options) {
-    const TileTraits& traits = options.traits;
-    record_.traits.noise = {traits.noise, traits.wide_noise, traits.thin != 0};
-    record_.traits.residual = traits.residual;
-    record_.traits.scan_scales = traits.scan != 0;
-    record_.denoise = traits.denoise != 0;
-    record_.voters = &own_;
-    record_.whole = &whole_;
-    PipelineOptions pipeline = pipelineOptions(options.k, options.threads);
-    // All that is seen of a tile alone may well be what one place could see.
-    pipeline.orientation.automatic.infer_viewpoint =
-        std::all_of(roles_.begin(), roles_.end(), isOwn);
-    stages_ = detail::runAutoStages(
-        cloud_, pipeline, resolveHints(options.hints, cloud_), [](const char*, double) {},
-        &record_);
+    run(options);
     listVotes();
-    makePatches(options.patch_points);
-    turnAsPieces();
+    cutPatches(record_.segments, options.patch_points);
+    makePatches();
+    listSigns();
+    followPieces();
+    scatter();
+    listTies();
+    return std::move(out_);
+  }
+
+  TileShare finish(const TileOptions& options, const TileSigns& signs) {
+    record_.known = [&](const Segmentation& pieces) {
+      cutPatches(pieces, options.patch_points);
+      return orientAsKnown(pieces, signs);
+    };
+    run(options);
+    followed_.assign(cloud_.size(), -1);
     scatter();
     listTies();
     return std::move(out_);
   }
 
  private:
+  void run(const TileOptions& options);
+  AutoOrientation orientAsKnown(const Segmentation& pieces, const TileSigns& signs) const;
   void listVotes();
-  void makePatches(std::uint32_t most);
-  void turnAsPieces();
+  void cutPatches(const Segmentation& pieces, std::uint32_t most);
+  void makePatches();
+  void listSigns();
+  void followPieces();
   void scatter();
   void listTies();
   void pieceNormal(std::size_t i, float* out) const;
@@ -86,9 +91,51 @@ class Tile {
   std::vector<float> whole_;
   detail::SheetRecord record_;
   detail::AutoStages stages_;
-  std::vector<std::int32_t> patch_of_;
+  std::vector<std::int32_t> patch_of_;  // of its own points
+  std::vector<std::int32_t> followed_;  // see TileShare
   TileShare out_;
 };
+
+void Tile::run(const TileOptions& options) {
+  const TileTraits& traits = options.traits;
+  record_.traits.noise = {traits.noise, traits.wide_noise, traits.thin != 0};
+  record_.traits.residual = traits.residual;
+  record_.traits.scan_scales = traits.scan != 0;
+  record_.final_traits.surfaces.noise = static_cast<double>(traits.surface_noise / cloud_.unit());
+  record_.final_traits.surfaces.in_spacings = static_cast<double>(traits.surface_ratio);
+  record_.final_traits.surfaces.analytic = traits.analytic != 0;
+  record_.final_traits.surfaces.cubic_edges = traits.cubic_edges != 0;
+  record_.final_traits.edges = traits.edges != 0;
+  record_.denoise = traits.denoise != 0;
+  record_.voters = &own_;
+  record_.whole = &whole_;
+  PipelineOptions pipeline = pipelineOptions(options.k, options.threads);
+  // All that is seen of a tile alone may well be what one place could see.
+  pipeline.orientation.automatic.infer_viewpoint = std::all_of(roles_.begin(), roles_.end(), isOwn);
+  stages_ = detail::runAutoStages(
+      cloud_, pipeline, resolveHints(options.hints, cloud_), [](const char*, double) {}, &record_);
+}
+
+AutoOrientation Tile::orientAsKnown(const Segmentation& pieces, const TileSigns& signs) const {
+  AutoOrientation out;
+  out.result.point_signs.assign(cloud_.size(), 0);
+  out.result.point_confidences.assign(cloud_.size(), 0.F);
+  out.result.point_components.assign(cloud_.size(), -1);
+  if (!signs.toward.empty()) out.toward.assign(3 * cloud_.size(), 0.F);
+  for (std::size_t i = 0; i < cloud_.size(); ++i) {
+    const std::int32_t piece = pieces.labels[i];
+    if (piece < 0 || at(piece) >= signs.pieces.size()) continue;
+    std::int8_t sign = signs.pieces[at(piece)];
+    const std::size_t patch = at(patch_of_[i]);
+    if (patch_of_[i] >= 0 && patch < signs.patches.size()) {
+      sign = signs.patches[patch];
+      if (!signs.toward.empty()) std::copy_n(&signs.toward[3 * patch], 3, &out.toward[3 * i]);
+    }
+    out.result.point_signs[i] = static_cast<std::int8_t>(sign * pieces.signs[i]);
+    out.result.point_components[i] = 0;
+  }
+  return out;
+}
 
 void Tile::listVotes() {
   out_.votes.reserve(record_.votes.size());
@@ -109,24 +156,35 @@ void Tile::pieceNormal(std::size_t i, float* out) const {
 }
 
 // Points come in an order in which those near each other are side by side.
-void Tile::makePatches(std::uint32_t most) {
-  const std::size_t pieces = record_.segments.segments.size();
-  out_.piece_sizes.assign(pieces, 0);
-  std::vector<std::int32_t> open(pieces, -1);
+void Tile::cutPatches(const Segmentation& pieces, std::uint32_t most) {
+  std::vector<std::int32_t> open(pieces.segments.size(), -1);
+  std::vector<std::uint32_t> filled(pieces.segments.size(), 0);
+  std::int32_t count = 0;
   patch_of_.assign(cloud_.size(), -1);
   for (std::size_t i = 0; i < cloud_.size(); ++i) {
-    const std::int32_t piece = record_.segments.labels[i];
+    const std::int32_t piece = pieces.labels[i];
     if (piece < 0 || own_[i] == 0) continue;
+    if (open[at(piece)] < 0 || filled[at(piece)] >= most) {
+      open[at(piece)] = count++;
+      filled[at(piece)] = 0;
+    }
+    ++filled[at(piece)];
+    patch_of_[i] = open[at(piece)];
+  }
+}
+
+void Tile::makePatches() {
+  out_.piece_sizes.assign(record_.segments.segments.size(), 0);
+  for (std::size_t i = 0; i < cloud_.size(); ++i) {
+    if (patch_of_[i] < 0) continue;
+    const std::int32_t piece = record_.segments.labels[i];
     ++out_.piece_sizes[at(piece)];
-    std::int32_t& mine = open[at(piece)];
-    if (mine < 0 || out_.patch_list[at(mine)].points >= most) {
-      mine = static_cast<std::int32_t>(out_.patch_list.size());
+    if (at(patch_of_[i]) == out_.patch_list.size()) {
       out_.patch_list.emplace_back();
       out_.patch_list.back().piece = piece;
       out_.patch_list.back().row = static_cast<std::uint32_t>(cloud_.rowOf(i));
     }
-    patch_of_[i] = mine;
-    TilePatch& patch = out_.patch_list[at(mine)];
+    TilePatch& patch = out_.patch_list[at(patch_of_[i])];
     float normal[3];
     pieceNormal(i, normal);
     // Means as they grow: a single point stays exactly what it is.
@@ -150,47 +208,52 @@ void Tile::makePatches(std::uint32_t most) {
   }
 }
 
-// The patch whose sign a point's final normal follows: its own, unless the filter turned the normal
+// The signs of pieces, as most of their points have them.
+void Tile::listSigns() {
+  const std::vector<SegmentOrientationResult>& found = stages_.orientation.result.segments;
+  out_.piece_signs.reserve(found.size());
+  for (const SegmentOrientationResult& piece : found) out_.piece_signs.push_back(piece.sign);
+}
+
+// The piece whose sign a point's final normal follows: its own, unless the filter turned the normal
 // as those around are, or the point is of no piece.
-// \return the point of that patch, itself or a neighbour; -1 where there is none
+// \return the point of that piece, itself or a neighbour; -1 where there is none
 std::int32_t Tile::followed(std::size_t i) const {
   const float* n = &stages_.normals[4 * i];
   const auto agrees = [&](std::size_t j) {
     const float* m = &record_.sheets.normals[4 * j];
     const auto sign = static_cast<float>(stages_.orientation.result.point_signs[j]);
-    return patch_of_[j] >= 0 && sign * (n[0] * m[0] + n[1] * m[1] + n[2] * m[2]) > 0.F;
+    return sign * (n[0] * m[0] + n[1] * m[1] + n[2] * m[2]) > 0.F;
   };
   const Neighborhoods& nb = cloud_.neighborhoods();
   for (int j = 0; j < nb.count(i); ++j) {  // itself first
     if (agrees(static_cast<std::size_t>(nb.indices(i)[j]))) return nb.indices(i)[j];
   }
-  return patch_of_[i] >= 0 ? static_cast<std::int32_t>(i) : -1;
+  return record_.segments.labels[i] >= 0 ? static_cast<std::int32_t>(i) : -1;
 }
 
-// The tile's own signs are taken back, so that each normal is turned as its patch is.
-void Tile::turnAsPieces() {
-  std::vector<std::int32_t> followed_patch(cloud_.size(), -1);
+// The tile's own signs are taken back, so that each normal is turned as its piece is.
+void Tile::followPieces() {
+  followed_.assign(cloud_.size(), -1);
   for (std::size_t i = 0; i < cloud_.size(); ++i) {
     if (own_[i] == 0 || !std::isfinite(stages_.normals[4 * i])) continue;
     const std::int32_t point = followed(i);
     if (point < 0) continue;
-    followed_patch[i] = patch_of_[at(point)];
+    followed_[i] = record_.segments.labels[at(point)];
     const auto sign = static_cast<float>(record_.segments.signs[at(point)] *
                                          stages_.orientation.result.point_signs[at(point)]);
     for (std::size_t a = 0; a < 3; ++a) stages_.normals[4 * i + a] *= sign;
   }
-  patch_of_ = std::move(followed_patch);
 }
 
 void Tile::scatter() {
   out_.normals = cloud_.scatter(stages_.normals, 4, kNaN);
-  out_.confidences = cloud_.scatter(stages_.confidences, 1, 0.F);
   out_.labels = cloud_.scatter(stages_.segmentation.labels, 1, std::int32_t{-1});
-  out_.patches = cloud_.scatter(patch_of_, 1, std::int32_t{-1});
+  out_.followed = cloud_.scatter(followed_, 1, std::int32_t{-1});
   out_.segment_sizes.assign(stages_.segmentation.segments.size(), 0);
   for (std::size_t row = 0; row < roles_.size(); ++row) {
     if (!isOwn(roles_[row])) {
-      out_.patches[row] = -1;
+      out_.followed[row] = -1;
     } else if (out_.labels[row] >= 0) {
       ++out_.segment_sizes[at(out_.labels[row])];
     }
@@ -214,24 +277,58 @@ void Tile::listTies() {
 
 }  // namespace
 
-TileTraits measureTileTraits(const PointView& points, int k, bool from_sensors, int threads) {
+TileTraits measureTileTraits(const PointView& points, int k, const OrientationHints& hints,
+                             int threads) {
   PreparedCloud cloud(points, nullptr, threads);
   TileTraits out;
   if (cloud.size() == 0) return out;
-  const detail::CloudTraits found =
-      detail::measureTraits(cloud, pipelineOptions(k, threads), from_sensors);
+  PipelineOptions pipeline = pipelineOptions(k, threads);
+  pipeline.orientation.automatic.coarse_levels = false;
+  const detail::AutoStages found = detail::runAutoStages(
+      cloud, pipeline, resolveHints(hints, cloud), [](const char*, double) {});
   out.noise = found.sheets.noise.fine;
   out.wide_noise = found.sheets.noise.coarse;
   out.thin = found.sheets.noise.thin ? 1 : 0;
   out.residual = found.sheets.residual;
   out.scan = found.sheets.scan_scales ? 1 : 0;
-  out.denoise = found.denoise ? 1 : 0;
+  out.denoise = found.denoised ? 1 : 0;
+  const AutomaticNormalTraits& surfaces = found.final_traits.surfaces;
+  out.edges = found.final_traits.edges ? 1 : 0;
+  out.analytic = surfaces.analytic ? 1 : 0;
+  out.cubic_edges = surfaces.cubic_edges ? 1 : 0;
+  out.surface_noise = static_cast<float>(surfaces.noise) * cloud.unit();
+  out.surface_ratio = static_cast<float>(surfaces.in_spacings);
   return out;
 }
 
 TileShare workOnTile(const PointView& points, const std::vector<TileRole>& roles,
                      const std::vector<float>& whole, const TileOptions& options) {
   return Tile(points, roles, whole, options.threads).work(options);
+}
+
+bool needsFinishing(const TileShare& share, const TileSigns& signs) {
+  // Of sensors, the whole knows which are to be believed.
+  if (!signs.toward.empty()) return true;
+  // A point of a border has about eight neighbours across it: one of 100,000 points.
+  constexpr double kMost = 8e-5;
+  std::uint64_t points = 0;
+  std::uint64_t wrong = 0;
+  for (const std::uint32_t size : share.piece_sizes) points += size;
+  const auto right = [&](std::int32_t piece) {
+    const std::size_t p = at(piece);
+    return p >= signs.pieces.size() || p >= share.piece_signs.size() ||
+           signs.pieces[p] == share.piece_signs[p];
+  };
+  for (const TileVote& v : share.votes) {
+    if (right(v.a) != right(v.b)) wrong += v.count;
+  }
+  return static_cast<double>(wrong) > kMost * static_cast<double>(points);
+}
+
+TileShare finishTile(const PointView& points, const std::vector<TileRole>& roles,
+                     const std::vector<float>& whole, const TileOptions& options,
+                     const TileSigns& signs) {
+  return Tile(points, roles, whole, options.threads).finish(options, signs);
 }
 
 }  // namespace segorient

@@ -14,6 +14,21 @@
 
 namespace segorient {
 
+namespace detail {
+
+/// What the points that two tiles both have say of a piece (or a segment) of one and one of the
+/// other.
+struct PieceTie {
+  std::int32_t a = 0;
+  std::int32_t b = 0;
+  float weight = 0.F;    ///< sum of the cosines between both tiles' normals
+  float absolute = 0.F;  ///< sum of their absolute values
+  std::uint32_t count = 0;
+  bool most = false;  ///< whether it is most of what each of the two has in the other's tile
+};
+
+}  // namespace detail
+
 /// What is known of the whole cloud when its tiles are joined. Places are relative to the origin
 /// that tiles are given offsets from.
 struct JoinOptions {
@@ -23,19 +38,10 @@ struct JoinOptions {
   int threads = 0;
 };
 
-/// The orientation of the whole cloud, by patch of each tile.
-struct JoinedTile {
-  std::vector<std::int8_t> signs;  ///< what the patch's normals are to be multiplied by
-  std::vector<float> confidences;  ///< 0 to 1
-  std::vector<float> toward;       ///< 3 a patch: unit vector to its sensor, 0 = unknown; or empty
-  std::vector<std::uint32_t> labels;  ///< by the tile's own label: the whole cloud's
-};
-
 struct JoinedTiles {
-  std::vector<JoinedTile> tiles;
+  std::vector<TileSigns> tiles;
   std::vector<ComponentOrientationResult> components;  ///< by descending number of points
   std::size_t pieces = 0;                              ///< of all tiles
-  std::size_t segments = 0;                            ///< of the whole cloud
 };
 
 /// Puts tiles together: pieces that two tiles see the same points of vote on each other as pieces
@@ -49,8 +55,7 @@ class TileJoiner {
   TileJoiner& operator=(const TileJoiner&) = delete;
 
   /// Tiles one after another. \param offset of the tile's origin
-  void addTile(const std::vector<std::uint32_t>& piece_sizes,
-               const std::vector<std::uint32_t>& segment_sizes, const std::vector<TileVote>& votes,
+  void addTile(const std::vector<std::uint32_t>& piece_sizes, const std::vector<TileVote>& votes,
                const std::vector<TilePatch>& patches, const std::array<double, 3>& offset);
   /// Points that two tiles both have: entry i of both is one point.
   void tie(std::size_t tile_a, const std::vector<TileTie>& of_a, std::size_t tile_b,
@@ -63,10 +68,23 @@ class TileJoiner {
   std::unique_ptr<Impl> impl_;
 };
 
-/// Turns final normals to their sensors wherever their own error leaves no doubt.
-/// \param toward 3 floats a point, see JoinedTile \param normals 4 floats a point
-/// \param confidences see TileShare
-void faceSensors(const std::vector<float>& toward, std::vector<float>& normals,
-                 const std::vector<float>& confidences);
+/// Puts the segments of all tiles together: those that most of the points which two tiles both have
+/// tie together are one.
+class LabelJoiner {
+ public:
+  /// Tiles one after another. \param segment_sizes own rows of each segment
+  void addTile(const std::vector<std::uint32_t>& segment_sizes);
+  /// Points that two tiles both have: entry i of both is one point.
+  void tie(std::size_t tile_a, const std::vector<TileTie>& of_a, std::size_t tile_b,
+           const std::vector<TileTie>& of_b);
+  /// \param count the segments of the whole cloud
+  /// \return by tile, and by its own label: the whole cloud's, 0 the largest
+  std::vector<std::vector<std::uint32_t>> join(std::size_t& count) const;
+
+ private:
+  std::vector<std::size_t> first_{0};  // label of each tile, and behind the last one
+  std::vector<std::uint32_t> sizes_;
+  std::vector<detail::PieceTie> ties_;
+};
 
 }  // namespace segorient

@@ -21,13 +21,22 @@ struct TileTraits {
   std::uint8_t thin = 0;     ///< whether many neighbourhoods see two walls
   std::uint8_t scan = 0;     ///< whether normals need the larger neighbourhoods of scans
   std::uint8_t denoise = 0;  ///< whether positions are smoothed first
+
+  // Of the surfaces that final normals come from.
+  std::uint8_t edges = 0;        ///< whether there are sharp edges
+  std::uint8_t analytic = 0;     ///< whether the surface is as smooth as one that a formula makes
+  std::uint8_t cubic_edges = 0;  ///< whether cubic surfaces fit edges better
   std::uint8_t unused = 0;
+  float surface_noise = 0.F;  ///< standard deviation, in the points' unit
+  float surface_ratio = 0.F;  ///< the same, in spacings
 };
 
+/// Orients the points by the default method, and takes what it measured on the way.
 /// \param points the whole cloud, or neighbourhoods from all over it, as dense as they are
 /// \param k neighbours, 0 = the default
-/// \param from_sensors whether sensors are known or were found
-TileTraits measureTileTraits(const PointView& points, int k, bool from_sensors, int threads = 0);
+/// \param hints as for orientCloud(); they are not sought where there are none
+TileTraits measureTileTraits(const PointView& points, int k, const OrientationHints& hints,
+                             int threads = 0);
 
 /// Which points of a tile's input are its own.
 enum class TileRole : std::uint8_t {
@@ -75,15 +84,23 @@ struct TileTie {
 struct TileShare {
   // By row of the tile's input.
   std::vector<float> normals;        ///< 4 floats: normal as its piece is turned, curvature; or NaN
-  std::vector<float> confidences;    ///< 0 to 1
   std::vector<std::int32_t> labels;  ///< segment, -1 where there is no normal
-  std::vector<std::int32_t> patches;  ///< of its own rows; -1 where there is none
+  /// The piece whose sign the normal follows; -1 where there is none, or the sign is right already.
+  std::vector<std::int32_t> followed;
 
   std::vector<std::uint32_t> piece_sizes;    ///< own distinct points
   std::vector<std::uint32_t> segment_sizes;  ///< own rows
   std::vector<TileVote> votes;               ///< of own points
   std::vector<TilePatch> patch_list;         ///< of own points
+  std::vector<std::int8_t> piece_signs;      ///< that the tile alone found, and followed
   std::vector<TileTie> ties;                 ///< of HALO and SHARED rows, ascending by row
+};
+
+/// What the whole cloud says of a tile.
+struct TileSigns {
+  std::vector<std::int8_t> pieces;   ///< what the normals of each piece are to be multiplied by
+  std::vector<std::int8_t> patches;  ///< the same where sensors know single patches better
+  std::vector<float> toward;  ///< 3 a patch: unit vector to its sensor, 0 = unknown; or empty
 };
 
 struct TileOptions {
@@ -105,5 +122,16 @@ struct TileOptions {
 ///        the halo whose neighbours are farther are neighbours only
 TileShare workOnTile(const PointView& points, const std::vector<TileRole>& roles,
                      const std::vector<float>& whole, const TileOptions& options);
+
+/// Whether signs that the tile took for right, and made final normals from, are wrong in so many
+/// places that these have to be made again.
+/// \param share what workOnTile() found: votes, sizes and signs of pieces
+bool needsFinishing(const TileShare& share, const TileSigns& signs);
+
+/// The same work with the signs of the whole cloud: final normals and segments as they are in it.
+/// All else as for workOnTile(); there are no votes and patches.
+TileShare finishTile(const PointView& points, const std::vector<TileRole>& roles,
+                     const std::vector<float>& whole, const TileOptions& options,
+                     const TileSigns& signs);
 
 }  // namespace segorient

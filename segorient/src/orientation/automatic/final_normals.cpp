@@ -42,12 +42,13 @@ enum class Fit : std::uint8_t { EXPLAINED, UNEXPLAINED, ONE_SIDED, ON_EDGE };
 class FinalNormals {
  public:
   FinalNormals(PreparedCloud& cloud, const Segmentation& segments, int threads,
-               const AutoNormals& oriented)
+               const FinalTraits* known, const AutoNormals& oriented)
       : cloud_(cloud),
         points_(cloud.points()),
         table_(cloud.neighborhoods()),
         segments_(segments),
         threads_(threads),
+        known_(known),
         oriented_(oriented),
         toward_(oriented.orientation.toward) {}
 
@@ -57,6 +58,8 @@ class FinalNormals {
     // Depth cameras round what they measure: that is no noise which a mean could lessen.
     if (!toward_.empty() && noise_ > kEdgesHidden) return {};
     if (noise_ <= kEdgesHidden) recomputeAtEdges();
+    if (known_ != nullptr) has_edges_ = known_->edges;
+    traits_.edges = has_edges_;
     const auto n = static_cast<std::ptrdiff_t>(points_.size);
 #pragma omp parallel for schedule(static) num_threads(resolveThreads(threads_, points_.size, 50.0))
     for (std::ptrdiff_t p = 0; p < n; ++p) {
@@ -67,6 +70,9 @@ class FinalNormals {
       std::copy(chosen.begin(), chosen.end(), &fitted_[4 * i]);
     }
     return std::move(fitted_);
+  }
+  const FinalTraits& traits() const {
+    return traits_;
   }
 
  private:
@@ -86,13 +92,15 @@ class FinalNormals {
       if (!has(i, ONE_PLANE)) rows.push_back(static_cast<pcl::index_t>(i));
     }
     std::vector<pcl::index_t> unexplained;
+    const AutomaticNormalTraits* known = known_ != nullptr ? &known_->surfaces : nullptr;
     const bool wider =
-        !only_known && automaticNeighbors(points_, table_, threads_) > table_.k() - 1;
+        !only_known && automaticNeighbors(points_, table_, threads_, known) > table_.k() - 1;
     const AutomaticNormalReport report =
         wider ? estimateNormalsAutomatically(points_, cloud_.index(), table_, threads_,
-                                             fitted_.data(), &unexplained, &rows)
+                                             fitted_.data(), &unexplained, &rows, known)
               : estimateNormalsAutomatically(points_, table_, threads_, fitted_.data(),
-                                             &unexplained, &rows);
+                                             &unexplained, &rows, known);
+    traits_.surfaces = report.traits;
     if (wider) cloud_.dropIndex();
     noise_ = report.noise;
     most_ = report.surfaces.empty() ? kFewest : report.surfaces.front().first;
@@ -197,6 +205,8 @@ class FinalNormals {
   const Neighborhoods& table_;
   const Segmentation& segments_;
   int threads_;
+  const FinalTraits* known_;
+  FinalTraits traits_;
   const AutoNormals& oriented_;
   const std::vector<float>& toward_;
   std::vector<float> fitted_;
@@ -208,10 +218,12 @@ class FinalNormals {
 
 }  // namespace
 
-void fitFinalNormals(PreparedCloud& cloud, const Segmentation& segments, bool only_known,
-                     int threads, AutoNormals& oriented) {
-  std::vector<float> normals = FinalNormals(cloud, segments, threads, oriented).run(only_known);
+FinalTraits fitFinalNormals(PreparedCloud& cloud, const Segmentation& segments, bool only_known,
+                            int threads, const FinalTraits* known, AutoNormals& oriented) {
+  FinalNormals final_normals(cloud, segments, threads, known, oriented);
+  std::vector<float> normals = final_normals.run(only_known);
   if (!normals.empty()) oriented.normals = std::move(normals);
+  return final_normals.traits();
 }
 
 }  // namespace segorient::detail

@@ -22,8 +22,10 @@ namespace segorient::detail {
 /// \param cloud whose neighbours are known; more are sought where the noise asks for them, unless
 ///        `only_known`
 /// \param segments by the filtered normals
+/// \param known of the cloud that this one is part of; null = measured
 /// \param oriented normals are replaced; the residuals stay
-void fitFinalNormals(PreparedCloud& cloud, const Segmentation& segments, bool only_known,
-                     int threads, AutoNormals& oriented);
+/// \return as measured, or as told
+FinalTraits fitFinalNormals(PreparedCloud& cloud, const Segmentation& segments, bool only_known,
+                            int threads, const FinalTraits* known, AutoNormals& oriented);
 
 }  // namespace segorient::detail

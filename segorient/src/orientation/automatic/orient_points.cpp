@@ -79,9 +79,14 @@ AutoNormals orientAtOneScale(const PointView& points, const Neighborhoods& neigh
         points, neighborhoods, field, admissibleEdges(points, neighborhoods, field, threads), cuts);
     if (begin) begin("orientation", 0.62);
     out.orientation =
-        orientSheets(points, neighborhoods, field, segments, settings, hints, threads);
+        record != nullptr && record->known
+            ? record->known(segments)
+            : orientSheets(points, neighborhoods, field, segments, settings, hints, threads);
     if (record != nullptr) {
-      record->votes = borderVotes(points, neighborhoods, field, segments, threads, record->voters);
+      if (!record->known) {
+        record->votes =
+            borderVotes(points, neighborhoods, field, segments, threads, record->voters);
+      }
       record->segments = std::move(segments);
       record->sheets = sheets;
     }
@@ -114,6 +119,7 @@ AutoNormals orientAtOneScale(const PointView& points, const Neighborhoods& neigh
   out.around = lookAround(sheets, filtered.confidences);
   out.confidences = std::move(filtered.confidences);
   out.scan_scales = sheets.traits.scan_scales;
+  out.sheets = sheets.traits;
   out.components = result.point_components;
   // The less of both: do the normals around agree, and is their segment sure? Of a part of a cloud
   // only the first is known yet.
@@ -142,8 +148,10 @@ AutoNormals orientPoints(const PointView& points, const Neighborhoods& neighborh
   };
   // A coarser level knows nothing of what is around each point.
   const std::vector<std::uint8_t> around = out.around;
+  const SheetTraits traits = out.sheets;
   out.level = followCoarserLevels(points, neighborhoods, hints, orient, threads, out);
   out.around = around;
+  out.sheets = traits;
   return out;
 }
 

@@ -10,6 +10,7 @@
 #include <functional>
 #include <vector>
 
+#include "features/automatic_normals.h"
 #include "features/sheet_normals.h"
 #include "orientation/automatic/orient_sheets.h"
 #include "orientation/sensors/point_hints.h"
@@ -35,17 +36,28 @@ struct AutoNormals {
   std::vector<std::uint8_t> by_sensor;
   float spacing = 0.F;  ///< median
   float level = 0.F;    ///< see followCoarserLevels()
+  SheetTraits sheets;   ///< of the cloud
+};
+
+/// What fitFinalNormals() measures of a whole cloud; for a part of one it is told.
+struct FinalTraits {
+  AutomaticNormalTraits surfaces;
+  bool edges = false;  ///< whether there are sharp ones
 };
 
 /// For a cloud that is part of a larger one: what is known of that, and what it needs to know.
 struct SheetRecord {
-  SheetTraits traits;    ///< of the whole
-  bool denoise = false;  ///< whether the whole asks for smoothed positions
+  SheetTraits traits;        ///< of the whole
+  FinalTraits final_traits;  ///< of the whole
+  bool denoise = false;      ///< whether the whole asks for smoothed positions
   /// One a point: whose votes are kept, see borderVotes().
   const std::vector<std::uint8_t>* voters = nullptr;
   /// One a point: within what distance all is there. Points with neighbours farther away have no
   /// normal, and are neighbours only.
   const std::vector<float>* whole = nullptr;
+  /// The orientation of the part's sheet segments as it was found for the whole; none where the
+  /// part has to do with signs of its own.
+  std::function<AutoOrientation(const Segmentation&)> known;
 
   SheetNormals sheets;  ///< found: normals not oriented
   Segmentation segments;

@@ -99,7 +99,9 @@ AutoStages runAutoStages(PreparedCloud& cloud, const PipelineOptions& options,
                   options.threads, oriented, out);
   if (settings.fit_normals && !out.denoised && !oriented.scan_scales) {
     begin("recomputation", 0.88);
-    fitFinalNormals(cloud, out.segmentation, options.k > 0, options.threads, oriented);
+    out.final_traits =
+        fitFinalNormals(cloud, out.segmentation, options.k > 0, options.threads,
+                        record != nullptr ? &record->final_traits : nullptr, oriented);
   }
   out.normals = std::move(oriented.normals);
   out.confidences = std::move(oriented.confidences);
@@ -107,28 +109,8 @@ AutoStages runAutoStages(PreparedCloud& cloud, const PipelineOptions& options,
   out.orientation = std::move(oriented.orientation);
   out.spacing = oriented.spacing;
   out.level = oriented.level;
+  out.sheets = oriented.sheets;
   if (record != nullptr) record->smoothed = std::move(smoothed);
-  return out;
-}
-
-CloudTraits measureTraits(PreparedCloud& cloud, const PipelineOptions& options, bool from_sensors) {
-  AutoStages found;
-  std::vector<float> smoothed;
-  Neighborhoods of_smoothed;
-  findNeighbors(cloud, options, nullptr, smoothed, of_smoothed, found);
-  const AutomaticOptions& settings = options.orientation.automatic;
-  SheetNormalOptions how;
-  how.split_walls = settings.split_walls;
-  how.dominant_plane = settings.dominant_plane;
-  how.threads = options.threads;
-  how.scan_scales = from_sensors;
-  const PointView points =
-      found.denoised ? PointView{smoothed.data(), 4, cloud.size()} : cloud.points();
-  CloudTraits out;
-  out.denoise = found.denoised;
-  out.sheets =
-      estimateSheetNormals(points, found.denoised ? of_smoothed : cloud.neighborhoods(), how)
-          .traits;
   return out;
 }
 

@@ -25,6 +25,8 @@ struct AutoStages {
   float noise = 0.F;      ///< see NoiseLevel::fine
   bool denoised = false;  ///< whether positions were smoothed first
   float level = 0.F;      ///< see AutoNormals::level
+  SheetTraits sheets;     ///< of the cloud, as measured or as told
+  FinalTraits final_traits;
 };
 
 /// The default method, from distinct points to oriented normals and segments: neighbours, sheet
@@ -36,15 +38,5 @@ AutoStages runAutoStages(PreparedCloud& cloud, const PipelineOptions& options,
                          const PointHints& hints,
                          const std::function<void(const char*, double)>& begin,
                          SheetRecord* record = nullptr);
-
-/// What a whole cloud tells of itself before any sign.
-struct CloudTraits {
-  SheetTraits sheets;
-  bool denoise = false;  ///< whether neighbours are sought after smoothing the positions
-};
-
-/// \param cloud the whole, or neighbourhoods from all over it
-/// \param from_sensors whether sensors are known or were found, see SheetNormalOptions
-CloudTraits measureTraits(PreparedCloud& cloud, const PipelineOptions& options, bool from_sensors);
 
 }  // namespace segorient::detail
