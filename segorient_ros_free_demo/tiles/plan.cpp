@@ -3,6 +3,7 @@
 #include "tiles/plan.h"
 
 #include <cstdio>
+#include <utility>
 
 #include "tiles/input_state.h"
 #include "tiles/tile_file.h"
@@ -67,7 +68,7 @@ void savePlan(const Plan& plan, const std::string& folder) {
   }
   file.list(plan.tile_origins);
   file.list(plan.tile_points);
-  file.list(plan.tile_inputs);
+  file.list(plan.tree.nodes());
   file.commit();
 }
 
@@ -97,8 +98,12 @@ Plan loadPlan(const std::string& folder) {
   }
   plan.tile_origins = file.list<std::array<double, 3>>();
   plan.tile_points = file.list<std::uint64_t>();
-  plan.tile_inputs = file.list<std::uint64_t>();
+  std::vector<TileTree::Node> nodes = file.list<TileTree::Node>();
   file.end();
+  if (!TileTree::restore(std::move(nodes), plan.tree) || plan.tree.tiles() != plan.tiles() ||
+      plan.tile_origins.size() != plan.tiles()) {
+    throw FileError(planPath(folder), kDamaged);
+  }
   return plan;
 }
 

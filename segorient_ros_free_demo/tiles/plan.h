@@ -4,6 +4,7 @@
 
 #include <segorient/orientation/orientation_hints.h>
 #include <segorient/tiles/tile_share.h>
+#include <segorient/tiles/tile_tree.h>
 
 #include <array>
 #include <cstdint>
@@ -55,9 +56,9 @@ struct Plan {
   std::uint64_t rows = 0;
   std::uint64_t finite = 0;
   std::array<double, 3> origin{0, 0, 0};
+  TileTree tree;
   std::vector<std::array<double, 3>> tile_origins;
   std::vector<std::uint64_t> tile_points;  ///< own ones
-  std::vector<std::uint64_t> tile_inputs;  ///< with the halo
   TileTraits traits;
   std::int32_t k = 0;
   std::uint32_t patch_points = 1;
@@ -75,19 +76,6 @@ struct Plan {
 
 /// Called with the share of a step that is done, 0 to 1.
 using StepProgress = std::function<void(double)>;
-
-/// A point in a tile's file; where points carry viewpoints, three floats follow.
-struct PointRecord {
-  std::uint32_t row_low = 0;
-  std::uint32_t row_high = 0;
-  float position[3] = {0.F, 0.F, 0.F};  ///< relative to the tile's origin
-  std::uint32_t owner = 0;              ///< the tile it belongs to, and kShared
-
-  float whole = 0.F;  ///< radius around it in which the tile has all points
-
-  std::uint64_t row() const { return std::uint64_t{row_high} << 32 | row_low; }
-};
-constexpr std::uint32_t kShared = 0x80000000U;
 
 Plan loadPlan(const std::string& folder);
 void savePlan(const Plan& plan, const std::string& folder);

@@ -9,9 +9,9 @@
 #include <limits>
 
 #include "io/cloud_stream.h"
-#include "tiles/bucket_files.h"
 #include "tiles/plan_inputs.h"
 #include "tiles/plan_sensors.h"
+#include "tiles/point_files.h"
 #include "tiles/point_sample.h"
 #include "tiles/steps.h"
 
@@ -122,40 +122,56 @@ class Viewpoints {
   Place header_{0, 0, 0};
 };
 
-// The second pass: each point to its tile, and to those that it is near.
-void distribute(const TileTree& tree, const std::string& folder, const StepProgress& progress,
+// What coordinates are rounded to, so that they take fewer bits: a millionth of the smallest
+// spacing, which is all that floats tell but near 0. 0 = not at all.
+double roundingStep(const TileTree& tree) {
+  constexpr double kSpacingsInReach = 20.0;
+  constexpr int kBits = 20;
+  double least = std::numeric_limits<double>::infinity();
+  for (const TileTree::Node& node : tree.nodes()) {
+    if (node.axis < 0 && node.reach > 0.0) least = std::min(least, node.reach);
+  }
+  return std::isfinite(least) ? std::ldexp(1.0, std::ilogb(least / kSpacingsInReach) - kBits) : 0.0;
+}
+
+Place rounded(const Place& p, double step) {
+  Place out = p;
+  constexpr double kExact =
+      4503599627370496.0;  // 2^52: doubles have no smaller parts from there on
+  for (double& x : out) {
+    const double steps = x / step;
+    if (std::fabs(steps) < kExact) x = step * std::nearbyint(steps);
+  }
+  return out;
+}
+
+// The second pass: each point to its tile.
+void distribute(const TileRequest& request, const std::string& folder, const StepProgress& progress,
                 const PlanSensors& sensors, Probe& probe, Plan& plan) {
-  constexpr std::size_t kWaiting = std::size_t{1} << 26;
-  BucketFiles buckets(folder, plan.run, tree.tiles(), kWaiting);
-  plan.tile_points.assign(tree.tiles(), 0);
-  plan.tile_inputs.assign(tree.tiles(), 0);
+  constexpr std::uint64_t kLeast = std::uint64_t{1} << 26;
+  const auto waiting = static_cast<std::size_t>(std::max(kLeast, request.memory / 4));
+  PointFiles files(folder, plan.run, plan.tree.tiles(), plan.has_viewpoints, waiting);
+  plan.tile_points.assign(plan.tree.tiles(), 0);
   Viewpoints viewpoints(sensors);
+  const double step = roundingStep(plan.tree);
   forEachPoint(
       plan, progress, 0.4, 0.95, [&](const CloudTable& layout) { viewpoints.begin(layout); },
       [&](std::uint64_t row, const Place& place, const CloudTable& block, std::size_t i) {
         if (!isFinite(place)) return;
+        StoredPoint point;
+        point.row = row;
+        point.place = step > 0.0 ? rounded(place, step) : place;
+        if (plan.has_viewpoints) {
+          point.seen_from = viewpoints.of(block, i, row, place, plan.origin);
+        }
+        probe.add(point.place, plan.has_viewpoints ? point.seen_from.data() : nullptr);
         double reach = 0.0;
-        PointRecord record;
-        const std::uint32_t owner = tree.owner(place, reach);
-        record.row_low = static_cast<std::uint32_t>(row);
-        record.row_high = static_cast<std::uint32_t>(row >> 32);
-        std::size_t tiles = 0;
-        tree.forEachWithin(place, reach, [&](std::uint32_t, double) { ++tiles; });
-        record.owner = owner | (tiles > 1 ? kShared : 0);
+        const std::uint32_t owner = plan.tree.owner(point.place, reach);
+        point.cell = plan.tree.cellOf(point.place);
         ++plan.tile_points[owner];
-        std::array<float, 3> seen_from{};
-        if (plan.has_viewpoints) seen_from = viewpoints.of(block, i, row, place, plan.origin);
-        probe.add(place, plan.has_viewpoints ? seen_from.data() : nullptr);
-        tree.forEachWithin(place, reach, [&](std::uint32_t tile, double distance) {
-          const std::array<float, 3> p = near(place, plan.tile_origins[tile]);
-          std::copy(p.begin(), p.end(), record.position);
-          record.whole =
-              static_cast<float>(distance > 0.0 ? tree.wholeRadius(place, reach, distance) : reach);
-          ++plan.tile_inputs[tile];
-          buckets.add(tile, record, plan.has_viewpoints ? seen_from.data() : nullptr);
-        });
+        files.add(owner, point);
       });
-  buckets.commit();
+  files.commit();
 }
 
 double mostPoints(const TileRequest& request, double points_each) {
@@ -209,7 +225,8 @@ Plan planStep(const TileRequest& request, const std::string& folder, const StepP
   const std::vector<Place>& places = sample.places();
   const Bounds bulk = bulkBounds(places.size(), [&](std::size_t i) { return places[i]; });
   if (bulk.isFar()) plan.origin = bulk.middle();
-  const TileTree tree(places, sample.pointsEach(), mostPoints(request, sample.pointsEach()));
+  plan.tree = TileTree(places, sample.pointsEach(), mostPoints(request, sample.pointsEach()));
+  const TileTree& tree = plan.tree;
   std::vector<Bounds> bounds(tree.tiles());
   double reach = 0.0;
   for (const Place& p : places) bounds[tree.owner(p, reach)].add(p);
@@ -221,7 +238,7 @@ Plan planStep(const TileRequest& request, const std::string& folder, const StepP
   const PlanSensors sensors(plan, sample, image_width, request.threads);
   plan.found_sensors = static_cast<std::uint32_t>(sensors.found());
   plan.has_viewpoints = plan.has_viewpoints || sensors.found() > 0;
-  distribute(tree, folder, progress, sensors, probe, plan);
+  distribute(request, folder, progress, sensors, probe, plan);
   OrientationHints hints = hintsOf(plan, plan.origin);
   hints.viewpoints = probe.viewpoints();
   plan.traits = measureTileTraits(probe.points(), plan.k, hints, request.threads);

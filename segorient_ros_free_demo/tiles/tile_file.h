@@ -24,7 +24,8 @@ enum class TileFileKind : std::uint32_t {
   SIGNS,
   JOIN,
   FINAL,
-  LABELS
+  LABELS,
+  PATCHES
 };
 
 /// The first bytes of every file of a work folder.
@@ -41,7 +42,7 @@ TileFileHeader makeHeader(TileFileKind kind, std::uint64_t run, std::uint32_t ti
 TileFileHeader requireHeader(InputFile& file, TileFileKind kind, std::uint64_t run,
                              std::uint32_t tile);
 
-/// Appended to the contents of every file but ROWS and TIES, whose parts have their own checksums.
+/// Appended to the contents of every file but those in parts, see tile_parts.h.
 struct TileFileEnd {
   std::uint64_t length = 0;
   std::uint64_t checksum = 0;
@@ -70,8 +71,6 @@ class TileFileWriter {
   }
   void text(const std::string& s) { list(std::vector<char>(s.begin(), s.end())); }
   void commit();
-  /// Without the checksum of the whole.
-  void commitPlain() { file_.commit(); }
 
  private:
   OutputFile file_;

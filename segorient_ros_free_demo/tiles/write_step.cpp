@@ -11,6 +11,7 @@
 #include "io/cloud_stream.h"
 #include "io/cloud_writer.h"
 #include "support/colors.h"
+#include "tiles/row_file.h"
 #include "tiles/steps.h"
 #include "tiles/tile_records.h"
 
@@ -30,7 +31,7 @@ class Results {
       const bool again = loadFinal(tilePath(folder, t, "final"), plan.run, tile).again;
       rows_.push_back(std::make_unique<RowReader>(tilePath(folder, t, again ? "rows2" : "rows"),
                                                   plan.run, tile, first_row));
-      if (!rows_[t]->done()) next_.emplace(rows_[t]->row().row(), t);
+      if (!rows_[t]->done()) next_.emplace(rows_[t]->row().row, t);
     }
   }
 
@@ -43,10 +44,10 @@ class Results {
       next_.pop();
       RowReader& reader = *rows_[tile];
       const RowRecord& r = reader.row();
-      const auto i = static_cast<std::size_t>(r.row() - first_row);
+      const auto i = static_cast<std::size_t>(r.row - first_row);
       place(tile, r, i);
       reader.next();
-      if (!reader.done()) next_.emplace(reader.row().row(), tile);
+      if (!reader.done()) next_.emplace(reader.row().row, tile);
     }
   }
 

@@ -31,9 +31,9 @@ void tally(const std::vector<TileTie>& in_a, std::int32_t first_a, const std::ve
   for (std::size_t i = 0; i < in_a.size(); ++i) {
     const std::int32_t a = of(in_a[i]);
     const std::int32_t b = of(in_b[i]);
-    if (a >= 0) ++all_a[a];
-    if (b >= 0) ++all_b[b];
     if (a < 0 || b < 0) continue;
+    ++all_a[a];
+    ++all_b[b];
     PieceTie& pair = found[{a, b}];
     const float agree = compare(in_a[i], in_b[i]);
     pair.weight += agree;

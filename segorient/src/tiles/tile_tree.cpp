@@ -177,4 +177,63 @@ std::uint32_t TileTree::owner(const Place& p, double& reach) const {
   }
 }
 
+std::uint32_t TileTree::cellOf(const Place& p) const {
+  std::uint32_t n = 0;
+  while (nodes_[n].axis >= 0) {
+    n = p[static_cast<std::size_t>(nodes_[n].axis)] < nodes_[n].split ? n + 1 : nodes_[n].upper;
+  }
+  return n;
+}
+
+namespace {
+
+// Calls visit(box, whether it is the tile itself) for all tiles and cells, each tile before its
+// cells. Halves come behind their node, so the list needs no recursion.
+template <typename Visit>
+void forEachBox(const std::vector<TileTree::Node>& nodes, const Visit& visit) {
+  constexpr double kEnd = std::numeric_limits<double>::infinity();
+  std::vector<TileTree::Box> open(1);
+  open[0].low = {-kEnd, -kEnd, -kEnd};
+  open[0].high = {kEnd, kEnd, kEnd};
+  while (!open.empty() && !nodes.empty()) {
+    TileTree::Box box = open.back();
+    open.pop_back();
+    const TileTree::Node& node = nodes[box.node];
+    if (node.tile >= 0) {
+      box.tile = static_cast<std::uint32_t>(node.tile);
+      visit(box, true);
+    }
+    if (node.axis < 0) {
+      visit(box, false);
+      continue;
+    }
+    const auto axis = static_cast<std::size_t>(node.axis);
+    TileTree::Box upper = box;
+    upper.node = node.upper;
+    upper.low[axis] = node.split;
+    open.push_back(upper);
+    ++box.node;
+    box.high[axis] = node.split;
+    open.push_back(box);
+  }
+}
+
+}  // namespace
+
+std::vector<TileTree::Box> TileTree::cells() const {
+  std::vector<Box> out;
+  forEachBox(nodes_, [&](const Box& box, bool is_tile) {
+    if (!is_tile) out.push_back(box);
+  });
+  return out;
+}
+
+std::vector<TileTree::Box> TileTree::tileBoxes() const {
+  std::vector<Box> out;
+  forEachBox(nodes_, [&](const Box& box, bool is_tile) {
+    if (is_tile) out.push_back(box);
+  });
+  return out;
+}
+
 }  // namespace segorient

@@ -44,6 +44,26 @@ class TileTree {
 
   /// The tile that a place belongs to, and how far from it other tiles take it along.
   std::uint32_t owner(const Place& p, double& reach) const;
+  /// The cell that a place is in: its number in the list of nodes.
+  std::uint32_t cellOf(const Place& p) const;
+
+  /// A cell that has no halves, or a tile: all of space together, so that those at the rim have no
+  /// end.
+  struct Box {
+    std::uint32_t node = 0;
+    std::uint32_t tile = 0;
+    Place low{};
+    Place high{};
+    /// Whether another one is within a distance along every axis.
+    bool isWithin(const Box& other, double distance) const {
+      for (std::size_t a = 0; a < 3; ++a) {
+        if (other.low[a] - high[a] > distance || low[a] - other.high[a] > distance) return false;
+      }
+      return true;
+    }
+  };
+  std::vector<Box> cells() const;
+  std::vector<Box> tileBoxes() const;  ///< by tile
 
   /// Within what distance from a place a tile has all points that there are.
   /// \param reach of the place, as owner() tells \param distance of the tile's cell from it

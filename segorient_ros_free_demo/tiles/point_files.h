@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the segorient authors
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "tiles/point_packets.h"
+#include "tiles/tile_parts.h"
+
+namespace segorient::program {
+
+/// Points of some cells of the tree that follow one another.
+struct PointPacket {
+  FilePart part;
+  std::uint32_t first_cell = 0;
+  std::uint32_t last_cell = 0;
+  std::uint32_t count = 0;
+  std::uint32_t unused = 0;  ///< no hidden bytes: they are stored as they are
+};
+
+/// The point files of all tiles, written at once: any number of them, none of which stays open.
+/// Each holds the tile's own points, as packets of a few cells, so that others find what they need
+/// of it for their halos.
+class PointFiles {
+ public:
+  /// \param memory for all that waits to be written
+  PointFiles(std::string folder, std::uint64_t run, std::size_t tiles, bool viewpoints,
+             std::size_t memory);
+  ~PointFiles();  ///< removes what was not committed
+  PointFiles(const PointFiles&) = delete;
+  PointFiles& operator=(const PointFiles&) = delete;
+
+  void add(std::size_t tile, const StoredPoint& point);
+  void commit();
+
+ private:
+  struct File {
+    std::vector<StoredPoint> waiting;
+    std::vector<PointPacket> packets;
+    std::uint64_t offset = 0;
+  };
+  std::string aside(std::size_t tile) const;
+  void flush(std::size_t tile);
+  void append(std::size_t tile, const void* data, std::size_t bytes);
+
+  std::string folder_;
+  bool viewpoints_;
+  std::size_t most_waiting_;  // points
+  std::vector<File> files_;
+  std::vector<std::uint8_t> bytes_;
+  std::vector<std::uint8_t> packet_;
+  bool committed_ = false;
+};
+
+}  // namespace segorient::program

@@ -1,0 +1,134 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the segorient authors
+#include "tiles/point_packets.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+
+#include "tiles/bit_stream.h"
+
+namespace segorient::program {
+namespace {
+
+// What a double holds.
+constexpr int kMostBits = 52;
+
+// How one coordinate of a packet's points is stored.
+struct Axis {
+  double least = 0.0;
+  std::int32_t step = 0;  // its exponent
+  std::uint32_t bits = 0;
+};
+
+struct Head {
+  std::uint64_t row = 0;
+  std::uint64_t span = 0;  // of rows
+  std::array<Axis, 3> axes;
+  std::array<float, 3> seen_from{0, 0, 0};
+  std::uint32_t one_place = 1;  // whether all were seen from there
+};
+
+// The exponent of the last bit that is set.
+int lastBit(double x) {
+  int exponent = 0;
+  const double mantissa = std::frexp(x, &exponent);
+  const auto digits = static_cast<std::uint64_t>(std::ldexp(std::fabs(mantissa), 53));
+  if (digits == 0) return 1024;
+  return exponent - 53 + std::ilogb(static_cast<double>(digits & (~digits + 1)));
+}
+
+std::uint64_t stepsOf(const Axis& axis, double x) {
+  return static_cast<std::uint64_t>(std::llround(std::ldexp(x - axis.least, -axis.step)));
+}
+
+Axis axisOf(const StoredPoint* points, std::size_t count, std::size_t a) {
+  Axis axis;
+  axis.least = points[0].place[a];
+  double most = axis.least;
+  int exact = 1024;
+  for (std::size_t i = 0; i < count; ++i) {
+    const double x = points[i].place[a];
+    axis.least = std::min(axis.least, x);
+    most = std::max(most, x);
+    exact = std::min(exact, lastBit(x));
+  }
+  const double extent = most - axis.least;
+  if (!(extent > 0.0) || !std::isfinite(extent)) return axis;
+  int exponent = 0;
+  std::frexp(extent, &exponent);
+  axis.step = std::max(exact, exponent - kMostBits);
+  axis.bits = bitsOf(stepsOf(axis, most));
+  return axis;
+}
+
+bool sameViewpoints(const StoredPoint* points, std::size_t count) {
+  // By bits: unknown ones are NaN.
+  return std::all_of(points, points + count, [&](const StoredPoint& p) {
+    return std::memcmp(p.seen_from.data(), points[0].seen_from.data(), sizeof(p.seen_from)) == 0;
+  });
+}
+
+}  // namespace
+
+void packPoints(const StoredPoint* points, std::size_t count, bool viewpoints,
+                std::vector<std::uint8_t>& out) {
+  out.clear();
+  if (count == 0) return;
+  Head head;
+  std::memset(static_cast<void*>(&head), 0, sizeof(head));  // what lies between members, too
+  head.row = points[0].row;
+  head.span = points[count - 1].row - points[0].row;
+  for (std::size_t a = 0; a < 3; ++a) head.axes[a] = axisOf(points, count, a);
+  head.one_place = !viewpoints || sameViewpoints(points, count) ? 1 : 0;
+  if (viewpoints) head.seen_from = points[0].seen_from;
+  const auto* bytes = reinterpret_cast<const std::uint8_t*>(&head);
+  out.insert(out.end(), bytes, bytes + sizeof(head));
+  BitWriter bits(out);
+  const RiceCode rows(head.span, count);
+  for (std::size_t i = 0; i < count; ++i) {
+    if (i > 0) rows.put(points[i].row - points[i - 1].row - 1, bits);
+    for (std::size_t a = 0; a < 3; ++a) {
+      if (head.axes[a].bits > 0)
+        bits.put(stepsOf(head.axes[a], points[i].place[a]), head.axes[a].bits);
+    }
+    for (std::size_t a = 0; head.one_place == 0 && a < 3; ++a) {
+      std::uint32_t raw = 0;
+      std::memcpy(&raw, &points[i].seen_from[a], sizeof(raw));
+      bits.put(raw, 32);
+    }
+  }
+  bits.flush();
+}
+
+bool unpackPoints(const std::vector<std::uint8_t>& packet, std::size_t count, bool viewpoints,
+                  std::vector<StoredPoint>& out) {
+  if (count == 0) return packet.empty();
+  Head head;
+  if (packet.size() < sizeof(head)) return false;
+  std::memcpy(static_cast<void*>(&head), packet.data(), sizeof(head));
+  for (const Axis& axis : head.axes) {
+    if (axis.bits > static_cast<std::uint32_t>(kMostBits) + 1) return false;
+  }
+  BitReader bits(packet.data() + sizeof(head), packet.size() - sizeof(head));
+  const RiceCode rows(head.span, count);
+  StoredPoint p;
+  p.row = head.row;
+  if (viewpoints) p.seen_from = head.seen_from;
+  for (std::size_t i = 0; i < count; ++i) {
+    if (i > 0) p.row += rows.get(bits) + 1;
+    for (std::size_t a = 0; a < 3; ++a) {
+      const Axis& axis = head.axes[a];
+      const auto steps = static_cast<double>(bits.get(axis.bits));
+      p.place[a] = axis.least + std::ldexp(steps, axis.step);
+    }
+    for (std::size_t a = 0; head.one_place == 0 && a < 3; ++a) {
+      const auto raw = static_cast<std::uint32_t>(bits.get(32));
+      std::memcpy(&p.seen_from[a], &raw, sizeof(raw));
+    }
+    out.push_back(p);
+  }
+  return true;
+}
+
+}  // namespace segorient::program

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the segorient authors
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "tiles/tile_records.h"
+
+namespace segorient::program {
+
+/// Some rows of a tile that follow one another.
+struct RowBlock {
+  FilePart part;
+  std::uint64_t first_row = 0;
+  std::uint64_t last_row = 0;
+  std::uint64_t count = 0;
+};
+
+/// Writes what is known of a tile's points, ascending by row: normals and curvatures as
+/// packed_values.h has them, labels and pieces as the number of their pair.
+void saveRows(const std::vector<RowRecord>& rows, const std::string& path, std::uint64_t run,
+              std::uint32_t tile);
+
+/// Reads such a file from any row on, a block at a time; it is not kept open.
+class RowReader {
+ public:
+  /// \param first_row the first that is wanted
+  RowReader(const std::string& path, std::uint64_t run, std::uint32_t tile,
+            std::uint64_t first_row);
+  bool done() const { return at_ >= rows_.size(); }
+  const RowRecord& row() const { return rows_[at_]; }
+  void next() {
+    if (++at_ >= rows_.size()) load(block_ + 1);
+  }
+
+ private:
+  void load(std::size_t block);
+
+  PartsReader file_;
+  std::vector<std::uint64_t> pairs_;  // of labels and pieces
+  std::vector<RowBlock> blocks_;
+  std::size_t block_ = 0;
+  std::vector<RowRecord> rows_;  // of the block
+  std::size_t at_ = 0;
+};
+
+}  // namespace segorient::program

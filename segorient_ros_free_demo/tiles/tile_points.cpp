@@ -1,0 +1,175 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the segorient authors
+#include "tiles/tile_points.h"
+
+#include <algorithm>
+#include <limits>
+#include <map>
+#include <utility>
+
+#include "tiles/point_files.h"
+
+namespace segorient::program {
+namespace {
+
+class Reader {
+ public:
+  Reader(const Plan& plan, const std::string& folder, std::uint32_t tile)
+      : plan_(plan), folder_(folder), tile_(tile) {
+    findCells();
+  }
+
+  TilePoints read() {
+    for (std::uint32_t t = 0; t < plan_.tiles(); ++t) {
+      if (t == tile_ || has_wanted_[t] != 0) readFile(t);
+    }
+    sortByRow();
+    return std::move(out_);
+  }
+
+ private:
+  // What a point is to this tile.
+  struct Entry {
+    std::uint64_t row;
+    std::uint32_t place;  // in the arrays, as they were read
+  };
+  struct Tie {
+    std::uint32_t other;
+    std::uint32_t owner;
+    std::uint32_t place;
+  };
+
+  void findCells();
+  void readFile(std::uint32_t owner);
+  void addPoint(const StoredPoint& p, std::uint32_t owner);
+  void push(const StoredPoint& p, TileRole role, double whole);
+  void sortByRow();
+
+  const Plan& plan_;
+  const std::string& folder_;
+  std::uint32_t tile_;
+  // By node of the tree: of this tile's cells, whether others are near; of others', whether this
+  // tile is.
+  std::vector<std::uint8_t> is_near_;
+  std::vector<std::uint8_t> has_wanted_;  // by tile
+  std::vector<Tie> ties_;
+  TilePoints out_;
+};
+
+void Reader::findCells() {
+  const std::vector<TileTree::Box> tiles = plan_.tree.tileBoxes();
+  is_near_.assign(plan_.tree.nodes().size(), 0);
+  has_wanted_.assign(tiles.size(), 0);
+  for (const TileTree::Box& cell : plan_.tree.cells()) {
+    const double reach = plan_.tree.nodes()[cell.node].reach;
+    if (cell.tile != tile_) {
+      if (!cell.isWithin(tiles[tile_], reach)) continue;
+      is_near_[cell.node] = 1;
+      has_wanted_[cell.tile] = 1;
+    } else if (std::any_of(tiles.begin(), tiles.end(), [&](const TileTree::Box& t) {
+                 return t.tile != tile_ && cell.isWithin(t, reach);
+               })) {
+      is_near_[cell.node] = 1;
+    }
+  }
+}
+
+void Reader::readFile(std::uint32_t owner) {
+  PartsReader file(tilePath(folder_, owner, "points"), TileFileKind::POINTS, plan_.run, owner);
+  std::vector<StoredPoint> points;
+  for (const PointPacket& packet : file.list<PointPacket>()) {
+    if (packet.last_cell < packet.first_cell || packet.last_cell >= is_near_.size()) file.fail();
+    const auto first = is_near_.begin() + packet.first_cell;
+    const auto last = is_near_.begin() + packet.last_cell + 1;
+    if (owner != tile_ && std::find(first, last, 1) == last) continue;
+    points.clear();
+    if (!unpackPoints(file.part(packet.part), packet.count, plan_.has_viewpoints, points)) {
+      file.fail();
+    }
+    for (const StoredPoint& p : points) addPoint(p, owner);
+  }
+}
+
+void Reader::addPoint(const StoredPoint& p, std::uint32_t owner) {
+  const std::uint32_t cell = plan_.tree.cellOf(p.place);
+  const double reach = plan_.tree.nodes()[cell].reach;
+  const auto place = static_cast<std::uint32_t>(out_.rows.size());
+  if (owner == tile_) {
+    bool shared = false;
+    if (is_near_[cell] != 0) {
+      plan_.tree.forEachWithin(p.place, reach, [&](std::uint32_t t, double) {
+        if (t == tile_) return;
+        shared = true;
+        ties_.push_back({t, tile_, place});
+      });
+    }
+    push(p, shared ? TileRole::SHARED : TileRole::OWN, reach);
+    return;
+  }
+  double distance = -1.0;
+  plan_.tree.forEachWithin(p.place, reach, [&](std::uint32_t t, double d) {
+    if (t == tile_) distance = d;
+  });
+  if (distance < 0.0) return;
+  ties_.push_back({owner, owner, place});
+  push(p, TileRole::HALO,
+       distance > 0.0 ? plan_.tree.wholeRadius(p.place, reach, distance) : reach);
+}
+
+void Reader::push(const StoredPoint& p, TileRole role, double whole) {
+  const std::array<double, 3>& origin = plan_.tile_origins[tile_];
+  out_.rows.push_back(p.row);
+  for (std::size_t a = 0; a < 3; ++a) {
+    out_.xyz.push_back(static_cast<float>(p.place[a] - origin[a]));
+  }
+  out_.roles.push_back(role);
+  out_.whole.push_back(static_cast<float>(whole));
+  if (plan_.has_viewpoints) {
+    out_.viewpoints.insert(out_.viewpoints.end(), p.seen_from.begin(), p.seen_from.end());
+  }
+}
+
+// The entries of an array, `width` numbers each, in another order.
+template <typename T, typename Order>
+void reorder(const Order& order, std::size_t width, std::vector<T>& values) {
+  if (values.empty()) return;
+  std::vector<T> sorted;
+  sorted.reserve(values.size());
+  for (const auto& entry : order) {
+    const auto from = values.begin() + static_cast<std::ptrdiff_t>(width * entry.place);
+    sorted.insert(sorted.end(), from, from + static_cast<std::ptrdiff_t>(width));
+  }
+  values.swap(sorted);
+}
+
+void Reader::sortByRow() {
+  std::vector<Entry> order;
+  order.reserve(out_.rows.size());
+  for (std::size_t i = 0; i < out_.rows.size(); ++i) {
+    order.push_back({out_.rows[i], static_cast<std::uint32_t>(i)});
+  }
+  std::sort(order.begin(), order.end(),
+            [](const Entry& a, const Entry& b) { return a.row < b.row; });
+  reorder(order, 1, out_.rows);
+  reorder(order, 3, out_.xyz);
+  reorder(order, 1, out_.roles);
+  reorder(order, 1, out_.whole);
+  reorder(order, 3, out_.viewpoints);
+  std::vector<std::uint32_t> now(order.size());
+  for (std::size_t i = 0; i < order.size(); ++i)
+    now[order[i].place] = static_cast<std::uint32_t>(i);
+  std::map<std::pair<std::uint32_t, std::uint32_t>, std::vector<std::uint32_t>> shared;
+  for (const Tie& tie : ties_) shared[{tie.other, tie.owner}].push_back(now[tie.place]);
+  for (auto& [between, points] : shared) {
+    std::sort(points.begin(), points.end());
+    out_.shared.push_back({between.first, between.second, std::move(points)});
+  }
+}
+
+}  // namespace
+
+TilePoints readTilePoints(const Plan& plan, const std::string& folder, std::uint32_t tile) {
+  return Reader(plan, folder, tile).read();
+}
+
+}  // namespace segorient::program

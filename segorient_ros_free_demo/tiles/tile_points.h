@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the segorient authors
+#pragma once
+
+#include <segorient/tiles/tile_share.h>
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "tiles/plan.h"
+
+namespace segorient::program {
+
+/// Points that a tile and one of its neighbours both have: those of one of the two that are in the
+/// halo of the other, by the number that they have here, in the order of the input. The neighbour
+/// finds the same ones.
+struct SharedPoints {
+  std::uint32_t other = 0;  ///< the neighbour
+  std::uint32_t owner = 0;  ///< which of the two they belong to
+  std::vector<std::uint32_t> points;
+};
+
+/// A tile's own points, and those of others in its halo, in the order of the input.
+struct TilePoints {
+  std::vector<std::uint64_t> rows;
+  std::vector<float> xyz;  ///< 3 each, relative to the tile's origin
+  std::vector<TileRole> roles;
+  std::vector<float> whole;          ///< see workOnTile()
+  std::vector<float> viewpoints;     ///< 3 each, relative to the plan's origin; or empty
+  std::vector<SharedPoints> shared;  ///< ascending by the neighbour, then by the owner
+};
+
+/// Reads them from the files of points.
+TilePoints readTilePoints(const Plan& plan, const std::string& folder, std::uint32_t tile);
+
+}  // namespace segorient::program
