@@ -7,7 +7,6 @@
 #include <pybind11/numpy.h>
 #include <pybind11/pybind11.h>
 #include <pybind11/stl.h>
-#include <segorient/common/bulk_bounds.h>
 #include <segorient/orientation/check_normals.h>
 #include <segorient/orientation/first_stages.h>
 #include <segorient/orientation/pipeline.h>
@@ -21,6 +20,8 @@
 #include <memory>
 #include <stdexcept>
 #include <utility>
+
+#include "common/bulk_bounds.h"
 
 namespace py = pybind11;
 

@@ -3,7 +3,6 @@
 #include <pcl/features/normal_3d_omp.h>
 #include <pcl/point_types.h>
 #include <pcl/search/kdtree.h>
-#include <segorient/common/threads.h>
 #include <segorient/orientation/pipeline.h>
 
 #include <algorithm>
@@ -12,6 +11,7 @@
 #include <optional>
 
 #include "commands/commands.h"
+#include "common/threads.h"
 #include "io/cloud_writer.h"
 #include "io/output_file.h"
 #include "io/readers.h"

@@ -3,7 +3,6 @@
 #include <omp.h>
 #include <pcl/point_types.h>
 #include <pcl/search/kdtree.h>
-#include <segorient/common/threads.h>
 #include <segorient/search/median_hash.h>
 
 #include <cmath>
@@ -11,6 +10,7 @@
 #include <optional>
 
 #include "commands/commands.h"
+#include "common/threads.h"
 #include "io/output_file.h"
 #include "io/readers.h"
 #include "support/command_line.h"

@@ -2,12 +2,12 @@
 // Copyright (c) 2026, the segorient authors
 #include "io/cloud_table.h"
 
-#include <segorient/common/bulk_bounds.h>
-
 #include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <limits>
+
+#include "common/bulk_bounds.h"
 
 namespace segorient::program {
 namespace {

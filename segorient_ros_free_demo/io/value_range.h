@@ -2,11 +2,11 @@
 // Copyright (c) 2026, the segorient authors
 #pragma once
 
-#include <segorient/common/bulk_bounds.h>
-
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+
+#include "common/bulk_bounds.h"
 
 namespace segorient::program {
 

@@ -2,11 +2,10 @@
 // Copyright (c) 2026, the segorient authors
 #include "render/rasterizer.h"
 
-#include <segorient/common/threads.h>
-
 #include <algorithm>
 #include <cmath>
 
+#include "common/threads.h"
 #include "render/canvas.h"
 #include "render/projection.h"
 #include "render/visibility.h"

@@ -2,13 +2,13 @@
 // Copyright (c) 2026, the segorient authors
 #include "render/splats.h"
 
-#include <segorient/common/threads.h>
 #include <segorient/search/median_hash_index.h>
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
+#include "common/threads.h"
 #include "render/page/disc_radii.h"
 
 namespace segorient::program {

@@ -2,10 +2,10 @@
 // Copyright (c) 2026, the segorient authors
 #include "render/visibility.h"
 
-#include <segorient/common/threads.h>
-
 #include <algorithm>
 #include <cmath>
+
+#include "common/threads.h"
 
 namespace segorient::program {
 namespace {

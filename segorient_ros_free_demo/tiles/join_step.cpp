@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026, the segorient authors
-#include <segorient/tiles/join_tiles.h>
 
 #include <algorithm>
 #include <filesystem>
 #include <set>
 
+#include "tiles/join_tiles.h"
 #include "tiles/steps.h"
 #include "tiles/tie_file.h"
 #include "tiles/tile_file.h"

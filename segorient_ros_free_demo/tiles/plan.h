@@ -3,14 +3,15 @@
 #pragma once
 
 #include <segorient/orientation/orientation_hints.h>
-#include <segorient/tiles/tile_share.h>
-#include <segorient/tiles/tile_tree.h>
 
 #include <array>
 #include <cstdint>
 #include <functional>
 #include <string>
 #include <vector>
+
+#include "tiles/tile_share.h"
+#include "tiles/tile_tree.h"
 
 namespace segorient::program {
 

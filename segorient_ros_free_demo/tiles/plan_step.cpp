@@ -1,19 +1,19 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026, the segorient authors
-#include <segorient/common/bulk_bounds.h>
-#include <segorient/tiles/tile_tree.h>
 
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <limits>
 
+#include "common/bulk_bounds.h"
 #include "io/cloud_stream.h"
 #include "tiles/plan_inputs.h"
 #include "tiles/plan_sensors.h"
 #include "tiles/point_files.h"
 #include "tiles/point_sample.h"
 #include "tiles/steps.h"
+#include "tiles/tile_tree.h"
 
 namespace segorient::program {
 namespace {

@@ -2,13 +2,12 @@
 // Copyright (c) 2026, the segorient authors
 #pragma once
 
-#include <segorient/tiles/tile_share.h>
-
 #include <cstdint>
 #include <string>
 #include <vector>
 
 #include "tiles/plan.h"
+#include "tiles/tile_share.h"
 
 namespace segorient::program {
 

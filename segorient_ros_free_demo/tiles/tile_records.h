@@ -2,13 +2,12 @@
 // Copyright (c) 2026, the segorient authors
 #pragma once
 
-#include <segorient/tiles/tile_share.h>
-
 #include <cstdint>
 #include <string>
 #include <vector>
 
 #include "tiles/tile_parts.h"
+#include "tiles/tile_share.h"
 
 // The files that one tile leaves: rows, what becomes of its own points, for write; share and ties,
 // for join; signs, what join says of it; and what it leaves when it is finished.

@@ -12,10 +12,7 @@
 #include <pcl/point_types.h>
 #include <pcl/search/kdtree.h>
 #include <pcl/surface/mls.h>
-#include <segorient/features/local_normals.h>
-#include <segorient/features/recompute_normals.h>
 #include <segorient/search/median_hash_index.h>
-#include <segorient/segmentation/region_growing.h>
 
 #include <algorithm>
 #include <chrono>
@@ -28,7 +25,10 @@
 
 #include "common/compact_cloud.h"
 #include "features/automatic_normals.h"
+#include "features/local_normals.h"
+#include "features/recompute_normals.h"
 #include "normals_peers.h"
+#include "segmentation/region_growing.h"
 
 namespace {
 

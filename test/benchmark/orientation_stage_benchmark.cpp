@@ -15,12 +15,10 @@
 #include <pcl/io/ply_io.h>
 #include <pcl/point_cloud.h>
 #include <pcl/point_types.h>
-#include <segorient/common/cloud_access.h>
 #include <segorient/common/neighborhoods.h>
-#include <segorient/features/local_normals.h>
 #include <segorient/orientation/pipeline.h>
 #include <segorient/search/median_hash_index.h>
-#include <segorient/segmentation/region_growing.h>
+#include <segorient/common/impl/cloud_access.hpp>
 
 #include <algorithm>
 #include <chrono>
@@ -33,7 +31,10 @@
 #include <vector>
 
 #include "common/compact_cloud.h"
+#include "features/local_normals.h"
 #include "orientation/orient_segments.h"
+#include "segmentation/region_growing.h"
+#include "segmentation/segment_graph.h"
 
 namespace {
 

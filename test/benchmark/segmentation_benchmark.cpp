@@ -15,12 +15,11 @@
 #include <pcl/io/pcd_io.h>
 #include <pcl/io/ply_io.h>
 #include <pcl/search/kdtree.h>
-#include <segorient/common/cloud_access.h>
-#include <segorient/features/local_normals.h>
 #include <segorient/search/median_hash_index.h>
-#include <segorient/segmentation/cloud_segmentation.h>
 #include <segorient/surface/segment_mesh.h>
 #include <pcl/segmentation/impl/region_growing.hpp>
+#include <segorient/common/impl/cloud_access.hpp>
+#include <segorient/segmentation/impl/cloud_segmentation.hpp>
 
 #include <algorithm>
 #include <atomic>
@@ -36,6 +35,7 @@
 #include "../support/labelled_solids.h"
 #include "../support/partition_quality.h"
 #include "common/compact_cloud.h"
+#include "features/local_normals.h"
 
 namespace {
 std::atomic<std::size_t> live_bytes{0};

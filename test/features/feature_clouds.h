@@ -4,9 +4,9 @@
 
 #include <pcl/point_cloud.h>
 #include <pcl/point_types.h>
-#include <segorient/common/cloud_access.h>
 #include <segorient/common/neighborhoods.h>
 #include <segorient/search/median_hash_index.h>
+#include <segorient/common/impl/cloud_access.hpp>
 
 #include <Eigen/Geometry>
 #include <cmath>

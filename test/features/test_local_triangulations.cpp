@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026, the segorient authors
 #include <gtest/gtest.h>
-#include <segorient/features/local_normals.h>
 
 #include <algorithm>
 #include <cmath>
@@ -9,6 +8,7 @@
 #include <vector>
 
 #include "feature_clouds.h"
+#include "features/local_normals.h"
 
 namespace segorient::test {
 namespace {

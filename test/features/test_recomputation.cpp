@@ -2,7 +2,6 @@
 // Copyright (c) 2026, the segorient authors
 #include <gtest/gtest.h>
 #include <segorient/features/normal_recomputation.h>
-#include <segorient/features/recompute_normals.h>
 
 #include <algorithm>
 #include <cmath>
@@ -12,6 +11,7 @@
 #include <vector>
 
 #include "feature_clouds.h"
+#include "features/recompute_normals.h"
 
 namespace segorient::test {
 namespace {

@@ -15,6 +15,7 @@
 #include "orientation/paper/segment_links.h"
 #include "orientation/paper/segment_relations.h"
 #include "oriented_shapes.h"
+#include "segmentation/segment_graph.h"
 
 namespace segorient::test {
 

@@ -9,6 +9,7 @@
 
 #include "orientation/orient_segments.h"
 #include "segment_fixture.h"
+#include "segmentation/segment_graph.h"
 
 namespace segorient {
 namespace {

@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 #include <pcl/console/print.h>
 #include <segorient/orientation/oriented_normal_estimation.h>
-#include <segorient/search/median_neighbors.h>
+#include <segorient/search/impl/median_neighbors.hpp>
 
 #include <algorithm>
 #include <cmath>

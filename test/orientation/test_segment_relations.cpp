@@ -9,6 +9,7 @@
 #include "orientation/paper/segment_relations.h"
 #include "orientation/paper/triangulated_boundary.h"
 #include "segment_fixture.h"
+#include "segmentation/segment_graph.h"
 
 namespace segorient {
 namespace {

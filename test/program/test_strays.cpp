@@ -3,7 +3,6 @@
 //
 // Stray points in a cloud of map coordinates must not cost the others their precision.
 #include <gtest/gtest.h>
-#include <segorient/common/bulk_bounds.h>
 
 #include <cmath>
 #include <cstring>
@@ -12,6 +11,7 @@
 #include <limits>
 #include <random>
 
+#include "common/bulk_bounds.h"
 #include "io/cloud_table.h"
 #include "io/cloud_writer.h"
 #include "io/readers.h"

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026, the segorient authors
 #include <gtest/gtest.h>
-#include <segorient/common/threads.h>
 #include <segorient/search/median_hash_index.h>
 
 #include <limits>
 
 #include "brute_force.h"
+#include "common/threads.h"
 #include "search_clouds.h"
 
 namespace segorient::test {

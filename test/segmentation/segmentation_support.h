@@ -3,13 +3,13 @@
 #pragma once
 
 #include <segorient/common/neighborhoods.h>
-#include <segorient/features/local_normals.h>
 #include <segorient/search/median_hash_index.h>
-#include <segorient/segmentation/region_growing.h>
 
 #include <vector>
 
+#include "features/local_normals.h"
 #include "labelled_solids.h"
+#include "segmentation/region_growing.h"
 
 namespace segorient::test {
 

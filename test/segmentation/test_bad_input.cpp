@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026, the segorient authors
 #include <gtest/gtest.h>
-#include <segorient/common/bulk_bounds.h>
 #include <segorient/search/median_hash.h>
 #include <segorient/segmentation/normal_segmentation.h>
 
@@ -10,6 +9,7 @@
 #include <limits>
 
 #include "bad_clouds.h"
+#include "common/bulk_bounds.h"
 
 namespace segorient::test {
 namespace {

@@ -2,8 +2,8 @@
 // Copyright (c) 2026, the segorient authors
 #include <gtest/gtest.h>
 #include <pcl/point_types.h>
-#include <segorient/common/cloud_access.h>
-#include <segorient/segmentation/cloud_segmentation.h>
+#include <segorient/common/impl/cloud_access.hpp>
+#include <segorient/segmentation/impl/cloud_segmentation.hpp>
 
 #include <algorithm>
 #include <limits>

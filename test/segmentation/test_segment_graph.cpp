@@ -5,6 +5,7 @@
 #include <map>
 #include <set>
 
+#include "segmentation/segment_graph.h"
 #include "segmentation_support.h"
 
 namespace segorient::test {

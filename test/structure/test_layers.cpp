@@ -117,6 +117,12 @@ std::vector<std::string> wrongIncludes(const std::vector<Source>& sources) {
   return wrong;
 }
 
+// The body of a template includes its declaration, and the other way round.
+bool isBodyOf(const std::string& body, const std::string& header) {
+  return fs::path(body).extension() == ".hpp" && folderOf(body) == folderOf(header) &&
+         fs::path(body).stem() == fs::path(header).stem();
+}
+
 // A circle of headers, as a text; empty where there is none.
 std::string circle(const std::vector<Source>& sources) {
   std::map<std::string, const Source*> by_name;
@@ -135,9 +141,7 @@ std::string circle(const std::vector<Source>& sources) {
     }
     state[name] = 1;
     for (const std::string& next : by_name[name]->includes) {
-      // The body of a template includes its declaration, and the other way round.
-      if (next.find("/impl/") != std::string::npos) continue;
-      self(self, next);
+      if (!isBodyOf(next, name)) self(self, next);
     }
     state[name] = 2;
     way.pop_back();
@@ -163,6 +167,45 @@ TEST(Layers, PublicHeadersDoWithoutPrivateOnes) {
       ADD_FAILURE() << source.name << " includes " << name;
     }
   }
+}
+
+// What users include: classes, their options and their results. All else belongs below src/, or,
+// where the bodies of templates need it, below impl/.
+TEST(Layers, PublicHeadersAreThese) {
+  const std::set<std::string> expected{"common/export.h",
+                                       "common/neighborhoods.h",
+                                       "common/point_view.h",
+                                       "features/awas_normal_estimation.h",
+                                       "features/lct_normal_estimation.h",
+                                       "features/ldt_normal_estimation.h",
+                                       "features/local_normal_estimation.h",
+                                       "features/normal_options.h",
+                                       "features/normal_recomputation.h",
+                                       "features/plane_normal_estimation.h",
+                                       "orientation/check_normals.h",
+                                       "orientation/first_stages.h",
+                                       "orientation/orientation_hints.h",
+                                       "orientation/orientation_options.h",
+                                       "orientation/orientation_result.h",
+                                       "orientation/oriented_normal_estimation.h",
+                                       "orientation/pipeline.h",
+                                       "orientation/segment_orientation.h",
+                                       "orientation/sensors.h",
+                                       "orientation/trajectory.h",
+                                       "search/median_hash.h",
+                                       "search/median_hash_index.h",
+                                       "segmentation/normal_segmentation.h",
+                                       "segmentation/segmentation.h",
+                                       "surface/segment_mesh.h",
+                                       "surface/segment_triangulation.h"};
+  std::set<std::string> found;
+  for (const Source& source : library()) {
+    if (!source.is_public) continue;
+    const bool body = source.name.find("/impl/") != std::string::npos;
+    EXPECT_EQ(fs::path(source.name).extension(), body ? ".hpp" : ".h") << source.name;
+    if (!body) found.insert(source.name);
+  }
+  EXPECT_EQ(found, expected);
 }
 
 TEST(Layers, AtMostFiveRoomsDeep) {

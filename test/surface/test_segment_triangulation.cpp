@@ -4,8 +4,8 @@
 #include <pcl/console/print.h>
 #include <pcl/conversions.h>
 #include <pcl/point_types.h>
-#include <segorient/segmentation/cloud_segmentation.h>
 #include <segorient/surface/segment_triangulation.h>
+#include <segorient/segmentation/impl/cloud_segmentation.hpp>
 
 #include <limits>
 #include <set>

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026, the segorient authors
 #include <gtest/gtest.h>
-#include <segorient/tiles/join_tiles.h>
 
+#include "tiles/join_tiles.h"
 #include "tiles/piece_graph.h"
 
 namespace segorient::test {

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026, the segorient authors
 #include <gtest/gtest.h>
-#include <segorient/tiles/tile_tree.h>
 
 #include <algorithm>
 #include <cmath>
 #include <random>
+
+#include "tiles/tile_tree.h"
 
 namespace segorient::test {
 namespace {

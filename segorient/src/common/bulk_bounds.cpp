@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026, the segorient authors
-#include <segorient/common/bulk_bounds.h>
+#include "common/bulk_bounds.h"
 
 namespace segorient {
 

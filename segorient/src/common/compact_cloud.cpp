@@ -2,15 +2,15 @@
 // Copyright (c) 2026, the segorient authors
 #include "common/compact_cloud.h"
 
-#include <segorient/common/bulk_bounds.h>
-#include <segorient/common/threads.h>
-
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
 #include <limits>
 #include <numeric>
+
+#include "common/bulk_bounds.h"
+#include "common/threads.h"
 
 namespace segorient {
 namespace {

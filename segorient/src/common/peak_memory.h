@@ -2,11 +2,13 @@
 // Copyright (c) 2026, the segorient authors
 #pragma once
 
+#include <segorient/common/export.h>
+
 #include <cstddef>
 
 namespace segorient {
 
 /// Most memory that the process has had so far, bytes; 0 where the system does not tell.
-std::size_t peakMemory();
+SEGORIENT_SEARCH_EXPORT std::size_t peakMemory();
 
 }  // namespace segorient

@@ -3,7 +3,7 @@
 #pragma once
 
 #include <segorient/common/neighborhoods.h>
-#include <segorient/common/point_search.h>
+#include <segorient/common/impl/point_search.hpp>
 
 #include "common/compact_cloud.h"
 

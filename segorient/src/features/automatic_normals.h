@@ -2,15 +2,17 @@
 // Copyright (c) 2026, the segorient authors
 #pragma once
 
+#include <segorient/common/export.h>
 #include <segorient/common/neighborhoods.h>
 #include <segorient/common/point_view.h>
-#include <segorient/features/local_normals.h>
 #include <segorient/search/median_hash_index.h>
 
 #include <cstddef>
 #include <string>
 #include <utility>
 #include <vector>
+
+#include "features/local_normals.h"
 
 namespace segorient {
 
@@ -38,7 +40,7 @@ struct AutomaticNormalReport {
   AutomaticNormalTraits traits;  ///< as measured, or as told
 
   /// The same in a sentence.
-  std::string text() const;
+  SEGORIENT_FEATURES_EXPORT std::string text() const;
 };
 
 /// Neighbours beside the point itself that estimateNormalsAutomatically() makes use of at most.
@@ -60,26 +62,24 @@ constexpr int kMostAutomaticNeighbors = 64;
 ///        quadratic surfaces, ascending
 /// \param rows ascending rows to do, or null for all; others are left as they are
 /// \param known of the cloud that the points are part of; null = measured
-AutomaticNormalReport estimateNormalsAutomatically(const PointView& points,
-                                                   const Neighborhoods& neighborhoods, int threads,
-                                                   float* normals,
-                                                   std::vector<pcl::index_t>* unexplained = nullptr,
-                                                   const std::vector<pcl::index_t>* rows = nullptr,
-                                                   const AutomaticNormalTraits* known = nullptr);
+SEGORIENT_FEATURES_EXPORT AutomaticNormalReport estimateNormalsAutomatically(
+    const PointView& points, const Neighborhoods& neighborhoods, int threads, float* normals,
+    std::vector<pcl::index_t>* unexplained = nullptr,
+    const std::vector<pcl::index_t>* rows = nullptr, const AutomaticNormalTraits* known = nullptr);
 
 /// The same, with more neighbours where the noise asks for them: then they are sought again.
 /// \param index built on `points`
-AutomaticNormalReport estimateNormalsAutomatically(const PointView& points,
-                                                   const search::MedianHashIndex& index,
-                                                   const Neighborhoods& neighborhoods, int threads,
-                                                   float* normals,
-                                                   std::vector<pcl::index_t>* unexplained = nullptr,
-                                                   const std::vector<pcl::index_t>* rows = nullptr,
-                                                   const AutomaticNormalTraits* known = nullptr);
+SEGORIENT_FEATURES_EXPORT AutomaticNormalReport estimateNormalsAutomatically(
+    const PointView& points, const search::MedianHashIndex& index,
+    const Neighborhoods& neighborhoods, int threads, float* normals,
+    std::vector<pcl::index_t>* unexplained = nullptr,
+    const std::vector<pcl::index_t>* rows = nullptr, const AutomaticNormalTraits* known = nullptr);
 
 /// How many neighbours beside the point itself estimateNormalsAutomatically() makes use of.
-int automaticNeighbors(const PointView& points, const Neighborhoods& neighborhoods, int threads = 0,
-                       const AutomaticNormalTraits* known = nullptr);
+SEGORIENT_FEATURES_EXPORT int automaticNeighbors(const PointView& points,
+                                                 const Neighborhoods& neighborhoods,
+                                                 int threads = 0,
+                                                 const AutomaticNormalTraits* known = nullptr);
 
 /// Standard deviation of the noise over the local spacing (mean distance to the six nearest), from
 /// the residuals of quadratic surfaces at a few thousand points. 0 for fewer than 16 points.

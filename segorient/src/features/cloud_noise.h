@@ -2,13 +2,14 @@
 // Copyright (c) 2026, the segorient authors
 #pragma once
 
-#include <segorient/common/fast_vector.h>
 #include <segorient/common/neighborhoods.h>
 #include <segorient/common/point_view.h>
-#include <segorient/features/local_normals.h>
+#include <segorient/common/impl/fast_vector.hpp>
 
 #include <cstddef>
 #include <vector>
+
+#include "features/local_normals.h"
 
 namespace segorient::detail {
 

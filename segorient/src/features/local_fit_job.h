@@ -2,10 +2,10 @@
 // Copyright (c) 2026, the segorient authors
 #pragma once
 
-#include <segorient/features/local_normals.h>
-
 #include <cstddef>
 #include <vector>
+
+#include "features/local_normals.h"
 
 namespace segorient::detail {
 

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026, the segorient authors
-#include <segorient/common/threads.h>
-#include <segorient/features/local_normals.h>
+#include "features/local_normals.h"
+
 #include "common/instruction_set.h"
 
 #include "common/kernel_macros.h"
+#include "common/threads.h"
 #include "features/local_fit_job.h"
 #include "features/surface_fit.h"
 

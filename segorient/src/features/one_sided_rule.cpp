@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026, the segorient authors
-#include <segorient/common/threads.h>
 
 #include <algorithm>
 #include <cmath>
@@ -8,6 +7,7 @@
 #include <map>
 #include <utility>
 
+#include "common/threads.h"
 #include "features/one_sided_patch.h"
 #include "features/recompute_scene.h"
 

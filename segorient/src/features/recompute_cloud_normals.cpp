@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026, the segorient authors
-#include <segorient/features/recompute_normals.h>
+#include <segorient/features/impl/cloud_recomputation.hpp>
 
 #include <algorithm>
 
+#include "features/recompute_normals.h"
 #include "search/prepared_cloud.h"
 
 namespace segorient {

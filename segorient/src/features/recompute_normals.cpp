@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026, the segorient authors
-#include <segorient/common/threads.h>
-#include <segorient/features/recompute_normals.h>
+#include "features/recompute_normals.h"
 
 #include <algorithm>
 #include <cstddef>
 
+#include "common/threads.h"
 #include "features/recompute_scene.h"
 
 namespace segorient {

@@ -2,12 +2,14 @@
 // Copyright (c) 2026, the segorient authors
 #pragma once
 
-#include <segorient/features/recompute_normals.h>
+#include <segorient/common/export.h>
 
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
+
+#include "features/recompute_normals.h"
 
 namespace segorient::detail {
 
@@ -84,9 +86,9 @@ enum class OneSidedNormal : std::uint8_t {
 };
 
 /// One entry for each point that was looked at, ascending by point.
-std::vector<Recomputed> applyOneSidedRule(const RecomputationScene& scene,
-                                          const RecomputationOptions& options,
-                                          OneSidedNormal which = OneSidedNormal::LIKELIEST);
+SEGORIENT_FEATURES_EXPORT std::vector<Recomputed> applyOneSidedRule(
+    const RecomputationScene& scene, const RecomputationOptions& options,
+    OneSidedNormal which = OneSidedNormal::LIKELIEST);
 std::vector<Recomputed> applyModifiedNeighborhoods(const RecomputationScene& scene,
                                                    const RecomputationOptions& options);
 

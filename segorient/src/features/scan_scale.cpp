@@ -2,13 +2,14 @@
 // Copyright (c) 2026, the segorient authors
 #include "features/scan_scale.h"
 
-#include <segorient/common/threads.h>
 #include <segorient/search/median_hash_index.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
+
+#include "common/threads.h"
 
 namespace segorient::detail {
 namespace {

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026, the segorient authors
-#include <segorient/common/threads.h>
-#include <segorient/features/searched_normals.h>
+#include <segorient/features/impl/searched_normals.hpp>
 
 #include <algorithm>
 #include <cmath>
 #include <iterator>
 #include <limits>
 
+#include "common/threads.h"
 #include "search/prepared_cloud.h"
 
 namespace segorient {

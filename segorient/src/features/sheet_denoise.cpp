@@ -2,11 +2,10 @@
 // Copyright (c) 2026, the segorient authors
 #include "features/sheet_denoise.h"
 
-#include <segorient/common/threads.h>
-
 #include <algorithm>
 #include <cstddef>
 
+#include "common/threads.h"
 #include "features/sheet_fit.h"
 
 namespace segorient {

@@ -2,6 +2,7 @@
 // Copyright (c) 2026, the segorient authors
 #pragma once
 
+#include <segorient/common/export.h>
 #include <segorient/common/neighborhoods.h>
 #include <segorient/common/point_view.h>
 #include <Eigen/Core>
@@ -48,7 +49,7 @@ struct Plane {
     return sum > 0.F ? lambda[0] / sum : 0.F;
   }
 };
-Plane fitPlane(const Moments& moments);
+SEGORIENT_FEATURES_EXPORT Plane fitPlane(const Moments& moments);
 
 /// The neighbours of one point: offsets from it in units of its spacing, as separate arrays; unused
 /// entries are 0 with weight 0.
@@ -68,8 +69,9 @@ Offsets gatherOffsets(const PointView& points, const Neighborhoods& neighborhood
                       float spacing);
 
 /// Mean distance to the k nearest.
-float meanDistance(const PointView& points, const Neighborhoods& neighborhoods, std::size_t i,
-                   int k);
+SEGORIENT_FEATURES_EXPORT float meanDistance(const PointView& points,
+                                             const Neighborhoods& neighborhoods, std::size_t i,
+                                             int k);
 
 struct AdaptivePlane {
   Plane plane;

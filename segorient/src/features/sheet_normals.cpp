@@ -2,14 +2,13 @@
 // Copyright (c) 2026, the segorient authors
 #include "features/sheet_normals.h"
 
-#include <segorient/common/threads.h>
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <utility>
 
 #include "common/median.h"
+#include "common/threads.h"
 #include "features/scan_scale.h"
 #include "features/sheet_fit.h"
 

@@ -2,6 +2,7 @@
 // Copyright (c) 2026, the segorient authors
 #pragma once
 
+#include <segorient/common/export.h>
 #include <segorient/common/neighborhoods.h>
 #include <segorient/common/point_view.h>
 
@@ -80,14 +81,16 @@ struct SheetNormals {
 /// \param neighborhoods their neighbours: kSheetNeighbors beside the point itself, or as many as
 /// there
 ///        are
-SheetNormals estimateSheetNormals(const PointView& points, const Neighborhoods& neighborhoods,
-                                  const SheetNormalOptions& options = {});
+SEGORIENT_FEATURES_EXPORT SheetNormals estimateSheetNormals(const PointView& points,
+                                                            const Neighborhoods& neighborhoods,
+                                                            const SheetNormalOptions& options = {});
 
 /// Measures the noise at some thousand of a cloud's points.
 /// \param points distinct finite points
 /// \param neighborhoods their neighbours, as for estimateSheetNormals()
 /// \param threads see resolveThreads(); the result does not depend on it
-NoiseLevel measureNoise(const PointView& points, const Neighborhoods& neighborhoods,
-                        int threads = 0);
+SEGORIENT_FEATURES_EXPORT NoiseLevel measureNoise(const PointView& points,
+                                                  const Neighborhoods& neighborhoods,
+                                                  int threads = 0);
 
 }  // namespace segorient

@@ -2,7 +2,7 @@
 // Copyright (c) 2026, the segorient authors
 #pragma once
 
-#include <segorient/features/local_normals.h>
+#include "features/local_normals.h"
 
 namespace segorient::detail {
 

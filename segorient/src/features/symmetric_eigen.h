@@ -2,6 +2,8 @@
 // Copyright (c) 2026, the segorient authors
 #pragma once
 
+#include <segorient/common/export.h>
+
 namespace segorient::detail {
 
 struct SymmetricMatrix3 {
@@ -16,6 +18,6 @@ struct SymmetricEigen3 {
 /// All eigenvalues and eigenvectors by Jacobi rotations: slower than a closed form, and accurate to
 /// the last bits for any spread of eigenvalues. A matrix with NaN or infinite entries gives NaN
 /// values.
-SymmetricEigen3 symmetricEigen(const SymmetricMatrix3& m);
+SEGORIENT_FEATURES_EXPORT SymmetricEigen3 symmetricEigen(const SymmetricMatrix3& m);
 
 }  // namespace segorient::detail

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026, the segorient authors
-#include <segorient/orientation/method.h>
 #include <segorient/orientation/orientation_options.h>
 
 #include <array>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026, the segorient authors
-#include <segorient/orientation/oriented_segmentation.h>
+#include <segorient/orientation/impl/oriented_segmentation.hpp>
 
 #include <algorithm>
 #include <cstdint>
@@ -10,6 +10,7 @@
 #include "features/sheet_normals.h"
 #include "orientation/orient_segments.h"
 #include "search/prepared_cloud.h"
+#include "segmentation/segment_graph.h"
 #include "segmentation/segmentation_rows.h"
 
 namespace segorient {

@@ -20,6 +20,7 @@
 #include "orientation/sensors/sensor_hints.h"
 #include "orientation/stage_clock.h"
 #include "orientation/surface_stages.h"
+#include "segmentation/segment_graph.h"
 #include "segmentation/segmentation_rows.h"
 
 namespace segorient {

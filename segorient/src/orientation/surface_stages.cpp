@@ -2,13 +2,12 @@
 // Copyright (c) 2026, the segorient authors
 #include "orientation/surface_stages.h"
 
-#include <segorient/features/local_normals.h>
-#include <segorient/features/recompute_normals.h>
-#include <segorient/segmentation/region_growing.h>
-
 #include <cstdint>
 
 #include "features/automatic_normals.h"
+#include "features/local_normals.h"
+#include "features/recompute_normals.h"
+#include "segmentation/region_growing.h"
 #include "segmentation/segmentation_rows.h"
 
 namespace segorient::detail {

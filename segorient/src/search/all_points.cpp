@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026, the segorient authors
-#include <segorient/common/threads.h>
 
 #include <algorithm>
 #include <atomic>
@@ -8,6 +7,7 @@
 #include <limits>
 #include <memory>
 
+#include "common/threads.h"
 #include "search/index_impl.h"
 #include "search/parallel_error.h"
 

@@ -5,7 +5,7 @@
 #pragma once
 
 #include <pcl/types.h>
-#include <segorient/common/fast_vector.h>
+#include <segorient/common/impl/fast_vector.hpp>
 
 #include <cstddef>
 #include <cstdint>

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026, the segorient authors
-#include <segorient/common/threads.h>
 
 #include <algorithm>
 #include <memory>
 #include <utility>
 
 #include "common/median.h"
+#include "common/threads.h"
 #include "search/index_impl.h"
 #include "search/parallel_error.h"
 

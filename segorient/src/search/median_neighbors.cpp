@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026, the segorient authors
 #include <segorient/search/median_hash_index.h>
-#include <segorient/search/median_neighbors.h>
+#include <segorient/search/impl/median_neighbors.hpp>
 
 #include <algorithm>
 #include <vector>

@@ -3,10 +3,11 @@
 #pragma once
 
 #include <pcl/types.h>
+#include <segorient/common/export.h>
 #include <segorient/common/neighborhoods.h>
-#include <segorient/common/point_search.h>
 #include <segorient/common/point_view.h>
 #include <segorient/search/median_hash_index.h>
+#include <segorient/common/impl/point_search.hpp>
 
 #include <algorithm>
 #include <cstddef>
@@ -23,7 +24,7 @@ namespace segorient {
 ///
 /// Coordinates are those of the input over unit(), a power of two, so that nothing is rounded and
 /// squares of lengths are ordinary numbers for any input.
-class PreparedCloud {
+class SEGORIENT_SEARCH_EXPORT PreparedCloud {
  public:
   PreparedCloud() = default;
   /// \param points must outlive the call only; rows that are not finite are left out

@@ -1,14 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026, the segorient authors
-#include <segorient/common/bulk_bounds.h>
-#include <segorient/segmentation/cloud_segmentation.h>
+#include <segorient/segmentation/impl/cloud_segmentation.hpp>
 
 #include <algorithm>
 #include <array>
 #include <limits>
 #include <type_traits>
 
+#include "common/bulk_bounds.h"
 #include "search/prepared_cloud.h"
+#include "segmentation/segment_graph.h"
 #include "segmentation/segmentation_rows.h"
 
 namespace segorient {

@@ -2,16 +2,17 @@
 // Copyright (c) 2026, the segorient authors
 #pragma once
 
-#include <segorient/common/fast_vector.h>
 #include <segorient/common/neighborhoods.h>
 #include <segorient/common/point_view.h>
-#include <segorient/segmentation/region_growing.h>
+#include <segorient/common/impl/fast_vector.hpp>
 
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <limits>
 #include <vector>
+
+#include "segmentation/region_growing.h"
 
 namespace segorient::segmentation {
 

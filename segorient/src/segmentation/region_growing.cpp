@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026, the segorient authors
-#include <segorient/segmentation/region_growing.h>
+#include "segmentation/region_growing.h"
 
 #include <utility>
 

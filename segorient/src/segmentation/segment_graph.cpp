@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026, the segorient authors
-#include <segorient/segmentation/segmentation.h>
+#include "segmentation/segment_graph.h"
 
 #include <algorithm>
 

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026, the segorient authors
-#include <segorient/common/threads.h>
 
 #include <array>
 #include <limits>
 
+#include "common/threads.h"
 #include "common/unit_vector.h"
 #include "segmentation/growth_state.h"
 

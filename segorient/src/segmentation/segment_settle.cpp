@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026, the segorient authors
-#include <segorient/common/threads.h>
 
 #include <array>
 #include <iterator>
 
+#include "common/threads.h"
 #include "segmentation/distinct_points.h"
 #include "segmentation/growth_state.h"
 

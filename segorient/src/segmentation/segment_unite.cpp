@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026, the segorient authors
-#include <segorient/common/threads.h>
 #include <Eigen/Dense>
 
 #include <numeric>
 #include <utility>
 
+#include "common/threads.h"
 #include "segmentation/distinct_points.h"
 #include "segmentation/growth_state.h"
 

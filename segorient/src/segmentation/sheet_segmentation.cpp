@@ -2,11 +2,10 @@
 // Copyright (c) 2026, the segorient authors
 #include "segmentation/sheet_segmentation.h"
 
-#include <segorient/common/threads.h>
-
 #include <algorithm>
 #include <cmath>
 
+#include "common/threads.h"
 #include "segmentation/sheet_grower.h"
 
 namespace segorient {

@@ -2,6 +2,7 @@
 // Copyright (c) 2026, the segorient authors
 #pragma once
 
+#include <segorient/common/export.h>
 #include <segorient/common/neighborhoods.h>
 #include <segorient/common/point_view.h>
 #include <segorient/segmentation/segmentation.h>
@@ -24,7 +25,7 @@ struct SheetField {
 };
 
 /// What estimateSheetNormals() found; the arrays stay where they are.
-SheetField fieldOf(const SheetNormals& sheets);
+SEGORIENT_SEGMENTATION_EXPORT SheetField fieldOf(const SheetNormals& sheets);
 
 /// Neighbours of a point that segmentSheets() and borderVotes() look at.
 constexpr int kSheetDegree = 16;
@@ -42,9 +43,9 @@ struct SheetSegmentationOptions {
 
 /// Bit j of entry p is set where p and its j-th neighbour (itself not counted) are on one sheet:
 /// each within the other's sheet, and neither far off the other's tangent plane.
-std::vector<std::uint32_t> admissibleEdges(const PointView& points,
-                                           const Neighborhoods& neighborhoods,
-                                           const SheetField& field, int threads = 0);
+SEGORIENT_SEGMENTATION_EXPORT std::vector<std::uint32_t> admissibleEdges(
+    const PointView& points, const Neighborhoods& neighborhoods, const SheetField& field,
+    int threads = 0);
 
 /// Segments that do not mix the two sides of a wall: growing as in section 2.3 of the paper, but
 /// over admissible edges only, reliable points first, and with support from several neighbours, so
@@ -53,8 +54,8 @@ std::vector<std::uint32_t> admissibleEdges(const PointView& points,
 /// -1.
 ///
 /// Growing is sequential: its order is part of the result.
-Segmentation segmentSheets(const PointView& points, const Neighborhoods& neighborhoods,
-                           const SheetField& field, const std::vector<std::uint32_t>& admissible,
-                           const SheetSegmentationOptions& options = {});
+SEGORIENT_SEGMENTATION_EXPORT Segmentation segmentSheets(
+    const PointView& points, const Neighborhoods& neighborhoods, const SheetField& field,
+    const std::vector<std::uint32_t>& admissible, const SheetSegmentationOptions& options = {});
 
 }  // namespace segorient

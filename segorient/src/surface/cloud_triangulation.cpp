@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026, the segorient authors
-#include <segorient/segmentation/cloud_segmentation.h>
-#include <segorient/surface/cloud_triangulation.h>
+#include <segorient/segmentation/impl/cloud_segmentation.hpp>
+#include <segorient/surface/impl/cloud_triangulation.hpp>
 
 #include <algorithm>
 

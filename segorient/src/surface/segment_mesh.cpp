@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026, the segorient authors
-#include <segorient/common/threads.h>
 #include <segorient/surface/segment_mesh.h>
 #include <Eigen/Geometry>
 
 #include <algorithm>
 #include <cmath>
 
+#include "common/threads.h"
 #include "surface/triangle_selection.h"
 
 namespace segorient {

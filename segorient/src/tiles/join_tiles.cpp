@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026, the segorient authors
-#include <segorient/tiles/join_tiles.h>
+#include "tiles/join_tiles.h"
 
 #include <algorithm>
 #include <cmath>

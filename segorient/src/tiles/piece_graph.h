@@ -2,13 +2,14 @@
 // Copyright (c) 2026, the segorient authors
 #pragma once
 
-#include <segorient/tiles/join_tiles.h>
-
 #include <cstddef>
 #include <cstdint>
 #include <vector>
 
+#include "tiles/join_tiles.h"
+
 #include "orientation/automatic/border_votes.h"
+#include "tiles/tile_share.h"
 
 namespace segorient::detail {
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026, the segorient authors
-#include <segorient/tiles/tile_tree.h>
+#include "tiles/tile_tree.h"
 
 #include <algorithm>
 #include <limits>

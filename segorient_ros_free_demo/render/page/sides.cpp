@@ -2,14 +2,13 @@
 // Copyright (c) 2026, the segorient authors
 #include "render/page/sides.h"
 
-#include <segorient/common/threads.h>
-
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstring>
 #include <limits>
 
+#include "common/threads.h"
 #include "render/page/depth_maps.h"
 
 namespace segorient::program {

@@ -4,7 +4,7 @@
 
 #include <pcl/features/normal_3d.h>
 #include <segorient/common/neighborhoods.h>
-#include <segorient/features/local_normals.h>
+#include <segorient/features/normal_options.h>
 
 #include <vector>
 

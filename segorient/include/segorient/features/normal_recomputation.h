@@ -5,7 +5,7 @@
 #include <pcl/pcl_base.h>
 #include <pcl/point_cloud.h>
 #include <segorient/common/neighborhoods.h>
-#include <segorient/features/recompute_normals.h>
+#include <segorient/features/normal_options.h>
 
 #include <cstdint>
 #include <vector>

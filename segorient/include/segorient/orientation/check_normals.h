@@ -2,6 +2,7 @@
 // Copyright (c) 2026, the segorient authors
 #pragma once
 
+#include <segorient/common/export.h>
 #include <segorient/common/point_view.h>
 #include <segorient/orientation/orientation_hints.h>
 #include <segorient/orientation/pipeline.h>
@@ -22,7 +23,7 @@ enum class NormalFault : std::uint8_t {
 };
 
 /// none, sensor, surface or inside_out.
-const char* toString(NormalFault fault);
+SEGORIENT_ORIENTATION_EXPORT const char* toString(NormalFault fault);
 
 /// A connected patch of normals at fault.
 struct FaultyPlace {
@@ -67,7 +68,10 @@ struct NormalCheck {
 /// \param ours of orientCloud() for these points, with these hints and OrientationMethod::AUTO,
 ///        without using `normals`
 /// \return empty vectors where the sizes do not agree
-NormalCheck checkNormals(const PointView& points, const std::vector<float>& normals,
-                         const OrientedCloud& ours, const OrientationHints& hints, int threads = 0);
+SEGORIENT_ORIENTATION_EXPORT NormalCheck checkNormals(const PointView& points,
+                                                      const std::vector<float>& normals,
+                                                      const OrientedCloud& ours,
+                                                      const OrientationHints& hints,
+                                                      int threads = 0);
 
 }  // namespace segorient

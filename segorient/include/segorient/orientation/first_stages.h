@@ -2,6 +2,7 @@
 // Copyright (c) 2026, the segorient authors
 #pragma once
 
+#include <segorient/common/export.h>
 #include <segorient/common/point_view.h>
 #include <segorient/orientation/pipeline.h>
 #include <segorient/segmentation/segmentation.h>
@@ -16,7 +17,7 @@ namespace segorient {
 /// The stages before orientation one by one, on a cloud as it comes: for those who end with normals
 /// or segments. Works on the distinct finite points, whose neighbours are found once, and gives
 /// results by input row.
-class FirstStages {
+class SEGORIENT_ORIENTATION_EXPORT FirstStages {
  public:
   /// Neighbours of a point where PipelineOptions::k leaves the choice open.
   static constexpr int kDefaultNeighbors = 12;

@@ -2,15 +2,34 @@
 // Copyright (c) 2026, the segorient authors
 #pragma once
 
-#include <segorient/orientation/method.h>
+#include <segorient/common/export.h>
 #include <segorient/orientation/orientation_hints.h>
 #include <segorient/surface/segment_mesh.h>
 
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <string>
 
 namespace segorient {
+
+/// How segments get their orientation relative to each other.
+enum class OrientationMethod : std::uint8_t {
+  AUTO,         ///< the best known
+  PROPAGATION,  ///< spanning tree over the angles between segments (paper, 3.1)
+  BOUNDARY,     ///< directions of the segments' boundaries (paper, 3.2.2)
+  COMBINED,     ///< the tree, the boundaries where its angle is unreliable, extremal points for the
+                ///< rest
+  EXTREMAL,     ///< extremal points in the boxes of a subdivision of space (paper, 3.3)
+  HOPPE         ///< without segments, for comparison: spanning tree over the angles between
+                ///< neighbouring points (Hoppe et al. 1992, as the paper describes it in 3.1)
+};
+
+/// auto, propagation, boundary, combined, extremal or hoppe.
+SEGORIENT_ORIENTATION_EXPORT const char* toString(OrientationMethod method);
+
+/// \return false, and `method` unchanged, for any other name
+SEGORIENT_ORIENTATION_EXPORT bool fromString(const std::string& name, OrientationMethod& method);
 
 /// Which angle stands for two neighbouring segments in propagation (paper, 3.1).
 enum class SegmentAngle : std::uint8_t {
@@ -107,6 +126,7 @@ struct OrientationOptions {
 /// boundaries from triangulations with the paper's critical length and its gaps left open, no check
 /// of borders beyond the paper, components left as their first segment was. \param method
 /// PROPAGATION, BOUNDARY, EXTREMAL, COMBINED or HOPPE
-OrientationOptions paperOptions(OrientationMethod method = OrientationMethod::COMBINED);
+SEGORIENT_ORIENTATION_EXPORT OrientationOptions
+paperOptions(OrientationMethod method = OrientationMethod::COMBINED);
 
 }  // namespace segorient

@@ -2,6 +2,8 @@
 // Copyright (c) 2026, the segorient authors
 #pragma once
 
+#include <segorient/common/export.h>
+
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -23,7 +25,7 @@ enum class DecidedBy : std::uint8_t {
 };
 
 /// nothing, seed, propagation, boundary, extremal, enclosure, surroundings, global or hints.
-const char* toString(DecidedBy by);
+SEGORIENT_ORIENTATION_EXPORT const char* toString(DecidedBy by);
 
 /// The orientation of one segment.
 struct SegmentOrientationResult {

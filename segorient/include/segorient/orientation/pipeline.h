@@ -3,14 +3,12 @@
 #pragma once
 
 #include <pcl/types.h>
+#include <segorient/common/export.h>
 #include <segorient/common/point_view.h>
-#include <segorient/features/local_normals.h>
-#include <segorient/features/recompute_normals.h>
-#include <segorient/orientation/known_sensor.h>
+#include <segorient/features/normal_options.h>
 #include <segorient/orientation/orientation_options.h>
 #include <segorient/orientation/orientation_result.h>
 #include <segorient/orientation/sensors.h>
-#include <segorient/segmentation/region_growing.h>
 #include <segorient/segmentation/segmentation.h>
 
 #include <cstddef>
@@ -99,14 +97,18 @@ struct OrientedCloud {
 /// \param progress may be empty
 /// \return rows of NaN where there is nothing to go by (fewer than three distinct points, all in a
 ///         line); empty vectors for an empty cloud
-OrientedCloud orientCloud(const PointView& points, const std::vector<pcl::index_t>* indices,
-                          const PipelineOptions& options, const PipelineProgress& progress = {});
+SEGORIENT_ORIENTATION_EXPORT OrientedCloud orientCloud(const PointView& points,
+                                                       const std::vector<pcl::index_t>* indices,
+                                                       const PipelineOptions& options,
+                                                       const PipelineProgress& progress = {});
 
 /// Bytes that orientCloud() takes beside its input at most, or a little more: linear in the points.
-std::size_t expectedMemory(std::size_t points, const PipelineOptions& options);
+SEGORIENT_ORIENTATION_EXPORT std::size_t expectedMemory(std::size_t points,
+                                                        const PipelineOptions& options);
 
 /// The result for some rows of a cloud. Segments keep their labels and data; their members are
 /// those among `rows`, so sizes may be 0. Invalid rows get NaN.
-OrientedCloud selectRows(const OrientedCloud& cloud, const std::vector<pcl::index_t>& rows);
+SEGORIENT_ORIENTATION_EXPORT OrientedCloud selectRows(const OrientedCloud& cloud,
+                                                      const std::vector<pcl::index_t>& rows);
 
 }  // namespace segorient

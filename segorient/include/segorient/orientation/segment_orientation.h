@@ -6,7 +6,7 @@
 #include <pcl/point_cloud.h>
 #include <pcl/point_types.h>
 #include <pcl/search/search.h>
-#include <segorient/orientation/oriented_segmentation.h>
+#include <segorient/orientation/impl/oriented_segmentation.hpp>
 
 #include <limits>
 #include <memory>

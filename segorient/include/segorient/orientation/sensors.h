@@ -3,16 +3,37 @@
 #pragma once
 
 #include <pcl/point_cloud.h>
-#include <segorient/common/cloud_access.h>
+#include <segorient/common/export.h>
 #include <segorient/common/point_view.h>
+#include <segorient/common/impl/cloud_access.hpp>
 
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <string>
 #include <vector>
 
 namespace segorient {
+
+/// What became of one place that points are said to have been seen from. Places with few points
+/// each, as a moving sensor has them, are one entry together, with their mean as its position.
+struct KnownSensor {
+  std::array<float, 3> position{0.F, 0.F, 0.F};  ///< in input coordinates
+  std::size_t points = 0;                        ///< distinct points that are said to be its own
+  std::size_t seen = 0;  ///< of these, those that it could see: others were left to the surface
+  bool used = true;      ///< false: it contradicts the surface, and nothing was turned to it
+  bool moving = false;   ///< many places together
+  /// Share of its points that lie behind others of its own, as seen from there. A sensor sees no
+  /// such points: noise and stray points make up to .09 of them.
+  float hidden = 0.F;
+  /// Share of neighbours on one smooth sheet, its own and others', that would have to face apart.
+  float contrary = 0.F;
+  /// How far the density of its points falls with distance and incidence as it does from a sensor:
+  /// scatter about that law over scatter about a constant. Below .7 it was there, from .9 on it was
+  /// not, or the cloud was thinned; infinity where it could not be told.
+  float density = std::numeric_limits<float>::infinity();
+};
 
 enum class SensorKind : std::uint8_t {
   STATION,  ///< a scanner that stood still and looked all around
@@ -22,7 +43,7 @@ enum class SensorKind : std::uint8_t {
 };
 
 /// "station", "camera", "moving" or "above".
-const char* sensorKindName(SensorKind kind);
+SEGORIENT_ORIENTATION_EXPORT const char* sensorKindName(SensorKind kind);
 
 /// What told that there was a sensor.
 enum class SensorEvidence : std::uint8_t {
@@ -50,7 +71,7 @@ struct FoundSensor {
 };
 
 /// "density", "layers" or "image".
-const char* sensorEvidenceName(SensorEvidence evidence);
+SEGORIENT_ORIENTATION_EXPORT const char* sensorEvidenceName(SensorEvidence evidence);
 
 struct SensorOptions {
   /// Positions to be looked at first: where a file says nothing, the origin is where most cameras
@@ -72,7 +93,7 @@ struct SensorReport {
   std::string why;  ///< in a few words, what was found or why nothing
 
   /// Whether a sensor was found that normals may be turned to.
-  bool sure() const;
+  SEGORIENT_ORIENTATION_EXPORT bool sure() const;
 };
 
 /// Where the sensors stood, from positions alone.
@@ -85,7 +106,8 @@ struct SensorReport {
 ///
 /// \param points rows that are not finite and repeated ones take no part
 /// \return no sensors where nothing tells (too few points, no flat neighbourhoods, even density)
-SensorReport findSensors(const PointView& points, const SensorOptions& options = {});
+SEGORIENT_ORIENTATION_EXPORT SensorReport findSensors(const PointView& points,
+                                                      const SensorOptions& options = {});
 
 /// The same for a PCL cloud; one that is organised is taken for an image.
 template <typename PointT>

@@ -2,6 +2,8 @@
 // Copyright (c) 2026, the segorient authors
 #pragma once
 
+#include <segorient/common/export.h>
+
 #include <array>
 #include <cstddef>
 #include <string>
@@ -10,7 +12,7 @@
 namespace segorient {
 
 /// Where a moving sensor was, by time.
-class Trajectory {
+class SEGORIENT_ORIENTATION_EXPORT Trajectory {
  public:
   struct Pose {
     double time = 0.0;
@@ -46,11 +48,13 @@ struct TrajectoryJoin {
 };
 
 /// \param times one a point, in the trajectory's time base
-TrajectoryJoin joinTrajectory(const Trajectory& trajectory, const std::vector<double>& times);
+SEGORIENT_ORIENTATION_EXPORT TrajectoryJoin joinTrajectory(const Trajectory& trajectory,
+                                                           const std::vector<double>& times);
 
 /// Why the points and the trajectory share no time, in words: both spans and, where one of the
 /// usual ones explains it, the difference of their time bases (GPS standard time and the same less
 /// 1e9 as LAS has it, second of the week, Unix time, milli-, micro- and nanoseconds).
-std::string explainNoOverlap(const Trajectory& trajectory, const TrajectoryJoin& join);
+SEGORIENT_ORIENTATION_EXPORT std::string explainNoOverlap(const Trajectory& trajectory,
+                                                          const TrajectoryJoin& join);
 
 }  // namespace segorient

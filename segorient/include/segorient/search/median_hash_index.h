@@ -3,6 +3,7 @@
 #pragma once
 
 #include <pcl/types.h>
+#include <segorient/common/export.h>
 #include <segorient/common/neighborhoods.h>
 #include <segorient/common/point_view.h>
 
@@ -18,7 +19,7 @@ namespace segorient::search {
 /// Distances are those of a plain float evaluation of dx*dx + dy*dy + dz*dz in that order, without
 /// fused operations; ties are settled by index. Queries are const and may run concurrently.
 /// A query with a NaN or infinite coordinate finds nothing.
-class MedianHashIndex {
+class SEGORIENT_SEARCH_EXPORT MedianHashIndex {
  public:
   struct Options {
     std::size_t region_size = 4096;  ///< most points in a region

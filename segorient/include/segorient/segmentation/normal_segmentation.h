@@ -7,7 +7,7 @@
 #include <pcl/point_cloud.h>
 #include <pcl/point_types.h>
 #include <pcl/search/search.h>
-#include <segorient/segmentation/cloud_segmentation.h>
+#include <segorient/segmentation/impl/cloud_segmentation.hpp>
 
 #include <limits>
 #include <memory>

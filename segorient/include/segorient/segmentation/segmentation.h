@@ -3,11 +3,11 @@
 #pragma once
 
 #include <pcl/types.h>
-#include <segorient/common/neighborhoods.h>
-#include <segorient/common/point_view.h>
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 namespace segorient {
@@ -73,8 +73,56 @@ struct SegmentGraph {
   std::vector<std::uint32_t> incident;  ///< indices into borders
 };
 
-/// \param k neighbours of each row to use, the point itself not counted; 0 = all
-SegmentGraph buildSegmentGraph(const Segmentation& segmentation, const Neighborhoods& neighborhoods,
-                               int k = 0);
+/// Settings of segmentByNormals(). Angles in radians, lengths in multiples of the local spacing, so
+/// nothing depends on the unit or the size of a cloud.
+struct SegmentationOptions {
+  float alpha = 0.3490659F;  ///< largest angle between the normals of two neighbours (20 degrees)
+  float beta =
+      0.5235988F;  ///< largest angle between a normal and the reference normal (30 degrees)
+  float epsilon = 0.1745329F;   ///< by how much the clean-up may exceed beta (10 degrees)
+  std::size_t small_size = 20;  ///< segments with fewer points are small
+  /// Neighbours of each row to use, the point itself not counted; 0 = all. More cost time and do
+  /// not make segments better: the normals have seen them already.
+  int neighbors = 10;
+  /// Pass 1: share of the points around a small segment that another one must hold to take it in.
+  float neighbor_share = 0.4F;
+  /// Two points farther apart than this are no neighbours: growing does not jump gaps. 0 = no
+  /// limit.
+  float max_gap = 2.5F;
+  /// A point is refused if it lies farther than this off the tangent plane of the point that it
+  /// would be reached from: the sides of a thin wall stay apart. On noisy clouds the limit is
+  /// raised to what the noise asks for, to at most 0.9. 0 = no limit (the paper).
+  float max_offset = 0.5F;
+  /// Points of higher curvature join a segment but do not pass it on. Default: no limit.
+  float max_curvature = std::numeric_limits<float>::max();
+  /// Points farther than this off the tangent plane of the point that they were reached from join a
+  /// segment but do not pass it on; in the cloud's unit of length. Default: no limit.
+  float max_residual = std::numeric_limits<float>::max();
+  /// Alpha is between the normals of a point and of its segment's seed, not of two neighbours.
+  /// Faces are then the segments as they are.
+  bool compare_with_seed = false;
+  bool absorb_small = true;   ///< clean-up pass 1: small segments join a neighbouring segment
+  bool extract_edges = true;  ///< clean-up pass 2: their points join regular ones one by one
+  /// Beyond the paper, after pass 2: normals along a sharp edge are means over both faces, so a
+  /// point there goes to the segment whose flat part, continued, passes nearest to it. So do the
+  /// points of strips: segments without an inside, such as the row of points on an edge of a grid.
+  bool settle_edges = true;
+  bool connect_small = true;  ///< clean-up pass 3: small segments that touch become connected ones
+  int threads = 0;            ///< see resolveThreads()
+};
+
+/// What the stages of segmentByNormals() did.
+struct SegmentationReport {
+  std::size_t grown = 0;      ///< segments after growing
+  std::size_t small = 0;      ///< small ones among them
+  std::size_t absorbed = 0;   ///< small segments that pass 1 joined with another one
+  std::size_t extracted = 0;  ///< points that pass 2 moved to regular segments
+  std::size_t settled = 0;    ///< points that changed their segment along sharp edges
+  std::size_t regular = 0;    ///< segments of each kind at the end
+  std::size_t connected = 0;
+  std::size_t isolated = 0;
+  std::size_t united = 0;    ///< segments that became part of another one's face
+  float offset_limit = 0.F;  ///< the limit in use, in local spacings
+};
 
 }  // namespace segorient

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <pcl/types.h>
+#include <segorient/common/export.h>
 #include <segorient/common/point_view.h>
 #include <segorient/segmentation/segmentation.h>
 
@@ -58,13 +59,15 @@ struct SegmentMesh {
 /// each boundary point exactly one boundary curve through it. O(n log n). \param members points of
 /// one segment, without repetition \param normal reference normal; anything not finite or zero
 /// leaves all points loose
-SegmentMesh triangulatePoints(const PointView& points, const pcl::index_t* members,
-                              std::size_t count, const std::array<float, 3>& normal,
-                              const TriangulationOptions& options);
+SEGORIENT_SURFACE_EXPORT SegmentMesh triangulatePoints(const PointView& points,
+                                                       const pcl::index_t* members,
+                                                       std::size_t count,
+                                                       const std::array<float, 3>& normal,
+                                                       const TriangulationOptions& options);
 
 /// The regular segments' meshes by label; with `all` also the others'. The rest stays empty.
-std::vector<SegmentMesh> triangulateSegments(const PointView& points,
-                                             const Segmentation& segmentation,
-                                             const TriangulationOptions& options, bool all = false);
+SEGORIENT_SURFACE_EXPORT std::vector<SegmentMesh> triangulateSegments(
+    const PointView& points, const Segmentation& segmentation, const TriangulationOptions& options,
+    bool all = false);
 
 }  // namespace segorient

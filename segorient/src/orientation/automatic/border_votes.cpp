@@ -2,12 +2,11 @@
 // Copyright (c) 2026, the segorient authors
 #include "orientation/automatic/border_votes.h"
 
-#include <segorient/common/threads.h>
-
 #include <algorithm>
 #include <array>
 #include <cmath>
 
+#include "common/threads.h"
 #include "orientation/automatic/border_groups.h"
 #include "orientation/automatic/wide_votes.h"
 

@@ -2,7 +2,6 @@
 // Copyright (c) 2026, the segorient authors
 #include "orientation/automatic/coarse_levels.h"
 
-#include <segorient/common/threads.h>
 #include <segorient/search/median_hash_index.h>
 
 #include <algorithm>
@@ -14,6 +13,7 @@
 #include <vector>
 
 #include "common/dot.h"
+#include "common/threads.h"
 #include "features/sheet_normals.h"
 #include "orientation/automatic/blue_noise.h"
 #include "orientation/automatic/layer_test.h"

@@ -2,13 +2,13 @@
 // Copyright (c) 2026, the segorient authors
 #include "orientation/automatic/contrary_patches.h"
 
-#include <segorient/common/threads.h>
-
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <limits>
 #include <utility>
+
+#include "common/threads.h"
 
 namespace segorient::detail {
 namespace {

@@ -2,9 +2,6 @@
 // Copyright (c) 2026, the segorient authors
 #include "orientation/automatic/final_normals.h"
 
-#include <segorient/common/threads.h>
-#include <segorient/features/recompute_normals.h>
-
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -12,7 +9,9 @@
 #include <vector>
 
 #include "common/dot.h"
+#include "common/threads.h"
 #include "features/automatic_normals.h"
+#include "features/recompute_normals.h"
 #include "features/recompute_scene.h"
 #include "features/sheet_normals.h"
 

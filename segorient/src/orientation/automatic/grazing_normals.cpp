@@ -2,7 +2,6 @@
 // Copyright (c) 2026, the segorient authors
 #include "orientation/automatic/grazing_normals.h"
 
-#include <segorient/common/threads.h>
 #include <segorient/search/median_hash_index.h>
 
 #include <algorithm>
@@ -11,6 +10,7 @@
 #include <cstdint>
 
 #include "common/dot.h"
+#include "common/threads.h"
 #include "features/sheet_fit.h"
 
 namespace segorient::detail {

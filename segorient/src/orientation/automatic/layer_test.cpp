@@ -2,13 +2,12 @@
 // Copyright (c) 2026, the segorient authors
 #include "orientation/automatic/layer_test.h"
 
-#include <segorient/common/threads.h>
-
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
 
 #include "common/dot.h"
+#include "common/threads.h"
 #include "segmentation/sheet_segmentation.h"
 
 namespace segorient::detail {

@@ -2,11 +2,12 @@
 // Copyright (c) 2026, the segorient authors
 #pragma once
 
+#include <segorient/common/export.h>
 #include <segorient/common/neighborhoods.h>
 #include <segorient/common/point_view.h>
-#include <segorient/orientation/known_sensor.h>
 #include <segorient/orientation/orientation_options.h>
 #include <segorient/orientation/orientation_result.h>
+#include <segorient/orientation/sensors.h>
 #include <segorient/segmentation/segmentation.h>
 
 #include <cstdint>
@@ -46,10 +47,9 @@ AutoOrientation orientSheets(const PointView& points, const Neighborhoods& neigh
 /// \param points each may stand for several of the cloud's, of one segment
 /// \param neighborhoods needed only if hints name sensors
 /// \param count how many points the cloud has; sizes of segments are counted in these
-AutoOrientation orientSheets(const PointView& points, const Neighborhoods& neighborhoods,
-                             const SheetField& field, const Segmentation& segmentation,
-                             std::vector<BorderVote> votes, std::size_t count,
-                             const AutomaticOptions& options, const PointHints& hints,
-                             int threads = 0);
+SEGORIENT_ORIENTATION_EXPORT AutoOrientation
+orientSheets(const PointView& points, const Neighborhoods& neighborhoods, const SheetField& field,
+             const Segmentation& segmentation, std::vector<BorderVote> votes, std::size_t count,
+             const AutomaticOptions& options, const PointHints& hints, int threads = 0);
 
 }  // namespace segorient

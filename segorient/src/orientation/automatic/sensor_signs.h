@@ -2,6 +2,7 @@
 // Copyright (c) 2026, the segorient authors
 #pragma once
 
+#include <segorient/common/export.h>
 #include <segorient/common/point_view.h>
 #include <segorient/segmentation/segmentation.h>
 
@@ -45,6 +46,7 @@ bool isClear(float facing);
 /// Final normals turn to their sensors wherever their own error leaves no doubt.
 /// \param toward see AutoOrientation
 /// \return by point, whether its sensor decided
-std::vector<std::uint8_t> faceSensors(const std::vector<float>& toward, FilteredNormals& filtered);
+SEGORIENT_ORIENTATION_EXPORT std::vector<std::uint8_t> faceSensors(const std::vector<float>& toward,
+                                                                   FilteredNormals& filtered);
 
 }  // namespace segorient::detail

@@ -2,13 +2,13 @@
 // Copyright (c) 2026, the segorient authors
 #include "orientation/automatic/sheet_choice.h"
 
-#include <segorient/common/threads.h>
-
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
 #include <utility>
+
+#include "common/threads.h"
 
 namespace segorient::detail {
 namespace {

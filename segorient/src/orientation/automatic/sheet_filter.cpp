@@ -2,14 +2,13 @@
 // Copyright (c) 2026, the segorient authors
 #include "orientation/automatic/sheet_filter.h"
 
-#include <segorient/common/threads.h>
-
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstring>
 
 #include "common/instruction_set.h"
+#include "common/threads.h"
 #include "orientation/automatic/contrary_patches.h"
 #include "orientation/automatic/sheet_choice.h"
 

@@ -2,7 +2,6 @@
 // Copyright (c) 2026, the segorient authors
 #include "orientation/automatic/sign_energy.h"
 
-#include <segorient/common/threads.h>
 #include <segorient/search/median_hash_index.h>
 
 #include <algorithm>
@@ -10,6 +9,7 @@
 #include <cstddef>
 
 #include "common/median.h"
+#include "common/threads.h"
 #include "orientation/automatic/blue_noise.h"
 #include "orientation/winding/winding_number.h"
 

@@ -3,13 +3,13 @@
 #include "orientation/automatic/stages.h"
 
 #include <segorient/search/median_hash_index.h>
-#include <segorient/segmentation/region_growing.h>
 
 #include <cmath>
 
 #include "features/sheet_denoise.h"
 #include "features/sheet_normals.h"
 #include "orientation/automatic/final_normals.h"
+#include "segmentation/region_growing.h"
 #include "segmentation/segmentation_rows.h"
 #include "segmentation/sheet_segmentation.h"
 

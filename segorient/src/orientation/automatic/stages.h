@@ -2,6 +2,7 @@
 // Copyright (c) 2026, the segorient authors
 #pragma once
 
+#include <segorient/common/export.h>
 #include <segorient/orientation/pipeline.h>
 
 #include <functional>
@@ -34,9 +35,8 @@ struct AutoStages {
 /// segmentation of that, and the final normals. \param begin called with a stage's name and the
 /// fraction of the work done before it
 /// \param record null unless the cloud is part of a larger one
-AutoStages runAutoStages(PreparedCloud& cloud, const PipelineOptions& options,
-                         const PointHints& hints,
-                         const std::function<void(const char*, double)>& begin,
-                         SheetRecord* record = nullptr);
+SEGORIENT_ORIENTATION_EXPORT AutoStages
+runAutoStages(PreparedCloud& cloud, const PipelineOptions& options, const PointHints& hints,
+              const std::function<void(const char*, double)>& begin, SheetRecord* record = nullptr);
 
 }  // namespace segorient::detail

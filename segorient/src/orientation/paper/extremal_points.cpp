@@ -2,13 +2,12 @@
 // Copyright (c) 2026, the segorient authors
 #include "orientation/paper/extremal_points.h"
 
-#include <segorient/common/threads.h>
-
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
 
+#include "common/threads.h"
 #include "orientation/paper/box_subdivision.h"
 
 namespace segorient {

@@ -2,7 +2,6 @@
 // Copyright (c) 2026, the segorient authors
 #include "orientation/paper/folded_segments.h"
 
-#include <segorient/common/threads.h>
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 
@@ -13,6 +12,8 @@
 #include <limits>
 #include <tuple>
 #include <vector>
+
+#include "common/threads.h"
 
 namespace segorient {
 namespace {

@@ -2,7 +2,6 @@
 // Copyright (c) 2026, the segorient authors
 #include "orientation/paper/segment_relations.h"
 
-#include <segorient/common/threads.h>
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 
@@ -11,6 +10,7 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "common/threads.h"
 #include "orientation/paper/boundary_ballot.h"
 
 namespace segorient {

@@ -2,14 +2,13 @@
 // Copyright (c) 2026, the segorient authors
 #include "orientation/sensors/density_patches.h"
 
-#include <segorient/common/threads.h>
-
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
 
 #include "common/median.h"
+#include "common/threads.h"
 #include "features/symmetric_eigen.h"
 
 namespace segorient::detail {

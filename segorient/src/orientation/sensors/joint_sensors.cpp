@@ -2,8 +2,6 @@
 // Copyright (c) 2026, the segorient authors
 #include "orientation/sensors/joint_sensors.h"
 
-#include <segorient/common/threads.h>
-
 #include <algorithm>
 #include <array>
 #include <cstddef>
@@ -11,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "common/threads.h"
 #include "orientation/sensors/height_field.h"
 #include "orientation/sensors/moving_sensor.h"
 #include "orientation/sensors/occupancy.h"

@@ -4,7 +4,7 @@
 
 #include <segorient/common/neighborhoods.h>
 #include <segorient/common/point_view.h>
-#include <segorient/orientation/known_sensor.h>
+#include <segorient/orientation/sensors.h>
 
 #include <cstddef>
 #include <cstdint>

@@ -2,14 +2,13 @@
 // Copyright (c) 2026, the segorient authors
 #include "orientation/sensors/moving_sensor.h"
 
-#include <segorient/common/threads.h>
-
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <numeric>
 #include <utility>
 
+#include "common/threads.h"
 #include "orientation/sensors/sampling_law.h"
 #include "orientation/sensors/shares.h"
 #include "orientation/sensors/simplex.h"

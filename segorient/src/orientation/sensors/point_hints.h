@@ -2,6 +2,7 @@
 // Copyright (c) 2026, the segorient authors
 #pragma once
 
+#include <segorient/common/export.h>
 #include <segorient/orientation/orientation_hints.h>
 
 #include <array>
@@ -33,6 +34,7 @@ struct PointHints {
 };
 
 /// \param cloud that that `hints` is about
-PointHints resolveHints(const OrientationHints& hints, PreparedCloud& cloud);
+SEGORIENT_ORIENTATION_EXPORT PointHints resolveHints(const OrientationHints& hints,
+                                                     PreparedCloud& cloud);
 
 }  // namespace segorient

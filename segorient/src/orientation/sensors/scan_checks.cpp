@@ -2,7 +2,6 @@
 // Copyright (c) 2026, the segorient authors
 #include "orientation/sensors/scan_checks.h"
 
-#include <segorient/common/threads.h>
 #include <segorient/search/median_hash_index.h>
 
 #include <algorithm>
@@ -10,6 +9,7 @@
 
 #include "common/dot.h"
 #include "common/median.h"
+#include "common/threads.h"
 #include "features/sheet_fit.h"
 
 namespace segorient::detail {

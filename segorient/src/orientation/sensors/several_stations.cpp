@@ -2,12 +2,11 @@
 // Copyright (c) 2026, the segorient authors
 #include "orientation/sensors/several_stations.h"
 
-#include <segorient/common/threads.h>
-
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
 
+#include "common/threads.h"
 #include "orientation/sensors/sampling_law.h"
 #include "orientation/sensors/shares.h"
 #include "orientation/sensors/simplex.h"

@@ -2,13 +2,13 @@
 // Copyright (c) 2026, the segorient authors
 #include "orientation/sensors/station_search.h"
 
-#include <segorient/common/threads.h>
-
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <numeric>
 #include <utility>
+
+#include "common/threads.h"
 
 namespace segorient::detail {
 namespace {

@@ -2,12 +2,12 @@
 // Copyright (c) 2026, the segorient authors
 #include "orientation/sensors/viewpoint_fit.h"
 
-#include <segorient/common/threads.h>
-
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <limits>
+
+#include "common/threads.h"
 
 namespace segorient {
 namespace {

@@ -2,8 +2,6 @@
 // Copyright (c) 2026, the segorient authors
 #include "orientation/winding/winding_components.h"
 
-#include <segorient/common/threads.h>
-
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -12,6 +10,7 @@
 #include <numeric>
 #include <utility>
 
+#include "common/threads.h"
 #include "orientation/winding/winding_number.h"
 
 namespace segorient {

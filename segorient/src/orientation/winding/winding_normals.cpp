@@ -2,14 +2,13 @@
 // Copyright (c) 2026, the segorient authors
 #include "orientation/winding/winding_normals.h"
 
-#include <segorient/common/threads.h>
-
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
 #include <limits>
 
+#include "common/threads.h"
 #include "orientation/winding/winding_number.h"
 
 namespace segorient {

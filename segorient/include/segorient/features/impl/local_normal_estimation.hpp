@@ -3,10 +3,11 @@
 #pragma once
 
 #include <pcl/console/print.h>
-#include <segorient/common/cloud_access.h>
-#include <segorient/common/point_search.h>
+#include <segorient/common/export.h>
 #include <segorient/features/local_normal_estimation.h>
-#include <segorient/features/searched_normals.h>
+#include <segorient/common/impl/cloud_access.hpp>
+#include <segorient/common/impl/point_search.hpp>
+#include <segorient/features/impl/searched_normals.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -156,4 +157,4 @@ void LocalNormalEstimation<PointInT, PointOutT>::computeFeature(PointCloudOut& o
 }  // namespace segorient
 
 #define PCL_INSTANTIATE_LocalNormalEstimation(T, NT) \
-  template class segorient::LocalNormalEstimation<T, NT>;
+  template class SEGORIENT_FEATURES_EXPORT segorient::LocalNormalEstimation<T, NT>;

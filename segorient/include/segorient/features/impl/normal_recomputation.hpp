@@ -3,8 +3,10 @@
 #pragma once
 
 #include <pcl/console/print.h>
-#include <segorient/common/cloud_access.h>
+#include <segorient/common/export.h>
 #include <segorient/features/normal_recomputation.h>
+#include <segorient/common/impl/cloud_access.hpp>
+#include <segorient/features/impl/cloud_recomputation.hpp>
 
 #include <cmath>
 #include <limits>
@@ -77,4 +79,4 @@ void NormalRecomputation<PointT, NormalT>::compute(Normals& output) {
 }  // namespace segorient
 
 #define PCL_INSTANTIATE_NormalRecomputation(T, NT) \
-  template class segorient::NormalRecomputation<T, NT>;
+  template class SEGORIENT_FEATURES_EXPORT segorient::NormalRecomputation<T, NT>;

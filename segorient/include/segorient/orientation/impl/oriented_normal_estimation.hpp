@@ -3,10 +3,11 @@
 #pragma once
 
 #include <pcl/console/print.h>
-#include <segorient/common/cloud_access.h>
+#include <segorient/common/export.h>
 #include <segorient/orientation/oriented_normal_estimation.h>
-#include <segorient/search/median_neighbors.h>
+#include <segorient/common/impl/cloud_access.hpp>
 #include <segorient/orientation/impl/cloud_hints.hpp>
+#include <segorient/search/impl/median_neighbors.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -126,4 +127,4 @@ void OrientedNormalEstimation<PointInT, PointOutT>::write(PointCloudOut& output)
 }  // namespace segorient
 
 #define PCL_INSTANTIATE_OrientedNormalEstimation(T, NT) \
-  template class segorient::OrientedNormalEstimation<T, NT>;
+  template class SEGORIENT_ORIENTATION_EXPORT segorient::OrientedNormalEstimation<T, NT>;

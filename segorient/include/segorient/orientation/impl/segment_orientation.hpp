@@ -3,8 +3,9 @@
 #pragma once
 
 #include <pcl/console/print.h>
-#include <segorient/common/cloud_access.h>
+#include <segorient/common/export.h>
 #include <segorient/orientation/segment_orientation.h>
+#include <segorient/common/impl/cloud_access.hpp>
 #include <segorient/orientation/impl/cloud_hints.hpp>
 
 #include <algorithm>
@@ -94,4 +95,4 @@ void SegmentOrientation<PointT, NormalT>::compute(PointCloudN& output) {
 }  // namespace segorient
 
 #define PCL_INSTANTIATE_SegmentOrientation(T, NT) \
-  template class segorient::SegmentOrientation<T, NT>;
+  template class SEGORIENT_ORIENTATION_EXPORT segorient::SegmentOrientation<T, NT>;

@@ -4,9 +4,10 @@
 
 #include <pcl/console/print.h>
 #include <pcl/point_representation.h>
-#include <segorient/common/cloud_access.h>
+#include <segorient/common/export.h>
 #include <segorient/search/median_hash.h>
 #include <pcl/search/impl/kdtree.hpp>
+#include <segorient/common/impl/cloud_access.hpp>
 
 #include <algorithm>
 #include <array>
@@ -288,4 +289,5 @@ void MedianHash<PointT>::radiusSearchAll(double radius, RadiusNeighborhoods& out
 
 }  // namespace segorient::search
 
-#define PCL_INSTANTIATE_MedianHash(T) template class segorient::search::MedianHash<T>;
+#define PCL_INSTANTIATE_MedianHash(T) \
+  template class SEGORIENT_SEARCH_EXPORT segorient::search::MedianHash<T>;

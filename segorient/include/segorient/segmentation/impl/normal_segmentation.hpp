@@ -4,8 +4,9 @@
 
 #include <pcl/common/colors.h>
 #include <pcl/console/print.h>
-#include <segorient/common/cloud_access.h>
+#include <segorient/common/export.h>
 #include <segorient/segmentation/normal_segmentation.h>
+#include <segorient/common/impl/cloud_access.hpp>
 
 #include <algorithm>
 
@@ -316,4 +317,4 @@ pcl::PointCloud<pcl::PointXYZRGBA>::Ptr NormalSegmentation<PointT, NormalT>::get
 }  // namespace segorient
 
 #define PCL_INSTANTIATE_NormalSegmentation(T, NT) \
-  template class segorient::NormalSegmentation<T, NT>;
+  template class SEGORIENT_SEGMENTATION_EXPORT segorient::NormalSegmentation<T, NT>;

@@ -4,9 +4,10 @@
 
 #include <pcl/console/print.h>
 #include <pcl/conversions.h>
-#include <segorient/common/cloud_access.h>
-#include <segorient/surface/cloud_triangulation.h>
+#include <segorient/common/export.h>
 #include <segorient/surface/segment_triangulation.h>
+#include <segorient/common/impl/cloud_access.hpp>
+#include <segorient/surface/impl/cloud_triangulation.hpp>
 
 #include <array>
 #include <unordered_map>
@@ -83,4 +84,5 @@ bool SegmentTriangulation<PointNT>::getSegmentMesh(std::size_t segment,
 
 }  // namespace segorient
 
-#define PCL_INSTANTIATE_SegmentTriangulation(T) template class segorient::SegmentTriangulation<T>;
+#define PCL_INSTANTIATE_SegmentTriangulation(T) \
+  template class SEGORIENT_SURFACE_EXPORT segorient::SegmentTriangulation<T>;

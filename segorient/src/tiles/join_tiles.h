@@ -2,15 +2,17 @@
 // Copyright (c) 2026, the segorient authors
 #pragma once
 
+#include <segorient/common/export.h>
 #include <segorient/orientation/orientation_hints.h>
 #include <segorient/orientation/orientation_result.h>
-#include <segorient/tiles/tile_share.h>
 
 #include <array>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <vector>
+
+#include "tiles/tile_share.h"
 
 namespace segorient {
 
@@ -47,7 +49,7 @@ struct JoinedTiles {
 /// Puts tiles together: pieces that two tiles see the same points of vote on each other as pieces
 /// along a border do; then the whole graph is oriented by the default method as a cloud in memory
 /// is, with patches for points. Memory is linear in pieces, votes and patches.
-class TileJoiner {
+class SEGORIENT_TILES_EXPORT TileJoiner {
  public:
   TileJoiner();
   ~TileJoiner();
@@ -70,7 +72,7 @@ class TileJoiner {
 
 /// Puts the segments of all tiles together: those that most of the points which two tiles both have
 /// tie together are one.
-class LabelJoiner {
+class SEGORIENT_TILES_EXPORT LabelJoiner {
  public:
   /// Tiles one after another. \param segment_sizes own rows of each segment
   void addTile(const std::vector<std::uint32_t>& segment_sizes);

@@ -2,6 +2,7 @@
 // Copyright (c) 2026, the segorient authors
 #pragma once
 
+#include <segorient/common/export.h>
 #include <segorient/common/point_view.h>
 
 namespace segorient::search {
@@ -13,7 +14,8 @@ namespace segorient::search {
 /// \param radius above 0
 /// \param threads see resolveThreads()
 /// \return 0 where most points have no other one so near
-int medianNeighborsWithin(const PointView& points, double radius, int threads);
+SEGORIENT_SEARCH_EXPORT int medianNeighborsWithin(const PointView& points, double radius,
+                                                  int threads);
 
 /// More cost memory and tell a stage nothing new about the surface around a point.
 constexpr int kMostNeighborsWithin = 128;

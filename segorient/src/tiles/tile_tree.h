@@ -2,6 +2,8 @@
 // Copyright (c) 2026, the segorient authors
 #pragma once
 
+#include <segorient/common/export.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -17,7 +19,7 @@ namespace segorient {
 ///
 /// Every place belongs to one tile. Beyond its own points, a tile is given the points of others
 /// that lie within kHaloSpacings of their own local spacing of its cell.
-class TileTree {
+class SEGORIENT_TILES_EXPORT TileTree {
  public:
   using Place = std::array<double, 3>;
 

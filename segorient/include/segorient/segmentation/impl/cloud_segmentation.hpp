@@ -2,11 +2,11 @@
 // Copyright (c) 2026, the segorient authors
 #pragma once
 
+#include <segorient/common/export.h>
 #include <segorient/common/neighborhoods.h>
-#include <segorient/common/point_search.h>
 #include <segorient/common/point_view.h>
-#include <segorient/segmentation/region_growing.h>
 #include <segorient/segmentation/segmentation.h>
+#include <segorient/common/impl/point_search.hpp>
 
 #include <cstddef>
 #include <memory>
@@ -18,7 +18,7 @@ class PreparedCloud;
 
 /// Segmentation of a cloud as it comes: with NaN points, duplicates, indices. The part of
 /// NormalSegmentation that does not depend on the point type.
-class CloudSegmentation {
+class SEGORIENT_SEGMENTATION_EXPORT CloudSegmentation {
  public:
   /// k nearest of one of the cloud's points, as indices into the cloud, itself included.
   using Search = PointSearch;

@@ -2,6 +2,8 @@
 // Copyright (c) 2026, the segorient authors
 #pragma once
 
+#include <segorient/common/export.h>
+
 #include <cstddef>
 
 namespace segorient {
@@ -9,12 +11,12 @@ namespace segorient {
 /// Number of threads to use for a request: 0 means all cores that OpenMP reports, less than 0 is 1,
 /// more than 64 as many as there are processors, at least 64.
 /// No result of this library depends on it.
-int resolveThreads(int requested);
+SEGORIENT_SEARCH_EXPORT int resolveThreads(int requested);
 
 /// The same where it is known how much there is to do: 0 then means no more threads than the work
 /// is worth. To wait for one more thread takes up to a time slice of the system where other
 /// programs work, so each has to save more than that. \param items how many times something is done
 /// \param nanoseconds about how long that takes one thread each time
-int resolveThreads(int requested, std::size_t items, double nanoseconds);
+SEGORIENT_SEARCH_EXPORT int resolveThreads(int requested, std::size_t items, double nanoseconds);
 
 }  // namespace segorient

@@ -2,16 +2,43 @@
 // Copyright (c) 2026, the segorient authors
 #pragma once
 
-#include <pcl/types.h>
-#include <segorient/common/neighborhoods.h>
-#include <segorient/common/point_view.h>
-#include <segorient/features/local_normals.h>
-
 #include <cstddef>
 #include <cstdint>
-#include <vector>
 
 namespace segorient {
+
+/// How a normal is found from a neighbourhood (paper, section 2.2).
+enum class NormalEstimator {
+  Plane,          ///< least-squares plane of the neighbours and the point
+  LCT,            ///< local centre triangulation: area-weighted fan around the centre of mass
+  LDT,            ///< local Delaunay triangulation: unit-weighted star of the point
+  AwASQuadratic,  ///< approximation with an analytic surface: z = f(x, y) with 6 coefficients
+  AwASCubic,      ///< the same with 10; where they are not determined, the quadratic one
+  /// Chosen point by point from the cloud itself: see estimateNormalsAutomatically(). Functions
+  /// that do not say otherwise take it for Plane.
+  Automatic
+};
+
+/// Curvatures of the fitted surface at the point, by pcl::PrincipalCurvatures' conventions:
+/// direction of the larger one, then both, |pc1| >= |pc2|. Signs are those of the surface seen
+/// along the normal: positive where it bends towards the normal. NaN where no surface was fitted.
+struct LocalCurvature {
+  float direction[3];
+  float pc1;
+  float pc2;
+};
+
+/// What to estimate, and from how many neighbours.
+struct LocalNormalOptions {
+  NormalEstimator estimator = NormalEstimator::Plane;
+  /// Where AwAS starts from: Plane, LCT or LDT; others mean Plane.
+  NormalEstimator first_guess = NormalEstimator::Plane;
+  /// Neighbours of each row to use beside its first entry (the point itself); <= 0 = all.
+  int k = 0;
+  int threads = 0;  ///< see resolveThreads()
+  bool portable =
+      false;  ///< do without wide vector instructions; the result is the same to the bit
+};
 
 /// How normals near sharp edges are found again once there are segments (paper, section 2.3.1).
 enum class RecomputationRule {
@@ -49,33 +76,5 @@ struct RecomputationReport {
   std::size_t recomputed = 0;  ///< points with a new normal
   std::size_t moved = 0;       ///< points with a new label
 };
-
-/// Finds the normals near sharp edges again, from one side of the edge only. Old labels and normals
-/// are read and new ones written, so the order of the points does not matter; it may be repeated,
-/// with or without segmenting anew in between.
-///
-/// Does nothing if sizes do not agree.
-/// \param regular per label whether the segment is a regular one
-/// \param labels per point its segment, -1 for none
-/// \param normals 4 floats a point as from estimateNormals(); the curvature stays, and a
-///        new normal points to the side of the old one
-RecomputationReport recomputeNormals(const PointView& points, const Neighborhoods& neighborhoods,
-                                     const std::vector<std::uint8_t>& regular,
-                                     const RecomputationOptions& options,
-                                     std::vector<std::int32_t>& labels,
-                                     std::vector<float>& normals);
-
-/// The same for a cloud as it comes, with NaN points and duplicates, and neighbours still to be
-/// found: works on the distinct finite points. All arrays have one entry a point of the cloud.
-/// \param indices points to use; others, and entries out of range, stay as they are
-/// \param neighborhoods of the whole cloud, or null to search
-/// \param rounds how often the rule is applied
-RecomputationReport recomputeCloudNormals(const PointView& points,
-                                          const std::vector<pcl::index_t>& indices,
-                                          const Neighborhoods* neighborhoods,
-                                          const std::vector<std::uint8_t>& regular,
-                                          const RecomputationOptions& options, int rounds,
-                                          std::vector<std::int32_t>& labels,
-                                          std::vector<float>& normals);
 
 }  // namespace segorient

@@ -2,6 +2,8 @@
 // Copyright (c) 2026, the segorient authors
 #pragma once
 
+#include <segorient/common/export.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -73,7 +75,7 @@ struct Bounds {
 /// anywhere. Surfaces, scans that thin out towards the horizon and the like are within.
 /// \param coordinates finite ones by axis; used up
 /// \return everything where half of the points are in one place
-Bounds fenceAround(std::array<std::vector<double>, 3>& coordinates);
+SEGORIENT_SEARCH_EXPORT Bounds fenceAround(std::array<std::vector<double>, 3>& coordinates);
 
 /// Bounds of all finite points but strays.
 /// \param position of each of `size` points, an array of three

@@ -2,6 +2,7 @@
 // Copyright (c) 2026, the segorient authors
 #pragma once
 
+#include <segorient/common/export.h>
 #include <segorient/common/point_view.h>
 #include <segorient/orientation/orientation_hints.h>
 
@@ -35,8 +36,8 @@ struct TileTraits {
 /// \param points the whole cloud, or neighbourhoods from all over it, as dense as they are
 /// \param k neighbours, 0 = the default
 /// \param hints as for orientCloud(); they are not sought where there are none
-TileTraits measureTileTraits(const PointView& points, int k, const OrientationHints& hints,
-                             int threads = 0);
+SEGORIENT_TILES_EXPORT TileTraits measureTileTraits(const PointView& points, int k,
+                                                    const OrientationHints& hints, int threads = 0);
 
 /// Which points of a tile's input are its own.
 enum class TileRole : std::uint8_t {
@@ -120,18 +121,21 @@ struct TileOptions {
 /// \param whole one a point: within what distance of it all points of the cloud are there. Points
 /// of
 ///        the halo whose neighbours are farther are neighbours only
-TileShare workOnTile(const PointView& points, const std::vector<TileRole>& roles,
-                     const std::vector<float>& whole, const TileOptions& options);
+SEGORIENT_TILES_EXPORT TileShare workOnTile(const PointView& points,
+                                            const std::vector<TileRole>& roles,
+                                            const std::vector<float>& whole,
+                                            const TileOptions& options);
 
 /// Whether signs that the tile took for right, and made final normals from, are wrong in so many
 /// places that these have to be made again.
 /// \param share what workOnTile() found: votes, sizes and signs of pieces
-bool needsFinishing(const TileShare& share, const TileSigns& signs);
+SEGORIENT_TILES_EXPORT bool needsFinishing(const TileShare& share, const TileSigns& signs);
 
 /// The same work with the signs of the whole cloud: final normals and segments as they are in it.
 /// All else as for workOnTile(); there are no votes and patches.
-TileShare finishTile(const PointView& points, const std::vector<TileRole>& roles,
-                     const std::vector<float>& whole, const TileOptions& options,
-                     const TileSigns& signs);
+SEGORIENT_TILES_EXPORT TileShare finishTile(const PointView& points,
+                                            const std::vector<TileRole>& roles,
+                                            const std::vector<float>& whole,
+                                            const TileOptions& options, const TileSigns& signs);
 
 }  // namespace segorient

@@ -2,6 +2,7 @@
 // Copyright (c) 2026, the segorient authors
 #pragma once
 
+#include <segorient/common/export.h>
 #include <segorient/surface/segment_mesh.h>
 
 #include <vector>
@@ -17,9 +18,10 @@ namespace segorient {
 /// \param meshes output, one a segment; empty where false is returned
 /// \return false if the segmentation, or the normals that one is to be made from, are not of this
 ///         cloud
-bool triangulateCloud(const PointView& points, const NormalView& normals,
-                      const Segmentation& segmentation, const pcl::Indices* indices,
-                      const TriangulationOptions& options, bool all,
-                      std::vector<SegmentMesh>& meshes);
+SEGORIENT_SURFACE_EXPORT bool triangulateCloud(const PointView& points, const NormalView& normals,
+                                               const Segmentation& segmentation,
+                                               const pcl::Indices* indices,
+                                               const TriangulationOptions& options, bool all,
+                                               std::vector<SegmentMesh>& meshes);
 
 }  // namespace segorient

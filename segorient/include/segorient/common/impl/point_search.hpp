@@ -3,6 +3,7 @@
 #pragma once
 
 #include <pcl/types.h>
+#include <segorient/common/export.h>
 
 #include <functional>
 #include <vector>
@@ -16,10 +17,12 @@ using PointSearch = std::function<int(pcl::index_t point, int k, pcl::Indices& i
 
 /// Before a user's search is asked for k neighbours: both vectors have k entries then, as they have
 /// when PCL's own estimators ask. Many searches write into them without making room.
-void makeRoomForSearch(int k, pcl::Indices& indices, std::vector<float>& sqr_distances);
+SEGORIENT_SEARCH_EXPORT void makeRoomForSearch(int k, pcl::Indices& indices,
+                                               std::vector<float>& sqr_distances);
 
 /// After it: leaves as many entries as the search says that it found, whether it resized the
 /// vectors or not. \return how many there are now
-int keepFound(int count, pcl::Indices& indices, std::vector<float>& sqr_distances);
+SEGORIENT_SEARCH_EXPORT int keepFound(int count, pcl::Indices& indices,
+                                      std::vector<float>& sqr_distances);
 
 }  // namespace segorient

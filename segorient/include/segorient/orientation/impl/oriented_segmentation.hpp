@@ -2,12 +2,12 @@
 // Copyright (c) 2026, the segorient authors
 #pragma once
 
-#include <segorient/common/point_search.h>
+#include <segorient/common/export.h>
 #include <segorient/common/point_view.h>
 #include <segorient/orientation/orientation_options.h>
 #include <segorient/orientation/orientation_result.h>
-#include <segorient/segmentation/region_growing.h>
 #include <segorient/segmentation/segmentation.h>
+#include <segorient/common/impl/point_search.hpp>
 
 namespace segorient {
 
@@ -26,10 +26,9 @@ struct OrientedSegmentation {
 /// \param k neighbours of a point, itself not counted; <= 0 = 32 for AUTO and 12 for the others
 /// \param search finds neighbours among the rows; empty = a search of our own
 /// \return empty if the sizes do not agree or a label is out of range
-OrientedSegmentation orientSegmentation(const PointView& points, const NormalView& normals,
-                                        const Segmentation* segmentation, int k,
-                                        const SegmentationOptions& segmentation_options,
-                                        const OrientationOptions& options,
-                                        const PointSearch& search = {});
+SEGORIENT_ORIENTATION_EXPORT OrientedSegmentation orientSegmentation(
+    const PointView& points, const NormalView& normals, const Segmentation* segmentation, int k,
+    const SegmentationOptions& segmentation_options, const OrientationOptions& options,
+    const PointSearch& search = {});
 
 }  // namespace segorient
