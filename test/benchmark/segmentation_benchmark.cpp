@@ -36,6 +36,7 @@
 #include "../support/partition_quality.h"
 #include "common/compact_cloud.h"
 #include "features/local_normals.h"
+#include "segmentation/region_growing.h"
 
 namespace {
 std::atomic<std::size_t> live_bytes{0};

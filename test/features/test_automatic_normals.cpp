@@ -11,6 +11,7 @@
 
 #include "feature_clouds.h"
 #include "features/automatic_normals.h"
+#include "features/local_normals.h"
 
 namespace segorient::test {
 namespace {

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "feature_clouds.h"
+#include "features/local_normals.h"
 #include "features/recompute_normals.h"
 
 namespace segorient::test {

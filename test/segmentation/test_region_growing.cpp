@@ -11,6 +11,7 @@
 #include <set>
 
 #include "partition_quality.h"
+#include "segmentation/region_growing.h"
 #include "segmentation/segment_graph.h"
 #include "segmentation_support.h"
 

@@ -9,6 +9,7 @@
 
 #include "grid_solids.h"
 #include "partition_quality.h"
+#include "segmentation/region_growing.h"
 #include "segmentation_support.h"
 
 namespace segorient::test {

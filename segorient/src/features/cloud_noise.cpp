@@ -8,6 +8,7 @@
 
 #include "common/median.h"
 #include "features/local_fit_job.h"
+#include "features/local_normals.h"
 
 namespace segorient::detail {
 namespace {

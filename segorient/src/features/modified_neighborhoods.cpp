@@ -6,6 +6,7 @@
 #include <map>
 #include <utility>
 
+#include "features/local_normals.h"
 #include "features/point_set.h"
 #include "features/recompute_scene.h"
 #include "features/symmetric_eigen.h"

@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "common/threads.h"
+#include "features/local_normals.h"
 #include "search/prepared_cloud.h"
 
 namespace segorient {

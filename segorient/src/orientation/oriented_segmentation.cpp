@@ -10,6 +10,7 @@
 #include "features/sheet_normals.h"
 #include "orientation/orient_segments.h"
 #include "search/prepared_cloud.h"
+#include "segmentation/region_growing.h"
 #include "segmentation/segment_graph.h"
 #include "segmentation/segmentation_rows.h"
 

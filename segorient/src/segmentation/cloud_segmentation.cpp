@@ -9,6 +9,7 @@
 
 #include "common/bulk_bounds.h"
 #include "search/prepared_cloud.h"
+#include "segmentation/region_growing.h"
 #include "segmentation/segment_graph.h"
 #include "segmentation/segmentation_rows.h"
 
