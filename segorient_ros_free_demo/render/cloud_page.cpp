@@ -15,8 +15,8 @@ PageSegment pageSegment(const SegmentFact& fact) {
   PageSegment out;
   out.confidence = fact.confidence;
   out.text = fact.kind;
-  if (!fact.oriented_by.empty()) out.text += ", by " + fact.oriented_by;
-  if (!fact.component_by.empty()) out.text += ", side by " + fact.component_by;
+  if (!fact.oriented_by.empty()) out.text += ", oriented by " + fact.oriented_by;
+  if (!fact.component_by.empty()) out.text += ", its whole part by " + fact.component_by;
   if (fact.hard) out.text += ", hard";
   return out;
 }

@@ -7,13 +7,13 @@
 
 #include "common/threads.h"
 #include "render/canvas.h"
+#include "render/page/vectors.h"
 #include "render/projection.h"
 #include "render/visibility.h"
 
 namespace segorient::program {
 namespace {
 
-using Vec = std::array<float, 3>;
 using Color = std::array<std::uint8_t, 3>;
 
 constexpr float kAmbient = 0.45F;    // light from everywhere; the rest comes from beside the viewer
@@ -22,10 +22,6 @@ constexpr float kLeastRadius = 0.8F;  // pixels
 constexpr float kCutSlack = 0.05F;    // of the radius; closes the gap along the edge
 constexpr float kCutRadius = 1.5F;    // pixels; ends of smaller discs are not seen
 constexpr int kBand = 32;             // rows that one thread draws at a time
-
-float dot(const Vec& a, const Vec& b) {
-  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
 
 Vec normalized(const Vec& v) {
   const float length = std::sqrt(dot(v, v));

@@ -46,7 +46,7 @@ struct Marker {
 /// corners turn counter-clockwise.
 struct Scene {
   std::vector<Splat> splats;
-  std::vector<std::size_t> rows;  ///< of splats in the cloud
+  std::vector<std::uint32_t> rows;  ///< of splats in the cloud
   std::vector<std::array<float, 3>> vertices;
   std::vector<Triangle> triangles;
   std::vector<std::uint32_t> front;  ///< packed rgb of each triangle's front

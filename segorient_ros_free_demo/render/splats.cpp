@@ -10,23 +10,18 @@
 
 #include "common/threads.h"
 #include "render/page/disc_radii.h"
+#include "render/page/space_order.h"
+#include "render/page/vectors.h"
 
 namespace segorient::program {
 namespace {
 
 // Of so many, those across an edge end the disc: nearly all discs that reach an edge have one.
 constexpr int kAround = 16;
-constexpr float kEdgeCosine = 0.82F;  // normals 35 degrees apart: an edge
 // The neighbours that turn least tell how the surface turns: along the edge of a face they are
 // those of the face, of a point on the edge itself, whose normal is between two faces', they are
 // not.
 constexpr std::size_t kAlike = 3;
-
-using Vec = std::array<float, 3>;
-
-float dot(const Vec& a, const Vec& b) {
-  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
 
 // What the neighbours of a splat tell of the surface around. Signs of normals play no part.
 void lookAround(const std::vector<Splat>& splats, const pcl::index_t* neighbors, int count,
@@ -41,7 +36,7 @@ void lookAround(const std::vector<Splat>& splats, const pcl::index_t* neighbors,
     const float cosine = std::abs(dot(s.normal, o.normal));
     if (!std::isfinite(cosine)) continue;
     if (j <= kCover) cosines[seen++] = cosine;
-    if (cosine < kEdgeCosine) {
+    if (cosine < kSameSheet) {
       // A neighbour's plane ends the splat: that is where the edge between the two runs.
       if (s.cuts < Splat::kMostCutters) s.cutters[s.cuts++] = static_cast<std::uint32_t>(other);
     } else if (j <= kCover) {
@@ -66,48 +61,15 @@ void lookAround(const std::vector<Splat>& splats, const pcl::index_t* neighbors,
   s.turn = std::sqrt(std::max(0.F, 0.5F * (1.F - *at)));  // half way, where the discs meet
 }
 
-// The lowest 21 bits of a number, two free bits after each.
-std::uint64_t spread(std::uint64_t v) {
-  v = (v | v << 32) & 0x1f00000000ffffULL;
-  v = (v | v << 16) & 0x1f0000ff0000ffULL;
-  v = (v | v << 8) & 0x100f00f00f00f00fULL;
-  v = (v | v << 4) & 0x10c30c30c30c30c3ULL;
-  return (v | v << 2) & 0x1249249249249249ULL;
-}
-
-// Rows of finite points, neighbours in space near each other (Morton's order): all that follows
-// looks from points to those around, and a large cloud in random order does not fit into caches.
-std::vector<std::size_t> orderedRows(const PointView& points) {
-  constexpr double kCells = 2097151.0;
-  std::vector<std::size_t> rows;
-  std::array<double, 3> low;
-  low.fill(std::numeric_limits<double>::max());
-  double extent = 0.0;
+// Rows of finite points in an order in which neighbours are near each other: all that follows looks
+// from points to those around, and a large cloud in random order does not fit into caches.
+std::vector<std::uint32_t> orderedRows(const PointView& points) {
+  std::vector<std::uint32_t> rows;
+  rows.reserve(points.size);
   for (std::size_t i = 0; i < points.size; ++i) {
-    if (!isFinite(points[i])) continue;
-    rows.push_back(i);
-    for (std::size_t a = 0; a < 3; ++a) {
-      low[a] = std::min(low[a], static_cast<double>(points[i][a]));
-    }
+    if (isFinite(points[i])) rows.push_back(static_cast<std::uint32_t>(i));
   }
-  for (const std::size_t i : rows) {
-    for (std::size_t a = 0; a < 3; ++a) {
-      extent = std::max(extent, static_cast<double>(points[i][a]) - low[a]);
-    }
-  }
-  if (!(extent > 0.0)) return rows;
-  std::vector<std::pair<std::uint64_t, std::size_t>> keyed;
-  keyed.reserve(rows.size());
-  for (const std::size_t i : rows) {
-    std::uint64_t key = 0;
-    for (std::size_t a = 0; a < 3; ++a) {
-      const double cell = (static_cast<double>(points[i][a]) - low[a]) / extent * kCells;
-      key |= spread(static_cast<std::uint64_t>(cell)) << a;
-    }
-    keyed.emplace_back(key, i);
-  }
-  std::sort(keyed.begin(), keyed.end());
-  std::transform(keyed.begin(), keyed.end(), rows.begin(), [](const auto& k) { return k.second; });
+  sortInSpace(points, rows.begin(), rows.end());
   return rows;
 }
 
@@ -137,11 +99,11 @@ std::array<float, 3> NormalSource::at(std::size_t row) const {
 }
 
 std::vector<Splat> makeSplats(const PointView& all, const NormalSource& normals, int threads,
-                              std::vector<std::size_t>& rows) {
+                              std::vector<std::uint32_t>& rows) {
   rows = orderedRows(all);
   std::vector<float> near;
   near.reserve(3 * rows.size());
-  for (const std::size_t row : rows) near.insert(near.end(), all[row], all[row] + 3);
+  for (const std::uint32_t row : rows) near.insert(near.end(), all[row], all[row] + 3);
   PointView points;
   points.data = near.data();
   points.stride = 3;

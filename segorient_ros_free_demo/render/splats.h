@@ -28,6 +28,6 @@ class NormalSource {
 /// A splat for each point with finite coordinates, without colours, in an order of their own.
 /// \param rows of the splats in `all`
 std::vector<Splat> makeSplats(const PointView& all, const NormalSource& normals, int threads,
-                              std::vector<std::size_t>& rows);
+                              std::vector<std::uint32_t>& rows);
 
 }  // namespace segorient::program

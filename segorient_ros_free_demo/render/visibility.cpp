@@ -6,11 +6,10 @@
 #include <cmath>
 
 #include "common/threads.h"
+#include "render/page/vectors.h"
 
 namespace segorient::program {
 namespace {
-
-using Vec = std::array<float, 3>;
 
 // Discs of twice the radius have 32 points in them instead of 8: beside a straight edge, where half
 // of a disc is missing, that leaves one place in ten million uncovered.
@@ -20,17 +19,12 @@ constexpr float kLeastReach = 1.5F;  // pixels: a point hides those in the pixel
 // the slope of the plane where that is less: a surface that turns away from the viewer at its
 // outline lies before what is behind the outline at no larger angle.
 constexpr float kLift = 0.1F;
-constexpr float kSameSheet = 0.82F;   // cosine of 35 degrees, as for edges
 constexpr float kNoise = 6.F;         // standard deviations
 constexpr float kTouch = 0.1F;        // of a radius: so far before a surface, a point is on it
 constexpr float kLeastSlope = 0.05F;  // a disc seen from its edge still ends somewhere
 constexpr float kFarBehind = 4.F;     // reaches
 constexpr std::uint32_t kNone = 0xffffffffU;
 constexpr int kTile = 8;  // pixels
-
-float dot(const Vec& a, const Vec& b) {
-  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
 
 float reachOf(const FlatSplat& s) {
   return std::max(kLeastReach, kReach * s.radius);

@@ -21,16 +21,18 @@ WIDTH, HEIGHT, CELL = 640, 400, 40
 
 # Of each cell of the picture: shares of pixels that are drawn and red, and the sum of colours.
 PIXELS = """(() => {
-  const page = window.segorient, gl = page.drawing.gl, w = gl.drawingBufferWidth, h = gl.drawingBufferHeight;
+  const page = window.segorient, gl = page.drawing.gl;
   page.draw(true);
-  const p = new Uint8Array(4 * w * h), across = Math.ceil(w / 40), out = [];
+  const w = gl.drawingBufferWidth, h = gl.drawingBufferHeight;
+  const cell = 40 * w / page.canvas.clientWidth, one = 1 / cell ** 2;
+  const p = new Uint8Array(4 * w * h), across = Math.ceil(w / cell), out = [];
   gl.readPixels(0, 0, w, h, gl.RGBA, gl.UNSIGNED_BYTE, p);
   let sum = 0;
   for (let y = 0; y < h; ++y) for (let x = 0; x < w; ++x) {
-    const i = 4 * ((h - 1 - y) * w + x), c = Math.floor(y / 40) * across + Math.floor(x / 40);
+    const i = 4 * ((h - 1 - y) * w + x), c = Math.floor(y / cell) * across + Math.floor(x / cell);
     out[c] = out[c] || [0, 0];
-    if (p[i] + p[i + 1] + p[i + 2] < 765) out[c][0] += 1 / 1600;
-    if (p[i] > 2 * p[i + 1] && p[i] > 2 * p[i + 2]) out[c][1] += 1 / 1600;
+    if (p[i] + p[i + 1] + p[i + 2] < 765) out[c][0] += one;
+    if (p[i] > 2 * p[i + 1] && p[i] > 2 * p[i + 2]) out[c][1] += one;
     sum = (sum * 31 + p[i] + 3 * p[i + 1] + 7 * p[i + 2]) % 1000003;
   }
   return {cells: out, sum};
@@ -69,10 +71,11 @@ def rows_of(png):
 
 
 def cells_of(png):
-    across = WIDTH // CELL
-    cells = [[0.0, 0.0] for _ in range(across * (HEIGHT // CELL))]
-    for y, row in enumerate(rows_of(png)):
-        for x in range(WIDTH):
+    rows = rows_of(png)
+    across = math.ceil(len(rows[0]) // 3 / CELL)
+    cells = [[0.0, 0.0] for _ in range(across * math.ceil(len(rows) / CELL))]
+    for y, row in enumerate(rows):
+        for x in range(len(row) // 3):
             r, g, b = row[3 * x:3 * x + 3]
             cell = cells[y // CELL * across + x // CELL]
             cell[0] += (r + g + b < 765) / CELL**2
@@ -146,7 +149,8 @@ class PageTest(unittest.TestCase):
         """The page against the program's picture of the same cloud: what is drawn, and what is red."""
         self.load(name)
         page = self.pixels()["cells"]
-        run("render", self.at / cloud, self.at / "a.png", "--single", "--width", WIDTH, "--height", HEIGHT, *options)
+        width, height = self.run_js("[segorient.canvas.clientWidth, segorient.canvas.clientHeight]")
+        run("render", self.at / cloud, self.at / "a.png", "--single", "--width", width, "--height", height, *options)
         picture = cells_of(self.at / "a.png")
         self.assertEqual(len(page), len(picture))
         for k, limit in ((0, 0.03), (1, 0.03)):
@@ -220,22 +224,22 @@ class PageTest(unittest.TestCase):
 
     def test_a_point_is_picked_and_told(self):
         self.load("fandisk.html")
-        self.browser.click(WIDTH / 2, HEIGHT / 2)
+        self.browser.click(WIDTH / 2, HEIGHT / 2 + 20)  # the middle of what is below the controls
         facts = dict(self.run_js("[...document.querySelectorAll('#picked dt')].map((t) => [t.textContent,"
                                  " t.nextSibling.textContent])"))
         self.assertEqual(list(facts), ["point", "normal", "segment", "decided", "side", "confidence"])
-        self.assertIn("by global", facts["decided"])
+        self.assertIn("oriented by global", facts["decided"])
         normal = [float(v) for v in facts["normal"].split(",")]
         self.assertAlmostEqual(math.hypot(*normal), 1, delta=0.01)
         self.assertGreaterEqual(float(facts["confidence"]), 0)
         self.browser.click(3, HEIGHT - 3)  # beside the cloud
-        self.assertEqual(self.run_js("document.getElementById('picked').textContent"), "")
+        self.assertTrue(self.run_js("document.getElementById('picked').hidden"))
 
     def test_scans_have_colours_and_sides_are_told(self):
         self.load("scans.html")
         self.assertEqual(self.run_js("[...document.getElementById('coloring').options].map((o) => o.value)"),
                          ["orientation", "normal", "scan", "height"])
-        self.browser.click(WIDTH / 2, HEIGHT / 2)
+        self.browser.click(WIDTH / 2, HEIGHT / 2 + 20)  # the middle of what is below the controls
         told = "Object.fromEntries([...document.querySelectorAll('#picked dt')].map((t) => [t.textContent, t.nextSibling.textContent]))"
         facts = self.run_js(told)
         self.assertIn(facts["scan"], ("0", "1"))
@@ -255,9 +259,23 @@ class PageTest(unittest.TestCase):
         self.assertEqual(self.run_js("segorient.cloud.points"), 60000)
         self.assertEqual(self.run_js("segorient.drawing.cloud === segorient.cloud"), True)
 
+    def test_every_array_arrives_as_it_was_written(self):
+        self.load("scans.html")
+        rows = self.run_js("Array.from({length: segorient.cloud.loaded}, (_, i) => { const c = segorient.cloud;"
+                           " return [c.place(i).map((v, a) => c.low[a] + c.extent * v), c.normal(i),"
+                           " c.scans[c.scanOf[i]].label]; })")
+        given = [[float(v) for v in line.split()] for line in (self.at / "scans.txt").read_text().splitlines()[1:]]
+        self.assertEqual(len(rows), len(given))
+        for place, normal, scan in rows:
+            nearest = min(given, key=lambda v: math.dist(v[:3], place))
+            given.remove(nearest)
+            self.assertLess(math.dist(nearest[:3], place), 3e-5)
+            self.assertLess(math.dist(nearest[3:6], normal), 0.02)
+            self.assertEqual(scan, nearest[6])
+
     def test_sensors_are_marked(self):
         self.load("turned.html")
-        self.assertEqual(self.run_js("segorient.drawing.marked"), 1)
+        self.assertEqual(self.run_js("segorient.drawing.marks.count"), 1)
         before = self.pixels()["sum"]
         self.run_js("document.getElementById('marks').click()")
         self.assertNotEqual(self.pixels()["sum"], before)
@@ -265,7 +283,7 @@ class PageTest(unittest.TestCase):
     def test_a_large_cloud_is_thinned_and_says_so(self):
         self.load("colored.html")
         self.assertEqual(self.run_js("segorient.cloud.points"), 2000)
-        self.assertIn("2,000 of 5,000 points", self.run_js("document.getElementById('legend').textContent"))
+        self.assertIn("2,000 of 5,000 points", self.run_js("document.getElementById('count').textContent"))
 
     def test_it_fits_a_phone(self):
         self.load("fandisk.html", 360, 640)

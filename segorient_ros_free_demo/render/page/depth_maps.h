@@ -2,23 +2,17 @@
 // Copyright (c) 2026, the segorient authors
 #pragma once
 
-#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
 #include <vector>
 
+#include "render/page/vectors.h"
+
 namespace segorient::program {
 
-using Vec = std::array<float, 3>;
-
 constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
-constexpr int kAxes = 32;            // looked along both ways: some 17 degrees apart
-constexpr float kSameSheet = 0.82F;  // cosine of 35 degrees, as for edges
-
-inline float dot(const Vec& a, const Vec& b) {
-  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
+constexpr int kAxes = 32;  // looked along both ways: some 17 degrees apart
 
 /// Points and normals, packed, and what belongs to them.
 struct Sample {

@@ -2,15 +2,14 @@
 // Copyright (c) 2026, the segorient authors
 #include "render/page/page.h"
 
-#include <segorient/search/median_hash_index.h>
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <map>
 
 #include "page_files.h"
-#include "render/page/disc_radii.h"
+#include "render/page/packing.h"
+#include "render/page/surroundings.h"
 #include "render/page/thinning.h"
 #include "support/colors.h"
 #include "support/json.h"
@@ -18,37 +17,16 @@
 namespace segorient::program {
 namespace {
 
-constexpr int kAround = 16;  // neighbours, as in pictures
 constexpr double kSteps = 65535.0;
+constexpr float kSizes = 32.F;               // of a disc of middle size
+constexpr float kDistances = 255.F;          // is the rim of a disc
+constexpr float kMostConfidence = 254.F;     // is 1; one more: not known
+constexpr std::uint32_t kColorBits = 0xfcU;  // of a channel: more are not seen
 
-using Bytes = std::vector<std::uint8_t>;
-
-void append(Bytes& bytes, std::uint32_t value, std::size_t size) {
-  for (std::size_t i = 0; i < size; ++i) bytes.push_back(static_cast<std::uint8_t>(value >> 8 * i));
-}
-
-// Four bytes as five letters, the first the most significant, from ( to ~ without < and \: nothing
-// that HTML or JavaScript would read as more than a letter, and shorter than base 64.
-std::string base85(Bytes bytes) {
-  while (bytes.size() % 4 != 0) bytes.push_back(0);
-  std::string text(bytes.size() / 4 * 5, ' ');
-  for (std::size_t i = 0, at = 0; i < bytes.size(); i += 4, at += 5) {
-    std::uint32_t word = 0;
-    for (std::size_t b = 0; b < 4; ++b) word |= std::uint32_t{bytes[i + b]} << 8 * b;
-    for (std::size_t c = 5; c-- > 0; word /= 85) {
-      auto letter = static_cast<char>('(' + word % 85);
-      if (letter >= '<') ++letter;
-      if (letter >= '\\') ++letter;
-      text[at + c] = letter;
-    }
-  }
-  return text;
-}
-
-// Two bytes: the direction on an octahedron that is folded flat; 0x8080 has no normal.
-std::uint32_t packedNormal(const float* n) {
+// The direction on an octahedron that is folded flat, -1 to 1 as 1 to 255; 0 twice has no normal.
+std::array<std::uint32_t, 2> packedNormal(const float* n) {
   const float sum = std::abs(n[0]) + std::abs(n[1]) + std::abs(n[2]);
-  if (!(sum > 0.F) || !std::isfinite(sum)) return 0x8080U;
+  if (!(sum > 0.F) || !std::isfinite(sum)) return {0, 0};
   float u = n[0] / sum;
   float v = n[1] / sum;
   if (n[2] < 0.F) {
@@ -57,15 +35,24 @@ std::uint32_t packedNormal(const float* n) {
     u = folded;
   }
   const auto byte = [](float t) {
-    return static_cast<std::uint32_t>(static_cast<std::uint8_t>(std::lround(127.F * t)));
+    return static_cast<std::uint32_t>(128 + std::lround(127.F * t));
   };
-  return byte(u) | byte(v) << 8;
+  return {byte(u), byte(v)};
 }
 
 // The cube that holds the points.
 struct Cube {
   std::array<double, 3> low{};
   double extent = 0.0;
+
+  std::array<std::uint32_t, 3> place(const float* p) const {
+    std::array<std::uint32_t, 3> out{};
+    for (std::size_t a = 0; a < 3; ++a) {
+      const double offset = static_cast<double>(p[a]) - low[a];
+      out[a] = static_cast<std::uint32_t>(std::lround(kSteps * offset / extent));
+    }
+    return out;
+  }
 };
 
 Cube cubeOf(const PointView& points, const std::vector<std::uint32_t>& rows) {
@@ -84,43 +71,7 @@ Cube cubeOf(const PointView& points, const std::vector<std::uint32_t>& rows) {
   return cube;
 }
 
-// What the points shown tell of each other: the size of discs, and sides.
-struct Surroundings {
-  double radius = 0.0;
-  std::vector<Side> sides;  // empty without normals
-
-  Surroundings(const PageCloud& cloud, const std::vector<std::uint32_t>& rows, int threads) {
-    std::vector<float> shown;
-    std::vector<float> normals;
-    shown.reserve(3 * rows.size());
-    for (const std::uint32_t row : rows) {
-      shown.insert(shown.end(), cloud.points[row], cloud.points[row] + 3);
-      if (cloud.normals.empty()) continue;
-      const float* n = &cloud.normals[3 * std::size_t{row}];
-      const float length = std::hypot(n[0], n[1], n[2]);
-      for (int a = 0; a < 3; ++a) normals.push_back(n[a] / length);
-    }
-    PointView view;
-    view.data = shown.data();
-    view.stride = 3;
-    view.size = rows.size();
-    search::MedianHashIndex index;
-    search::MedianHashIndex::Options options;
-    options.threads = threads;
-    index.build(view, nullptr, options);
-    Neighborhoods neighborhoods;
-    index.nearestKAll(kAround + 1, neighborhoods);
-    float middle = 0.F;
-    const std::vector<float> radii = discRadii(neighborhoods, middle);
-    radius = static_cast<double>(middle);
-    if (normals.empty()) return;
-    sides = findSides(view, normals, neighborhoods, radii, middle, threads);
-    for (std::size_t i = 0; i < sides.size() && !cloud.sides.empty(); ++i) {
-      const Side told = cloud.sides[rows[i]];
-      if (told != Side::Open) sides[i] = told;
-    }
-  }
-};
+using Numbers = std::vector<std::uint32_t>;
 
 // Numbers that points have, each once, and where it stands in the table of them.
 class Numbering {
@@ -131,10 +82,6 @@ class Numbering {
     }
     std::uint32_t next = 0;
     for (auto& [number, place] : places_) place = next++;
-  }
-  std::size_t bytes() const {
-    if (places_.empty()) return 0;
-    return places_.size() <= 0x100 ? 1 : places_.size() <= 0x10000 ? 2 : 4;
   }
   std::uint32_t at(std::uint32_t number) const { return places_.at(number); }
   const std::map<std::uint32_t, std::uint32_t>& all() const { return places_; }
@@ -147,7 +94,8 @@ class PageWriter {
  public:
   PageWriter(const PageCloud& cloud, const PageOptions& options)
       : cloud_(cloud),
-        rows_(blueNoiseOrder(cloud.points, options.points)),
+        rows_(blueNoiseOrder(cloud.points, std::min<std::size_t>(options.points, kPackedEnd))),
+        levels_(sortLevels(cloud.points, rows_)),
         cube_(cubeOf(cloud.points, rows_)),
         around_(cloud, rows_, options.threads),
         labels_(cloud.labels, rows_),
@@ -164,8 +112,9 @@ class PageWriter {
     json.endArray();
     json.field("extent", cube_.extent);
     json.field("radius", around_.radius / cube_.extent);
-    json.field("labelBytes", labels_.bytes());
-    json.field("scanBytes", scans_.bytes());
+    json.beginArray("levels");
+    for (const std::size_t end : levels_) json.item(end);
+    json.endArray();
     writeTable(json, "segments", labels_, true);
     writeTable(json, "scans", scans_, false);
     writePlaces(json, "sensors", cloud_.sensors);
@@ -179,57 +128,71 @@ class PageWriter {
 
   // One after the other, so that only one is in memory.
   void writeData(const PageSink& sink) const {
-    write(sink, "positions", 6, [&](std::uint32_t row, Bytes& out) {
-      for (std::size_t a = 0; a < 3; ++a) {
-        const double offset = static_cast<double>(cloud_.points[row][a]) - cube_.low[a];
-        append(out, static_cast<std::uint32_t>(std::lround(kSteps * offset / cube_.extent)), 2);
-      }
+    write(sink, "positions", 3, [&](std::size_t i, Numbers& out) {
+      const auto place = cube_.place(cloud_.points[rows_[i]]);
+      out.insert(out.end(), place.begin(), place.end());
     });
+    write(sink, "radii", 1, [&](std::size_t i, Numbers& out) {
+      out.push_back(static_cast<std::uint32_t>(std::lround(kSizes * around_.sizes[i])));
+    });
+    if (anyEnds()) {
+      write(sink, "cuts", 3 * Surroundings::kEnds, [&](std::size_t i, Numbers& out) {
+        for (const DiscEnd& end : around_.ends[i]) {
+          const auto n = packedNormal(end.direction.data());
+          out.insert(out.end(), n.begin(), n.end());
+          out.push_back(static_cast<std::uint32_t>(std::lround(kDistances * end.distance)));
+        }
+      });
+    }
     if (!cloud_.normals.empty()) {
-      write(sink, "normals", 2, [&](std::uint32_t row, Bytes& out) {
-        append(out, packedNormal(cloud_.normals.data() + 3 * std::size_t{row}), 2);
+      write(sink, "normals", 2, [&](std::size_t i, Numbers& out) {
+        const auto n = packedNormal(cloud_.normals.data() + 3 * std::size_t{rows_[i]});
+        out.insert(out.end(), n.begin(), n.end());
       });
     }
-    if (!cloud_.labels.empty()) {
-      writeNumbers(sink, "labels", cloud_.labels, labels_);
-    }
-    if (!cloud_.scans.empty()) writeNumbers(sink, "scans", cloud_.scans, scans_);
     if (!around_.sides.empty()) {
-      std::size_t next = 0;
-      write(sink, "sides", 1, [&](std::uint32_t, Bytes& out) {
-        append(out, static_cast<std::uint32_t>(around_.sides[next++]), 1);
+      write(sink, "sides", 1, [&](std::size_t i, Numbers& out) {
+        out.push_back(static_cast<std::uint32_t>(around_.sides[i]));
       });
     }
+    writeNumbers(sink, "labels", cloud_.labels, labels_);
+    writeNumbers(sink, "scans", cloud_.scans, scans_);
     if (!cloud_.confidences.empty()) {
-      write(sink, "confidences", 1, [&](std::uint32_t row, Bytes& out) {
-        const float value = cloud_.confidences[row];  // 255: not known
-        const float share = std::isfinite(value) ? std::clamp(value, 0.F, 1.F) * 254.F : 255.F;
-        append(out, static_cast<std::uint32_t>(std::lround(share)), 1);
+      write(sink, "confidences", 1, [&](std::size_t i, Numbers& out) {
+        const float confidence = cloud_.confidences[rows_[i]];
+        const float share = std::isfinite(confidence)
+                                ? kMostConfidence * std::clamp(confidence, 0.F, 1.F)
+                                : kMostConfidence + 1.F;
+        out.push_back(static_cast<std::uint32_t>(std::lround(share)));
       });
     }
     if (!cloud_.colors.empty()) {
-      write(sink, "colors", 2, [&](std::uint32_t row, Bytes& out) {
-        const std::uint32_t c = cloud_.colors[row];
-        append(out, (c >> 8 & 0xf800U) | (c >> 5 & 0x7e0U) | (c >> 3 & 0x1fU), 2);
+      write(sink, "colors", 3, [&](std::size_t i, Numbers& out) {
+        const std::uint32_t c = cloud_.colors[rows_[i]];
+        for (const unsigned shift : {16U, 8U, 0U}) out.push_back(c >> shift & kColorBits);
       });
     }
   }
 
  private:
+  bool anyEnds() const {
+    return std::any_of(around_.ends.begin(), around_.ends.end(),
+                       [](const auto& ends) { return ends[0].distance > 0.F; });
+  }
   template <typename Row>
-  void write(const PageSink& sink, const char* name, std::size_t size, const Row& row) const {
-    Bytes bytes;
-    bytes.reserve(size * rows_.size() + 3);
-    for (const std::uint32_t r : rows_) row(r, bytes);
+  void write(const PageSink& sink, const char* name, std::size_t columns, const Row& row) const {
+    Numbers numbers;
+    numbers.reserve(columns * rows_.size());
+    for (std::size_t i = 0; i < rows_.size(); ++i) row(i, numbers);
     sink(std::string("<script type=\"text/plain\" id=\"") + name + "\">");
-    sink(base85(std::move(bytes)));
+    sink(packNumbers(numbers, columns));
     sink("</script>\n");
   }
   void writeNumbers(const PageSink& sink, const char* name,
                     const std::vector<std::uint32_t>& numbers, const Numbering& table) const {
-    write(sink, name, table.bytes(), [&](std::uint32_t row, Bytes& out) {
-      append(out, table.at(numbers[row]), table.bytes());
-    });
+    if (numbers.empty()) return;
+    write(sink, name, 1,
+          [&](std::size_t i, Numbers& out) { out.push_back(table.at(numbers[rows_[i]])); });
   }
   void writeTable(JsonWriter& json, const char* name, const Numbering& table, bool facts) const {
     json.beginArray(name);
@@ -262,6 +225,7 @@ class PageWriter {
 
   const PageCloud& cloud_;
   std::vector<std::uint32_t> rows_;
+  std::vector<std::size_t> levels_;
   Cube cube_;
   Surroundings around_;
   Numbering labels_;
@@ -297,8 +261,12 @@ std::size_t writePage(const PageCloud& cloud, const PageOptions& options, const 
   sink(escaped(cloud.title));
   writeUpTo("@STYLE@");
   sink(kPageCss);
+  writeUpTo("@TITLE@");
+  sink(escaped(cloud.title));
   writeUpTo("@HEAD@");
   sink(writer.head());
+  writeUpTo("@SHADERS@");
+  sink(kPageShaders);
   writeUpTo("@DATA@");
   writer.writeData(sink);
   writeUpTo("@SCRIPT@");

@@ -39,7 +39,7 @@ struct PageCloud {
 };
 
 struct PageOptions {
-  std::size_t points = 1'000'000;  ///< at most so many, a blue-noise choice of them
+  std::size_t points = 1'000'000;  ///< at most so many, and 2^23; a blue-noise choice of them
   int threads = 0;                 ///< 0 = all cores; the page does not depend on it
 };
 

@@ -2,10 +2,13 @@
 // Copyright (c) 2026, the segorient authors
 // The page: controls, pointers and keys, and when to draw.
 
-const FRAME = 45;        // milliseconds that a moving picture may take
-const LEAST = 20000;     // points that it has at least
-const FIRST = 50000;     // and at first, before the others are unpacked
+const FRAME = 30;        // milliseconds that a moving picture may take
+const LEAST = 10000;     // points that it has at least
+const SHARP = 60000;     // with fewer, it is drawn with half as many rows and columns as well
+const SMOOTH = 100000;   // points with which a picture at rest is drawn twice as large, so that edges are smooth
+const FIRST = 1;         // the level that is drawn before all others are unpacked
 const REST = 160;        // milliseconds without a movement until all points are drawn
+const KEYS = 8;          // scans that the legend lists
 const SIDES = ["may be either", "outside", "outside", "wrong", "wrong"];
 const element = (id) => document.getElementById(id);
 const make = (tag, ...children) => {
@@ -13,46 +16,46 @@ const make = (tag, ...children) => {
   made.append(...children);
   return made;
 };
+const grouped = (number) => number.toLocaleString("en");
 
 class Page {
   constructor() {
     this.canvas = element("view");
     this.cloud = new Cloud(FIRST);
-    this.count = FIRST;
+    this.count = this.cloud.loaded;
     this.coloring = "";
     this.drawing = new Drawing(this.canvas, this.cloud);
     this.camera = new Camera(this.cloud.positions);
-    this.box = this.cloud.box();
+    element("count").textContent = this.counts();
     this.canvas.setAttribute("aria-label", `${this.cloud.title}: ${this.counts()}, to be turned`);
     this.controls();
     this.pointers();
     this.canvas.addEventListener("keydown", (event) => this.key(event));
-    new ResizeObserver(() => this.resize()).observe(this.canvas);
-    this.resize();
+    new ResizeObserver(() => this.redraw()).observe(this.canvas);
     this.color(this.cloud.colorings()[0][0]);
   }
 
   // All points, once the first have been drawn.
   load() {
-    this.cloud = new Cloud(this.cloud.points);
-    this.box = this.cloud.box();
+    this.cloud = new Cloud(Infinity);
     this.drawing.load(this.cloud);
     this.color(this.coloring);
   }
 
   counts() {
-    const {points, all} = this.cloud, text = points.toLocaleString("en");
-    return points === all ? `${text} points` : `${text} of ${all.toLocaleString("en")} points`;
+    const {points, all} = this.cloud;
+    return points === all ? `${grouped(points)} points` : `${grouped(points)} of ${grouped(all)} points`;
   }
 
   controls() {
-    const select = element("coloring");
+    const select = element("coloring"), {sensors, contradictions, normals} = this.cloud;
     for (const [name, text] of this.cloud.colorings()) select.add(new Option(text, name));
     select.onchange = () => this.color(select.value);
     for (const id of ["strokes", "marks", "axis", "cut"]) element(id).oninput = () => this.redraw();
     element("reset").onclick = () => this.reset();
-    if (!this.cloud.normals) element("strokes").parentElement.hidden = true;
-    if (!this.drawing.marked) element("marks").parentElement.hidden = true;
+    element("strokes").parentElement.hidden = !normals;
+    element("marks").parentElement.hidden = !sensors.length && !contradictions.length;
+    if (contradictions.length) element("marksText").textContent = sensors.length ? "Sensors, contradictions" : "Contradictions";
   }
 
   reset() {
@@ -64,46 +67,79 @@ class Page {
   color(name) {
     this.coloring = element("coloring").value = name;
     this.drawing.paint(name);
-    this.legend();
+    element("legend").replaceChildren(...this.legend());
     this.redraw();
   }
 
   legend() {
-    const hex = (rgb) => "#" + rgb.toString(16).padStart(6, "0");
+    const hex = (rgb) => "#" + rgb.toString(16).padStart(6, "0"), cloud = this.cloud;
     const box = (background, className = "") => {
       const color = make("i");
       Object.assign(color, {className}).style.background = background;
       return color;
     };
-    const key = (rgb, text) => make("span", box(hex(rgb)), text);
+    const key = (rgb, text, className) => make("span", box(hex(rgb), className), text);
     const stops = [0, 1 / 3, 2 / 3, 1].map((t) => hex(ramp(t)));
-    const bar = (low, high) => make("span", low, box(`linear-gradient(90deg, ${stops})`, "bar"), high);
-    const {low, extent} = this.cloud, heights = this.box.map((b) => (low[2] + extent * b[2]).toPrecision(4));
-    const count = key(0xffffff, this.counts());
-    element("legend").replaceChildren(...{
-      orientation: [key(FRONT, "true side"), key(BEHIND, "from behind"), key(WRONG, "wrong side"), key(NONE, "no normal")],
-      normal: [key(0xff8080, "+x"), key(0x80ff80, "+y"), key(0x8080ff, "+z")],
-      confidence: [bar("0", "1 confidence"), key(GREY, "not known")],
-      height: [bar(heights[0], heights[1] + " height (z)")],
-    }[this.coloring] || [], count);
+    const bar = (title, low, high) => [title, make("span", low, box(`linear-gradient(90deg, ${stops})`, "bar"), high)];
+    const named = ({label, color}) => key(color, label === undefined ? "none" : String(label));
+    const height = (corner) => (cloud.low[2] + cloud.extent * corner[2]).toPrecision(4);
+    const marks = [cloud.sensors.length && key(0x145adc, "sensor", "sensor"),
+      cloud.contradictions.length && key(0xffffff, "contradicts its sensor or surface", "ring")];
+    return [...({
+      orientation: () => this.sideKeys(key),
+      segment: () => [`${grouped(cloud.segments.length)} segments`],
+      normal: () => ["Normals", key(0xff8080, "+x"), key(0x80ff80, "+y"), key(0x8080ff, "+z")],
+      confidence: () => [...bar("Confidence", "0", "1"), key(GREY, "not known")],
+      scan: () => ["Scans", ...cloud.scans.slice(0, KEYS).map(named), cloud.scans.length > KEYS ? "…" : ""],
+      height: () => bar("Height (z)", ...cloud.box.map(height)),
+    }[this.coloring] || (() => []))(), ...marks].filter(Boolean);
+  }
+
+  // Only what there is, but always how many points are wrong.
+  sideKeys(key) {
+    const cloud = this.cloud, n = cloud.loaded, of = [0, 0, 0, 0, 0];
+    for (let i = 0; i < n; ++i) ++of[cloud.sides[i]];
+    const none = cloud.normals.reduce((sum, v, i) => sum + (i % 2 === 0 && v === 0 ? 1 : 0), 0);
+    const wrong = n < cloud.points ? "" : `: ${grouped(of[3] + of[4])}`;
+    return [key(FRONT, "true side"), of[0] + of[1] > none && key(BEHIND, "from behind"), key(WRONG, "wrong side" + wrong),
+      none && key(NONE, "no normal")];
   }
 
   options() {
     const axis = Number(element("axis").value), share = element("cut").value / 1000, cut = [0, 0, 0, 2];
-    const [low, high] = this.box;
+    const [low, high] = this.cloud.box;
     cut[axis] = 1;
     if (share < 1) cut[3] = low[axis] + share * (high[axis] - low[axis]);
     return {cut, strokes: element("strokes").checked, marks: element("marks").checked, count: this.count,
-      sided: this.coloring === "orientation"};
+      sided: this.coloring === "orientation" ? 1 : 0};
   }
 
   draw(fine) {
+    // Once it had to be coarse, it is so whenever it moves: a picture that changes all the time is worse.
+    this.coarse ||= this.count < Math.min(SHARP, this.cloud.loaded);
+    const own = Math.min(2, window.devicePixelRatio || 1), many = this.cloud.loaded > SMOOTH;
+    const ratio = fine ? many ? own : 2 : this.coarse ? own / 2 : own;
+    for (const [side, shown] of [["width", "clientWidth"], ["height", "clientHeight"]]) {
+      const pixels = Math.max(1, Math.round(this.canvas[shown] * ratio));
+      if (this.canvas[side] !== pixels) this.canvas[side] = pixels;
+    }
     this.drawing.draw(this.camera, {...this.options(), fine});
+    this.scaleBar();
+  }
+
+  scaleBar() {
+    const {clientWidth, clientHeight} = this.canvas, bar = element("scale");
+    const pixels = this.camera.scale(clientWidth, clientHeight) / this.cloud.extent;  // of a unit
+    const power = 10 ** Math.floor(Math.log10(120 / pixels));
+    const length = power * [5, 2, 1].find((f) => f * power * pixels <= 120);
+    bar.style.width = `${length * pixels}px`;
+    bar.textContent = String(Number(length.toPrecision(1)));
+    bar.setAttribute("aria-label", `Scale: ${bar.textContent} units`);
   }
 
   // Coarsely now, all of it once nothing moves.
   redraw() {
-    if (!this.wanted) this.wanted = requestAnimationFrame((now) => this.frame(now));
+    this.wanted ||= requestAnimationFrame((now) => this.frame(now));
     clearTimeout(this.rest);
     this.rest = setTimeout(() => requestAnimationFrame(() => this.draw(true)), REST);
   }
@@ -115,16 +151,9 @@ class Page {
     // As many points as a frame has time for, by what the last ones took while the picture moved.
     const took = now - (this.last || 0);
     this.last = now;
-    if (took > 4 * REST) return;
+    if (took > 2 * REST) return;
     const count = this.count * Math.max(0.5, Math.min(1.2, FRAME / took));
     this.count = Math.round(Math.max(LEAST, Math.min(this.cloud.points, count)));
-  }
-
-  resize() {
-    const ratio = Math.min(2, window.devicePixelRatio || 1), {clientWidth, clientHeight} = this.canvas;
-    this.canvas.width = Math.max(1, Math.round(clientWidth * ratio));
-    this.canvas.height = Math.max(1, Math.round(clientHeight * ratio));
-    this.redraw();
   }
 
   pointers() {
@@ -147,11 +176,8 @@ class Page {
       down.set(event.pointerId, [event.clientX, event.clientY]);
       const after = middle(), dx = after[0] - before[0], dy = after[1] - before[1];
       moved += Math.abs(dx) + Math.abs(dy);
-      if (down.size > 1 || event.buttons > 1 || event.shiftKey) {
-        this.camera.pan(dx, dy, this.camera.scale(canvas.clientWidth, canvas.clientHeight));
-      } else {
-        this.camera.turn(0.4 * dx, 0.4 * dy);
-      }
+      if (down.size > 1 || event.buttons > 1 || event.shiftKey) this.pan(dx, dy);
+      else this.camera.turn(0.4 * dx, 0.4 * dy);
       if (before[2] > 0 && after[2] > 0) this.camera.zoomBy(after[2] / before[2]);
       this.redraw();
     });
@@ -168,13 +194,16 @@ class Page {
     }, {passive: false});
   }
 
+  pan(dx, dy) {
+    this.camera.pan(dx, dy, this.camera.scale(this.canvas.clientWidth, this.canvas.clientHeight));
+  }
+
   key(event) {
     const step = {ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, -1], ArrowDown: [0, 1]}[event.key];
-    const {clientWidth, clientHeight} = this.canvas;
     if (event.ctrlKey || event.metaKey || event.altKey) return;
     const names = this.cloud.colorings().map((c) => c[0]);
     const action = step ? () => {
-      if (event.shiftKey) this.camera.pan(20 * step[0], 20 * step[1], this.camera.scale(clientWidth, clientHeight));
+      if (event.shiftKey) this.pan(20 * step[0], 20 * step[1]);
       else this.camera.turn(5 * step[0], 5 * step[1]);
     } : {
       "+": () => this.camera.zoomBy(1.2),
@@ -183,7 +212,7 @@ class Page {
       "0": () => this.reset(),
       "n": () => element("strokes").click(),
       "c": () => this.color(names[(names.indexOf(this.coloring) + 1) % names.length]),
-      "Enter": () => this.pick(clientWidth / 2, clientHeight / 2),
+      "Enter": () => this.pick(this.canvas.clientWidth / 2, this.canvas.clientHeight / 2),
     }[event.key];
     if (!action) return;
     action();
@@ -192,19 +221,24 @@ class Page {
   }
 
   pick(x, y) {  // in the page's pixels
-    const ratio = this.canvas.width / this.canvas.clientWidth;
-    const i = this.drawing.pick(this.camera, {...this.options(), sided: false}, Math.floor(x * ratio), Math.floor(y * ratio));
-    const facts = i < 0 ? [] : this.facts(i);
-    const list = make("dl", ...facts.flatMap(([name, value]) => [make("dt", name), make("dd", value)]));
-    element("picked").replaceChildren(...(facts.length ? [list] : []));
+    this.draw(true);
+    const ratio = this.canvas.width / this.canvas.clientWidth, options = {...this.options(), sided: 0};
+    const i = this.drawing.pick(this.camera, options, Math.floor(x * ratio), Math.floor(y * ratio));
+    this.drawing.picked = this.drawing.markers(i < 0 ? [] : [[this.cloud.place(i), PICKED]]);
+    const facts = i < 0 ? [] : this.facts(i).flatMap(([name, value]) => [make("dt", name), make("dd", value)]);
+    element("picked").replaceChildren(...(i < 0 ? [] : [make("dl", ...facts)]));
+    element("picked").hidden = i < 0;
     this.draw(true);
     return i;
   }
 
   facts(i) {
-    const cloud = this.cloud, normal = cloud.normal(i), confidence = cloud.confidence(i);
-    const facts = [["point", cloud.position(i).map((v) => v.toPrecision(7)).join(", ")],
-      ["normal", normal ? normal.map((v) => v.toFixed(3)).join(", ") : "none"]];
+    const cloud = this.cloud, confidence = cloud.confidence(i);
+    const vector = (values, text) => values.map(text).join(", ");
+    const place = cloud.place(i).map((v, a) => cloud.low[a] + cloud.extent * v);
+    const digits = Math.max(0, Math.min(12, 4 - Math.floor(Math.log10(cloud.extent))));
+    const facts = [["point", vector(place, (v) => Number(v.toFixed(digits)))],
+      ["normal", cloud.hasNormal(i) ? vector(cloud.normal(i), (v) => v.toFixed(3)) : "none"]];
     if (cloud.labels) {
       const segment = cloud.segments[cloud.labels[i]];
       facts.push(["segment", segment.label ?? "none"]);

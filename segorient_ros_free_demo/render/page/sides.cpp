@@ -160,6 +160,12 @@ class Counting {
     Sights sights;
     int alike = 0;  // neighbours whose normals point the same way, and the other
     int contrary = 0;
+    int beyond = 0;  // neighbours across an edge
+    // Enough of a surface to tell that a point is wrong. One with which no other agrees is not
+    // outvoted by fewer than lie beyond the edge beside it: it may be all that there is of a face.
+    bool isSurface() const {
+      return alike + contrary >= kSurface && (alike > 0 || contrary > beyond);
+    }
   };
   template <typename Get>
   Sum sumAround(std::size_t i, const Get& get) const {
@@ -173,10 +179,11 @@ class Counting {
       if (place == kNone) continue;
       const Vec m = normal(other);
       const float cosine = dot(n, m);
+      if (std::abs(cosine) < kSameSheet) ++sum.beyond;
       if (!(std::abs(cosine) >= kSameSheet)) continue;
       const Vec d = between(row, other);
       const float distance = std::sqrt(dot(d, d));
-      const float level = kLevel * distance;
+      const float level = kLevel * distance + sample_.noise[i];
       if (std::abs(dot(n, d)) > level || std::abs(dot(m, d)) > level) continue;
       const bool same = cosine > 0.F;
       // Of one surface, however it bends, the planes of both lie as far off the other point, in
@@ -198,11 +205,11 @@ class Counting {
     const int less = std::min(front, back);
     if (more >= std::max(kFewest, kLeastSights * points) && more >= kOuter * less) {
       const bool closed = more >= kClosed * less;
-      if (back > front && sum.alike + sum.contrary < kSurface) return Side::Open;
+      if (back > front && !sum.isSurface()) return Side::Open;
       if (back > front) return closed ? Side::Wrong : Side::Contrary;
       return closed ? Side::Right : Side::Outer;
     }
-    const bool contradicted = sum.contrary >= kSurface && sum.contrary > kContradict * sum.alike;
+    const bool contradicted = sum.isSurface() && sum.contrary > kContradict * sum.alike;
     return contradicted ? Side::Contrary : Side::Open;
   }
 

@@ -8,12 +8,15 @@
 #include <cstring>
 #include <limits>
 
+#include "render/page/space_order.h"
+
 namespace segorient::program {
 namespace {
 
 // The first radius is the extent over this; some hundred points then stand for a surface.
 constexpr double kFirstLevel = 16.0;
 constexpr int kLevels = 16;
+constexpr std::size_t kFirstPoints = 10'000;  // so many are drawn in any case, whatever their order
 
 using Cell = std::array<std::int32_t, 3>;
 
@@ -153,6 +156,19 @@ std::vector<std::uint32_t> blueNoiseOrder(const PointView& points, std::size_t m
   const std::size_t missing = std::min(most - order.size(), rest.size());
   order.insert(order.end(), rest.begin(), rest.begin() + static_cast<std::ptrdiff_t>(missing));
   return order;
+}
+
+std::vector<std::size_t> sortLevels(const PointView& points, std::vector<std::uint32_t>& order) {
+  std::vector<std::size_t> ends;
+  std::size_t begin = 0;
+  while (begin < order.size()) {
+    const std::size_t end = std::min(order.size(), begin + std::max(kFirstPoints, begin / 4));
+    const auto at = [&](std::size_t i) { return order.begin() + static_cast<std::ptrdiff_t>(i); };
+    sortInSpace(points, at(begin), at(end));
+    ends.push_back(end);
+    begin = end;
+  }
+  return ends;
 }
 
 }  // namespace segorient::program
