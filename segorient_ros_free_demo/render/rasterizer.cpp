@@ -22,6 +22,7 @@ constexpr float kLeastRadius = 0.8F;  // pixels
 constexpr float kCutSlack = 0.05F;    // of the radius; closes the gap along the edge
 constexpr float kCutRadius = 1.5F;    // pixels; ends of smaller discs are not seen
 constexpr int kBand = 32;             // rows that one thread draws at a time
+constexpr std::size_t kParts = 32;    // of the splats, which are sorted into bands side by side
 
 Vec normalized(const Vec& v) {
   const float length = std::sqrt(dot(v, v));
@@ -94,21 +95,27 @@ class SplatDrawing {
   // Band by band: each has one thread, and its splats come in their order.
   void draw(Canvas& canvas) const {
     const auto bands = static_cast<std::size_t>((canvas.height() + kBand - 1) / kBand);
-    std::vector<std::vector<std::uint32_t>> members(bands);
-    for (std::size_t i = 0; i < splats_.size(); ++i) {
-      if (sides_[i] == Seen::Hidden) continue;
-      const FlatSplat& f = flat_[i];
-      const auto rows = canvas.rows(f.center[1] - f.radius, f.center[1] + f.radius);
-      for (int b = rows.begin / kBand; b * kBand < rows.end; ++b) {
-        members[static_cast<std::size_t>(b)].push_back(static_cast<std::uint32_t>(i));
+    std::vector<std::vector<std::uint32_t>> members(kParts * bands);
+#pragma omp parallel for schedule(dynamic, 1) num_threads(threads_)
+    for (std::size_t part = 0; part < kParts; ++part) {
+      const std::size_t end = splats_.size() * (part + 1) / kParts;
+      for (std::size_t i = splats_.size() * part / kParts; i < end; ++i) {
+        if (sides_[i] == Seen::Hidden) continue;
+        const FlatSplat& f = flat_[i];
+        const auto rows = canvas.rows(f.center[1] - f.radius, f.center[1] + f.radius);
+        for (int b = rows.begin / kBand; b * kBand < rows.end; ++b) {
+          members[part * bands + static_cast<std::size_t>(b)].push_back(
+              static_cast<std::uint32_t>(i));
+        }
       }
     }
-    const auto count = static_cast<std::ptrdiff_t>(bands);
 #pragma omp parallel for schedule(dynamic, 1) num_threads(threads_)
-    for (std::ptrdiff_t b = 0; b < count; ++b) {
+    for (std::size_t b = 0; b < bands; ++b) {
       const int top = static_cast<int>(b) * kBand;
-      for (const std::uint32_t i : members[static_cast<std::size_t>(b)]) {
-        drawOne(i, top, top + kBand, canvas);
+      for (std::size_t part = 0; part < kParts; ++part) {
+        for (const std::uint32_t i : members[part * bands + b]) {
+          drawOne(i, top, top + kBand, canvas);
+        }
       }
     }
   }

@@ -63,13 +63,13 @@ void lookAround(const std::vector<Splat>& splats, const pcl::index_t* neighbors,
 
 // Rows of finite points in an order in which neighbours are near each other: all that follows looks
 // from points to those around, and a large cloud in random order does not fit into caches.
-std::vector<std::uint32_t> orderedRows(const PointView& points) {
+std::vector<std::uint32_t> orderedRows(const PointView& points, int threads) {
   std::vector<std::uint32_t> rows;
   rows.reserve(points.size);
   for (std::size_t i = 0; i < points.size; ++i) {
     if (isFinite(points[i])) rows.push_back(static_cast<std::uint32_t>(i));
   }
-  sortInSpace(points, rows.begin(), rows.end());
+  sortInSpace(points, rows.begin(), rows.end(), threads);
   return rows;
 }
 
@@ -86,7 +86,7 @@ void setSides(const PointView& points, const Neighborhoods& neighborhoods,
 }  // namespace
 
 std::array<float, 3> NormalSource::at(std::size_t row) const {
-  if (!any()) return {NAN, NAN, NAN};
+  if (!any_) return {NAN, NAN, NAN};
   std::array<double, 3> n{};
   if (normals_ == nullptr) {
     n = table_.triple(columns_, row);
@@ -100,10 +100,19 @@ std::array<float, 3> NormalSource::at(std::size_t row) const {
 
 std::vector<Splat> makeSplats(const PointView& all, const NormalSource& normals, int threads,
                               std::vector<std::uint32_t>& rows) {
-  rows = orderedRows(all);
-  std::vector<float> near;
-  near.reserve(3 * rows.size());
-  for (const std::uint32_t row : rows) near.insert(near.end(), all[row], all[row] + 3);
+  rows = orderedRows(all, threads);
+  const auto count = static_cast<std::ptrdiff_t>(rows.size());
+  const int workers = resolveThreads(threads);
+  std::vector<Splat> splats(rows.size());
+  std::vector<float> near(3 * rows.size());
+  // All that is read from the rows at once: the memory of a large cloud is far away.
+#pragma omp parallel for schedule(static, 4096) num_threads(workers)
+  for (std::ptrdiff_t k = 0; k < count; ++k) {
+    const auto i = static_cast<std::size_t>(k);
+    splats[i].position = vectorAt(all[rows[i]]);
+    splats[i].normal = normals.at(rows[i]);
+    std::copy_n(all[rows[i]], 3, &near[3 * i]);
+  }
   PointView points;
   points.data = near.data();
   points.stride = 3;
@@ -117,17 +126,7 @@ std::vector<Splat> makeSplats(const PointView& all, const NormalSource& normals,
 
   float middle = 0.F;
   const std::vector<float> radii = discRadii(neighborhoods, middle);
-  std::vector<Splat> splats(rows.size());
-  const auto count = static_cast<std::ptrdiff_t>(rows.size());
-  const int workers = resolveThreads(threads);
-#pragma omp parallel for num_threads(workers)
-  for (std::ptrdiff_t k = 0; k < count; ++k) {
-    const auto i = static_cast<std::size_t>(k);
-    Splat& s = splats[i];
-    s.position = {points[i][0], points[i][1], points[i][2]};
-    s.normal = normals.at(rows[i]);
-    s.radius = radii[i];
-  }
+  for (std::size_t i = 0; i < splats.size(); ++i) splats[i].radius = radii[i];
   if (!normals.any()) return splats;
   setSides(points, neighborhoods, radii, middle, threads, splats);
 #pragma omp parallel for schedule(static, 4096) num_threads(workers)

@@ -15,14 +15,18 @@ class NormalSource {
  public:
   /// \param normals 4 floats a point, or null: those of the table
   NormalSource(const CloudTable& table, const float* normals)
-      : columns_(table.normals()), table_(table), normals_(normals) {}
-  bool any() const { return normals_ != nullptr || table_.hasNormals(); }
+      : columns_(table.normals()),
+        table_(table),
+        normals_(normals),
+        any_(normals != nullptr || table.hasNormals()) {}
+  bool any() const { return any_; }
   std::array<float, 3> at(std::size_t row) const;
 
  private:
   std::array<const Field*, 3> columns_;
   const CloudTable& table_;
   const float* normals_;
+  bool any_;
 };
 
 /// A splat for each point with finite coordinates, without colours, in an order of their own.

@@ -14,8 +14,6 @@ constexpr float kLeastCosine = 0.5F;
 // A square as large as a disc, with eight points of a surface in it.
 constexpr float kPixel = 1.77F;
 constexpr double kMostPixels = 400'000.0;  // of a map: two of them stay in a core's cache
-// Points of the map of one direction: ten a pixel leave none of a surface empty.
-constexpr std::size_t kMostDrawn = 2'000'000;
 constexpr std::size_t kMeasured = 10'000;  // points that tell where the cloud is
 constexpr float kLift = 0.5F;   // radii: what lies less far before a point's plane is its own
 constexpr float kThin = 0.15F;  // radii: the same for what is parallel; walls are thicker
@@ -49,10 +47,8 @@ DepthMaps::DepthMaps(const Sample& sample, int axis) : sample_(sample), axis_(ax
   draw();
 }
 
-void DepthMaps::count(std::size_t modulus, std::vector<std::uint8_t>& front,
-                      std::vector<std::uint8_t>& back) const {
-  for (std::size_t i = 0; i < sample_.points.size(); ++i) {
-    if (sample_.turns[i] % modulus != static_cast<std::size_t>(axis_) % modulus) continue;
+void DepthMaps::count(std::vector<std::uint8_t>& front, std::vector<std::uint8_t>& back) const {
+  for (const std::uint32_t i : turnOf(sample_.asking)) {
     const float facing = dot(towards_, sample_.normals[i]);
     if (!(std::abs(facing) >= kLeastCosine)) continue;
     const std::size_t pixel = pixelOf(turned(sample_.points[i]));
@@ -131,9 +127,7 @@ void DepthMaps::draw() {
   constexpr float kFar = std::numeric_limits<float>::max();
   near_.assign(size, {-kFar, kNone});
   far_.assign(size, {kFar, kNone});
-  const std::size_t modulus = sample_.points.size() / kMostDrawn + 1;
-  for (std::size_t i = 0; i < sample_.points.size(); ++i) {
-    if (sample_.turns[i] % modulus != static_cast<std::size_t>(axis_) % modulus) continue;
+  for (const std::uint32_t i : turnOf(sample_.drawn)) {
     const Vec p = turned(sample_.points[i]);
     // Where points are far apart, each stands for more than its own pixel.
     const float reach = std::max(0.F, sample_.radii[i] - 0.5F * kPixel * sample_.middle);
@@ -143,8 +137,8 @@ void DepthMaps::draw() {
       for (int x = column(p[0] - reach); x <= right; ++x) {
         const std::size_t pixel = static_cast<std::size_t>(y) * static_cast<std::size_t>(columns_) +
                                   static_cast<std::size_t>(x);
-        if (p[2] > near_[pixel].depth) near_[pixel] = {p[2], static_cast<std::uint32_t>(i)};
-        if (p[2] < far_[pixel].depth) far_[pixel] = {p[2], static_cast<std::uint32_t>(i)};
+        if (p[2] > near_[pixel].depth) near_[pixel] = {p[2], i};
+        if (p[2] < far_[pixel].depth) far_[pixel] = {p[2], i};
       }
     }
   }

@@ -19,8 +19,11 @@ struct Sample {
   std::vector<Vec> points;  ///< from their middle
   std::vector<Vec> normals;
   std::vector<float> radii;
-  std::vector<float> noise;          ///< so far before its plane its own surface may lie for that
-  std::vector<std::uint32_t> turns;  ///< whose turn it is: a number that depends on the place alone
+  std::vector<float> noise;  ///< so far before its plane its own surface may lie for that
+  /// Of a large cloud not all points are drawn from a direction, nor ask there: they take turns,
+  /// whose depends on their places alone.
+  std::vector<std::vector<std::uint32_t>> drawn;
+  std::vector<std::vector<std::uint32_t>> asking;
   float middle = 0.F;
 };
 
@@ -30,9 +33,9 @@ class DepthMaps {
   /// Looks at the sample along one of kAxes directions. The sample must outlive this object.
   DepthMaps(const Sample& sample, int axis);
 
-  /// Adds 1 to `front` or `back` of each point whose turn it is, where it is seen from there.
-  void count(std::size_t modulus, std::vector<std::uint8_t>& front,
-             std::vector<std::uint8_t>& back) const;
+  /// Adds 1 to `front` or `back` of each point whose turn it is to ask, where it is seen from
+  /// there.
+  void count(std::vector<std::uint8_t>& front, std::vector<std::uint8_t>& back) const;
 
  private:
   struct Nearest {
@@ -40,6 +43,10 @@ class DepthMaps {
     std::uint32_t point;
   };
 
+  const std::vector<std::uint32_t>& turnOf(
+      const std::vector<std::vector<std::uint32_t>>& turns) const {
+    return turns[static_cast<std::size_t>(axis_) % turns.size()];
+  }
   bool isHidden(std::size_t i, std::uint32_t q, float sign) const;
   Vec turned(const Vec& p) const { return {dot(right_, p), dot(up_, p), dot(towards_, p)}; }
   void measure();

@@ -95,7 +95,7 @@ class PageWriter {
   PageWriter(const PageCloud& cloud, const PageOptions& options)
       : cloud_(cloud),
         rows_(blueNoiseOrder(cloud.points, std::min<std::size_t>(options.points, kPackedEnd))),
-        levels_(sortLevels(cloud.points, rows_)),
+        levels_(sortLevels(cloud.points, rows_, options.threads)),
         cube_(cubeOf(cloud.points, rows_)),
         around_(cloud, rows_, options.threads),
         labels_(cloud.labels, rows_),

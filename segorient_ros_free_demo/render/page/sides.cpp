@@ -16,11 +16,12 @@ namespace {
 
 // Points that ask from one direction. Larger clouds take turns: neighbours ask from the others.
 constexpr std::size_t kMostAsked = 500'000;
-constexpr float kNoise = 2.F;       // standard deviations
-constexpr float kUneven = 2.F;      // times the middle noise
-constexpr float kQuartile = 0.32F;  // of them, one in four is smaller than so many
-constexpr float kLevel = 0.5F;      // sine of 30 degrees: neighbours lie along the plane
-constexpr float kFlat = 0.1F;       // sine of 6 degrees: they lie in it
+constexpr std::size_t kMostDrawn = 2'000'000;  // ten a pixel leave none of a surface empty
+constexpr float kNoise = 2.F;                  // standard deviations
+constexpr float kUneven = 2.F;                 // times the middle noise
+constexpr float kQuartile = 0.32F;             // of them, one in four is smaller than so many
+constexpr float kLevel = 0.5F;                 // sine of 30 degrees: neighbours lie along the plane
+constexpr float kFlat = 0.1F;                  // sine of 6 degrees: they lie in it
 // Fewer neighbours are no surface that would tell that a point is wrong.
 constexpr int kSurface = 4;
 // Seen from one side so many times as often as from the other: that one is outside. More, and the
@@ -57,10 +58,9 @@ class Counting {
     fill(radii, middle);
     front_.assign(rows_.size(), 0);
     back_.assign(rows_.size(), 0);
-    const std::size_t modulus = rows_.size() / kMostAsked + 1;
 #pragma omp parallel for schedule(dynamic, 1) num_threads(std::min(threads_, kAxes))
     for (int axis = 0; axis < kAxes; ++axis) {
-      DepthMaps(sample_, axis).count(modulus, front_, back_);
+      DepthMaps(sample_, axis).count(front_, back_);
     }
   }
 
@@ -122,7 +122,7 @@ class Counting {
     sample_.normals.resize(rows_.size());
     sample_.radii.resize(rows_.size());
     sample_.noise.resize(rows_.size());
-    sample_.turns.resize(rows_.size());
+    std::vector<std::uint32_t> turns(rows_.size());
     const auto count = static_cast<std::ptrdiff_t>(rows_.size());
 #pragma omp parallel for schedule(static, 4096) num_threads(threads_)
     for (std::ptrdiff_t k = 0; k < count; ++k) {
@@ -135,9 +135,21 @@ class Counting {
       sample_.normals[i] = normal(row);
       sample_.radii[i] = radii[row];
       sample_.noise[i] = kNoise * noiseOf(row);
-      sample_.turns[i] = turnOf(points_[row]);
+      turns[i] = turnOf(points_[row]);
     }
     limitNoise();
+    sample_.drawn = shared(turns, kMostDrawn);
+    sample_.asking = shared(turns, kMostAsked);
+  }
+  // The points in as many shares as it takes for none to be larger than so.
+  static std::vector<std::vector<std::uint32_t>> shared(const std::vector<std::uint32_t>& turns,
+                                                        std::size_t most) {
+    std::vector<std::vector<std::uint32_t>> shares(turns.size() / most + 1);
+    for (auto& share : shares) share.reserve(turns.size() / shares.size());
+    for (std::size_t i = 0; i < turns.size(); ++i) {
+      shares[turns[i] % shares.size()].push_back(static_cast<std::uint32_t>(i));
+    }
+    return shares;
   }
   // Noise is much the same everywhere; where more shows, it is another surface close by.
   void limitNoise() {

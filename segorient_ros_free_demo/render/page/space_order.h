@@ -11,8 +11,9 @@ namespace segorient::program {
 
 /// Sorts rows of finite points along Morton's curve, so that those near each other in space mostly
 /// are in the order as well. Equal places stay as they were.
-/// \param first, last the part of `rows` to sort
+/// \param first, last rows to sort
+/// \param threads 0 = all cores; the result does not depend on it
 void sortInSpace(const PointView& points, std::vector<std::uint32_t>::iterator first,
-                 std::vector<std::uint32_t>::iterator last);
+                 std::vector<std::uint32_t>::iterator last, int threads);
 
 }  // namespace segorient::program

@@ -158,13 +158,14 @@ std::vector<std::uint32_t> blueNoiseOrder(const PointView& points, std::size_t m
   return order;
 }
 
-std::vector<std::size_t> sortLevels(const PointView& points, std::vector<std::uint32_t>& order) {
+std::vector<std::size_t> sortLevels(const PointView& points, std::vector<std::uint32_t>& order,
+                                    int threads) {
   std::vector<std::size_t> ends;
   std::size_t begin = 0;
   while (begin < order.size()) {
     const std::size_t end = std::min(order.size(), begin + std::max(kFirstPoints, begin / 4));
     const auto at = [&](std::size_t i) { return order.begin() + static_cast<std::ptrdiff_t>(i); };
-    sortInSpace(points, at(begin), at(end));
+    sortInSpace(points, at(begin), at(end), threads);
     ends.push_back(end);
     begin = end;
   }

@@ -18,6 +18,7 @@ std::vector<std::uint32_t> blueNoiseOrder(const PointView& points, std::size_t m
 /// Sorts an order in space, level by level: each level is a quarter of the points before it, so
 /// that up to the end of any level they are spread as evenly as before.
 /// \return ends of levels, the last the number of points
-std::vector<std::size_t> sortLevels(const PointView& points, std::vector<std::uint32_t>& order);
+std::vector<std::size_t> sortLevels(const PointView& points, std::vector<std::uint32_t>& order,
+                                    int threads);
 
 }  // namespace segorient::program
