@@ -79,6 +79,7 @@ class SplatDrawing {
       : splats_(scene.splats), threads_(resolveThreads(view.threads)) {
     const auto count = static_cast<std::ptrdiff_t>(splats_.size());
     flat_.resize(splats_.size());
+    sides_.resize(splats_.size());
 #pragma omp parallel for num_threads(threads_)
     for (std::ptrdiff_t i = 0; i < count; ++i) {
       const Splat& s = splats_[static_cast<std::size_t>(i)];
@@ -88,8 +89,9 @@ class SplatDrawing {
       if (isWrong(s.side)) f.normal = {-f.normal[0], -f.normal[1], -f.normal[2]};
       if (!std::isfinite(dot(f.normal, f.normal))) f.normal = {0.F, 0.F, 1.F};
       f.radius = std::max(kLeastRadius, s.radius * projection.scale());
+      sides_[static_cast<std::size_t>(i)] = firstLook(s, f);
     }
-    sides_ = judgeSides(splats_, flat_, view, projection.scale());
+    judgeSides(splats_, flat_, view, projection.scale(), sides_);
   }
 
   // Band by band: each has one thread, and its splats come in their order.

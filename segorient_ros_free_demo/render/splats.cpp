@@ -18,6 +18,9 @@ namespace {
 
 // Of so many, those across an edge end the disc: nearly all discs that reach an edge have one.
 constexpr int kAround = 16;
+// With so many, discs are about as large as pixels, and where they end is not seen: those around
+// that the disc covers will do.
+constexpr std::size_t kMany = 2'000'000;
 // The neighbours that turn least tell how the surface turns: along the edge of a face they are
 // those of the face, of a point on the edge itself, whose normal is between two faces', they are
 // not.
@@ -73,16 +76,6 @@ std::vector<std::uint32_t> orderedRows(const PointView& points, int threads) {
   return rows;
 }
 
-void setSides(const PointView& points, const Neighborhoods& neighborhoods,
-              const std::vector<float>& radii, float middle, int threads,
-              std::vector<Splat>& splats) {
-  std::vector<float> normals;
-  normals.reserve(3 * splats.size());
-  for (const Splat& s : splats) normals.insert(normals.end(), s.normal.begin(), s.normal.end());
-  const std::vector<Side> sides = findSides(points, normals, neighborhoods, radii, middle, threads);
-  for (std::size_t i = 0; i < splats.size(); ++i) splats[i].side = sides[i];
-}
-
 }  // namespace
 
 std::array<float, 3> NormalSource::at(std::size_t row) const {
@@ -105,6 +98,7 @@ std::vector<Splat> makeSplats(const PointView& all, const NormalSource& normals,
   const int workers = resolveThreads(threads);
   std::vector<Splat> splats(rows.size());
   std::vector<float> near(3 * rows.size());
+  std::vector<float> directions(normals.any() ? near.size() : 0);
   // All that is read from the rows at once: the memory of a large cloud is far away.
 #pragma omp parallel for schedule(static, 4096) num_threads(workers)
   for (std::ptrdiff_t k = 0; k < count; ++k) {
@@ -112,6 +106,7 @@ std::vector<Splat> makeSplats(const PointView& all, const NormalSource& normals,
     splats[i].position = vectorAt(all[rows[i]]);
     splats[i].normal = normals.at(rows[i]);
     std::copy_n(all[rows[i]], 3, &near[3 * i]);
+    if (!directions.empty()) std::copy_n(splats[i].normal.begin(), 3, &directions[3 * i]);
   }
   PointView points;
   points.data = near.data();
@@ -122,17 +117,20 @@ std::vector<Splat> makeSplats(const PointView& all, const NormalSource& normals,
   options.threads = threads;
   index.build(points, nullptr, options);
   Neighborhoods neighborhoods;
-  index.nearestKAll(kAround + 1, neighborhoods);
+  index.nearestKAll((rows.size() > kMany ? kCover : kAround) + 1, neighborhoods);
 
   float middle = 0.F;
-  const std::vector<float> radii = discRadii(neighborhoods, middle);
-  for (std::size_t i = 0; i < splats.size(); ++i) splats[i].radius = radii[i];
-  if (!normals.any()) return splats;
-  setSides(points, neighborhoods, radii, middle, threads, splats);
+  const std::vector<float> radii = discRadii(neighborhoods, middle, threads);
+  std::vector<Side> sides(rows.size(), Side::Open);
+  if (normals.any()) sides = findSides(points, directions, neighborhoods, radii, middle, threads);
 #pragma omp parallel for schedule(static, 4096) num_threads(workers)
   for (std::ptrdiff_t k = 0; k < count; ++k) {
     const auto i = static_cast<std::size_t>(k);
-    lookAround(splats, neighborhoods.indices(i), neighborhoods.count(i), splats[i]);
+    splats[i].radius = radii[i];
+    splats[i].side = sides[i];
+    if (normals.any()) {
+      lookAround(splats, neighborhoods.indices(i), neighborhoods.count(i), splats[i]);
+    }
   }
   return splats;
 }

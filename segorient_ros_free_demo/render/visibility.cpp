@@ -153,25 +153,13 @@ std::vector<std::uint32_t> hideFarBehind(const std::vector<Splat>& splats,
 
 }  // namespace
 
-std::vector<Seen> judgeSides(const std::vector<Splat>& splats, const std::vector<FlatSplat>& flat,
-                             const View& view, float scale) {
-  std::vector<Seen> sides(splats.size(), Seen::Front);
-  const auto all = static_cast<std::ptrdiff_t>(splats.size());
-#pragma omp parallel for schedule(static, 4096) num_threads(resolveThreads(view.threads))
-  for (std::ptrdiff_t k = 0; k < all; ++k) {
-    const auto i = static_cast<std::size_t>(k);
-    if (flat[i].normal[2] >= 0.F) continue;
-    if (!isClosed(splats[i].side)) {
-      sides[i] = Seen::Back;
-    } else if (-flat[i].normal[2] >= splats[i].turn) {
-      sides[i] = Seen::Hidden;
-    }
-  }
+void judgeSides(const std::vector<Splat>& splats, const std::vector<FlatSplat>& flat,
+                const View& view, float scale, std::vector<Seen>& sides) {
   std::vector<std::uint32_t> backs;
   for (std::size_t i = 0; i < sides.size(); ++i) {
     if (sides[i] == Seen::Back) backs.push_back(static_cast<std::uint32_t>(i));
   }
-  if (backs.empty()) return sides;
+  if (backs.empty()) return;
   const auto nearest = hideFarBehind(splats, flat, view, scale, sides, backs);
   const Tiles tiles(flat, nearest, backs, view);
   const auto count = static_cast<std::ptrdiff_t>(backs.size());
@@ -186,7 +174,6 @@ std::vector<Seen> judgeSides(const std::vector<Splat>& splats, const std::vector
       sides[i] = Seen::Front;
     }
   }
-  return sides;
 }
 
 }  // namespace segorient::program

@@ -26,7 +26,17 @@ enum class Seen : std::uint8_t {
 /// pixel: a point that faces away is drawn only if no surface that faces the viewer lies before the
 /// point itself. Where the surface turns as far within the disc as its normal faces away, the
 /// viewer may see either side, and it counts as the front.
-std::vector<Seen> judgeSides(const std::vector<Splat>& splats, const std::vector<FlatSplat>& flat,
-                             const View& view, float scale);
+///
+/// \param sides of each splat as firstLook() judges it
+void judgeSides(const std::vector<Splat>& splats, const std::vector<FlatSplat>& flat,
+                const View& view, float scale, std::vector<Seen>& sides);
+
+/// What its own normal tells. A surface that bends away from the viewer within a disc is still
+/// seen.
+inline Seen firstLook(const Splat& splat, const FlatSplat& flat) {
+  if (flat.normal[2] >= 0.F) return Seen::Front;
+  if (!isClosed(splat.side)) return Seen::Back;
+  return -flat.normal[2] >= splat.turn ? Seen::Hidden : Seen::Front;
+}
 
 }  // namespace segorient::program

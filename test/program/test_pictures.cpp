@@ -242,7 +242,7 @@ TEST(Sides, DoNotDependOnThreadsNorOnTheOrderOfRows) {
     Neighborhoods neighborhoods;
     index.nearestKAll(17, neighborhoods);
     float middle = 0.F;
-    const auto radii = program::discRadii(neighborhoods, middle);
+    const auto radii = program::discRadii(neighborhoods, middle, threads);
     auto found = program::findSides(view, normals, neighborhoods, radii, middle, threads);
     if (reversed) std::reverse(found.begin(), found.end());
     return found;

@@ -13,7 +13,7 @@ namespace {
 constexpr float kLeastCosine = 0.5F;
 // A square as large as a disc, with eight points of a surface in it.
 constexpr float kPixel = 1.77F;
-constexpr double kMostPixels = 400'000.0;  // of a map: two of them stay in a core's cache
+constexpr double kMostPixels = 250'000.0;  // of a map: two of them stay in a core's cache
 constexpr std::size_t kMeasured = 10'000;  // points that tell where the cloud is
 constexpr float kLift = 0.5F;   // radii: what lies less far before a point's plane is its own
 constexpr float kThin = 0.15F;  // radii: the same for what is parallel; walls are thicker

@@ -15,6 +15,7 @@ constexpr int kCover = 8;
 /// Radius of each row's disc: the distance of its eighth neighbour, but that of stray points not
 /// much above the middle one. 0 where there is no neighbour.
 /// \param middle gets the middle radius, 0 without any
-std::vector<float> discRadii(const Neighborhoods& neighborhoods, float& middle);
+/// \param threads 0 = all cores
+std::vector<float> discRadii(const Neighborhoods& neighborhoods, float& middle, int threads);
 
 }  // namespace segorient::program

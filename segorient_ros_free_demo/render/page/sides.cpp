@@ -16,12 +16,13 @@ namespace {
 
 // Points that ask from one direction. Larger clouds take turns: neighbours ask from the others.
 constexpr std::size_t kMostAsked = 500'000;
-constexpr std::size_t kMostDrawn = 2'000'000;  // ten a pixel leave none of a surface empty
-constexpr float kNoise = 2.F;                  // standard deviations
-constexpr float kUneven = 2.F;                 // times the middle noise
-constexpr float kQuartile = 0.32F;             // of them, one in four is smaller than so many
-constexpr float kLevel = 0.5F;                 // sine of 30 degrees: neighbours lie along the plane
-constexpr float kFlat = 0.1F;                  // sine of 6 degrees: they lie in it
+constexpr std::size_t kMostDrawn = 1'250'000;  // five a pixel, as near and as far sides
+
+constexpr float kNoise = 2.F;       // standard deviations
+constexpr float kUneven = 2.F;      // times the middle noise
+constexpr float kQuartile = 0.32F;  // of them, one in four is smaller than so many
+constexpr float kLevel = 0.5F;      // sine of 30 degrees: neighbours lie along the plane
+constexpr float kFlat = 0.1F;       // sine of 6 degrees: they lie in it
 // Fewer neighbours are no surface that would tell that a point is wrong.
 constexpr int kSurface = 4;
 // Seen from one side so many times as often as from the other: that one is outside. More, and the
@@ -214,8 +215,9 @@ class Counting {
     const Sum sum = sumAround(i, [&](std::size_t at) { return around[at]; });
     const auto [front, back, points] = sum.sights;
     const int more = std::max(front, back);
+    const auto shares = static_cast<int>(sample_.asking.size());
     const int less = std::min(front, back);
-    if (more >= std::max(kFewest, kLeastSights * points) && more >= kOuter * less) {
+    if (more >= kFewest && more * shares >= kLeastSights * points && more >= kOuter * less) {
       const bool closed = more >= kClosed * less;
       if (back > front && !sum.isSurface()) return Side::Open;
       if (back > front) return closed ? Side::Wrong : Side::Contrary;

@@ -67,7 +67,7 @@ Surroundings::Surroundings(const PageCloud& cloud, const std::vector<std::uint32
   Neighborhoods neighborhoods;
   index.nearestKAll(kAround + 1, neighborhoods);
   float middle = 0.F;
-  const std::vector<float> radii = discRadii(neighborhoods, middle);
+  const std::vector<float> radii = discRadii(neighborhoods, middle, threads);
   radius = static_cast<double>(middle);
   for (const float r : radii) sizes.push_back(middle > 0.F ? r / middle : 1.F);
   if (normals.empty()) return;
