@@ -205,9 +205,15 @@ void print(const CloudTable& table, const PipelineReport& report, const PclResul
   }
 }
 
-Scene sceneOf(const CloudTable& table, const LocalPoints& points, const Normals& normals,
-              int threads) {
-  return makeScene(table, points, normals.data(), Coloring::Normal, threads);
+Picture pictureOf(const CloudTable& table, const LocalPoints& points, const Normals& normals,
+                  const View& view, const char* title) {
+  const Scene scene = makeScene(table, points, normals.data(), Coloring::Normal, view.threads, {});
+  Picture picture = drawScene(scene, view);
+  drawTitle(title, picture);
+  Legend legend;
+  if (shownSides(scene).wrong) legend.keys.emplace_back(kWrongSide, "wrong side");
+  drawLegend(legend, picture);
+  return picture;
 }
 
 }  // namespace
@@ -291,8 +297,9 @@ int runCompare(const std::vector<std::string>& words) {
     printSensors(points.view(), *options.orientation.hints, pcl_result.normals, ours.normals);
   }
   if (picture) {
-    writePng(beside({drawScene(sceneOf(table, points, pcl_result.normals, common.threads), view),
-                     drawScene(sceneOf(table, points, ours.normals, common.threads), view)}),
+    view.threads = common.threads;
+    writePng(beside({pictureOf(table, points, pcl_result.normals, view, "PCL"),
+                     pictureOf(table, points, ours.normals, view, "segorient")}),
              *picture);
     picture->commit();
     if (!common.quiet) std::printf("written     %s\n", picture_path.c_str());

@@ -123,9 +123,7 @@ int runRender(const std::vector<std::string>& words) {
   const Scene scene = makeScene(table, points, nullptr, coloring, common.threads, facts);
   view.threads = common.threads;
   Picture picture = drawViews(scene, view, !single);
-  const bool backs = std::any_of(scene.splats.begin(), scene.splats.end(),
-                                 [](const Splat& s) { return !isClosed(s.side); });
-  drawLegend(Palette(table, coloring, facts).legend(backs), picture);
+  drawLegend(Palette(table, coloring, facts).legend(shownSides(scene)), picture);
   writePng(picture, out);
   out.commit();
   return 0;

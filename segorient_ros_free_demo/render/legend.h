@@ -18,11 +18,12 @@ struct Legend {
   std::string low;
   std::string high;
   std::vector<std::pair<std::uint32_t, std::string>> keys;  ///< packed rgb
-
-  bool empty() const { return low.empty() && keys.empty(); }
 };
 
 /// Draws it into the lower left corner, as far as there is room.
 void drawLegend(const Legend& legend, Picture& picture);
+
+/// Writes what is shown into the upper left corner.
+void drawTitle(const std::string& title, Picture& picture);
 
 }  // namespace segorient::program

@@ -14,8 +14,6 @@
 namespace segorient::program {
 namespace {
 
-constexpr std::uint32_t kFront = 0xe6e2d8U;     // the side that normals point to
-constexpr std::uint32_t kBack = 0xd03020U;      // the other
 constexpr std::uint32_t kBehind = 0x94836cU;    // the other, where it is known to be that
 constexpr std::uint32_t kNoNormal = 0x3060c0U;  // has no normal
 constexpr std::uint32_t kPlain = 0xb8c4d0U;     // nothing is known
@@ -25,17 +23,6 @@ constexpr std::uint32_t kHardBack = 0x401060U;  // and back
 constexpr double kGrazing = 0.05;
 constexpr std::size_t kMostSensors = 200;  // marks of a path; more would cover the picture
 constexpr std::size_t kMostKeys = 8;       // scans that a legend lists
-
-// One part of a colour and three of the front's: segments differ, and none looks like a back.
-std::uint32_t tinted(std::uint32_t color) {
-  std::uint32_t out = 0;
-  for (const unsigned shift : {0U, 8U, 16U}) {
-    const std::uint32_t own = color >> shift & 255U;
-    const std::uint32_t front = kFront >> shift & 255U;
-    out |= (own + 3 * front) / 4 << shift;
-  }
-  return out;
-}
 
 bool known(const Facts& facts) {
   return std::any_of(facts.segments.begin(), facts.segments.end(),
@@ -182,9 +169,9 @@ double Palette::confidence(std::size_t row) const {
 
 void Palette::setSides(std::size_t row, Side side, std::uint32_t& front,
                        std::uint32_t& back) const {
-  front = kFront;
+  front = kFrontColor;
   back = kBehind;
-  std::uint32_t wrong = kBack;
+  std::uint32_t wrong = kWrongSide;
   if (coloring_ == Coloring::Orientation) {
     const std::uint32_t label = labelOf(table_, label_, row);
     const bool hard = label < facts_.segments.size() && facts_.segments[label].hard;
@@ -222,10 +209,10 @@ Side Palette::set(std::size_t row, const std::array<float, 3>& normal, Side side
 void Palette::setTriangle(std::size_t row, const std::array<float, 3>& normal, std::uint32_t& front,
                           std::uint32_t& back) const {
   const Side side = set(row, normal, Side::Open, front, back);
-  if (side == Side::Open && back == kBehind) back = kBack;
+  if (side == Side::Open && back == kBehind) back = kWrongSide;
 }
 
-Legend Palette::legend(bool backs) const {
+Legend Palette::legend(const ShownSides& shown) const {
   Legend legend;
   if (coloring_ == Coloring::Height && low_ <= high_) {
     legend = {"height (z)", shortNumber(low_), shortNumber(high_), {}};
@@ -245,11 +232,14 @@ Legend Palette::legend(bool backs) const {
     }
     if (scans.size() > kMostKeys) legend.keys.emplace_back(0xffffffU, "...");
   } else if (coloring_ == Coloring::Normal || coloring_ == Coloring::Orientation) {
-    if (sensors_.any()) {
-      legend.keys = {{kFront, "faces its sensor"}, {kBehind, "from behind"}};
-    } else if (backs && table_.hasNormals()) {
-      legend.keys = {{kFront, "front"}, {kBehind, "from behind"}};
-    }
+    if (!table_.hasNormals() || !table_.triangles.empty()) return legend;
+    legend.keys.emplace_back(kFrontColor, sensors_.any() ? "faces its sensor" : "true side");
+    if (shown.backs) legend.keys.emplace_back(kBehind, "from behind");
+    if (shown.wrong) legend.keys.emplace_back(kWrongSide, "wrong side");
+    if (shown.none) legend.keys.emplace_back(kNoNormal, "no normal");
+    const bool hard = std::any_of(facts_.segments.begin(), facts_.segments.end(),
+                                  [](const SegmentFact& s) { return s.hard; });
+    if (hard && coloring_ == Coloring::Orientation) legend.keys.emplace_back(kHard, "not decided");
   }
   return legend;
 }

@@ -12,6 +12,8 @@
 
 namespace segorient::program {
 
+constexpr std::uint32_t kWrongSide = 0xd03020U;  ///< red: a normal that points the wrong way
+
 /// What the colours of a picture mean.
 enum class Coloring {
   Normal,   ///< light grey where the normal points to the viewer, red where it points away
@@ -57,6 +59,13 @@ class PointSensors {
 /// The different places that the points were seen from, a sample of them where they are many.
 std::vector<std::array<double, 3>> sensorsOfPoints(const CloudTable& table);
 
+/// What a picture shows that a legend is to tell.
+struct ShownSides {
+  bool backs = false;  ///< sides from behind may be seen
+  bool wrong = false;  ///< there are wrong ones
+  bool none = false;   ///< points without a normal
+};
+
 /// Colours of both sides of a point's splat: light where it is seen from its true side, brown from
 /// behind, and red from both sides where its normal points the wrong way.
 class Palette {
@@ -71,8 +80,7 @@ class Palette {
   void setTriangle(std::size_t row, const std::array<float, 3>& normal, std::uint32_t& front,
                    std::uint32_t& back) const;
   /// What the colours mean; empty where they mean nothing to be told.
-  /// \param backs whether backs may be seen
-  Legend legend(bool backs = false) const;
+  Legend legend(const ShownSides& shown = {}) const;
 
  private:
   void setSides(std::size_t row, Side side, std::uint32_t& front, std::uint32_t& back) const;

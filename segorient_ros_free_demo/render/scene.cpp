@@ -80,6 +80,17 @@ Scene makeScene(const CloudTable& table, const LocalPoints& points, const float*
   return scene;
 }
 
+ShownSides shownSides(const Scene& scene) {
+  ShownSides shown;
+  for (const Splat& s : scene.splats) {
+    const bool none = !std::isfinite(s.normal[0]);
+    shown.none = shown.none || none;
+    shown.wrong = shown.wrong || isWrong(s.side);
+    shown.backs = shown.backs || (!none && !isClosed(s.side));
+  }
+  return shown;
+}
+
 Picture drawViews(const Scene& scene, const View& view, bool both) {
   if (!both) return drawScene(scene, view);
   View left = view;

@@ -19,6 +19,9 @@ namespace segorient::program {
 Scene makeScene(const CloudTable& table, const LocalPoints& points, const float* normals,
                 Coloring coloring, int threads, const Facts& facts = {});
 
+/// What a legend of the scene is to tell.
+ShownSides shownSides(const Scene& scene);
+
 /// The scene from one direction and, if `both`, beside it from the opposite one.
 Picture drawViews(const Scene& scene, const View& view, bool both);
 

@@ -86,7 +86,8 @@ std::array<float, 3> NormalSource::at(std::size_t row) const {
   } else {
     std::copy_n(normals_ + 4 * row, 3, n.begin());
   }
-  const double length = std::hypot(n[0], n[1], n[2]);
+  double length = std::sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
+  if (!std::isnormal(length)) length = std::hypot(n[0], n[1], n[2]);  // slow, but of any numbers
   return {static_cast<float>(n[0] / length), static_cast<float>(n[1] / length),
           static_cast<float>(n[2] / length)};
 }

@@ -8,6 +8,16 @@
 
 namespace segorient::program {
 
+std::uint32_t tinted(std::uint32_t color) {
+  std::uint32_t out = 0;
+  for (const unsigned shift : {0U, 8U, 16U}) {
+    const std::uint32_t own = color >> shift & 255U;
+    const std::uint32_t front = kFrontColor >> shift & 255U;
+    out |= (own + 3 * front) / 4 << shift;
+  }
+  return out;
+}
+
 std::uint32_t segmentColor(std::uint32_t label) {
   if (label == kNoSegment) return 0x909090U;
   // Steps of the golden ratio spread any number of hues; brightness and saturation alternate so

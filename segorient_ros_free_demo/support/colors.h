@@ -9,6 +9,12 @@ namespace segorient::program {
 /// The label of a point in no segment, as it is written.
 constexpr std::uint32_t kNoSegment = 0xffffffffU;
 
+/// The side that normals point to.
+constexpr std::uint32_t kFrontColor = 0xe6e2d8U;
+
+/// One part of a colour and three of the front's: segments differ, and none looks like a back.
+std::uint32_t tinted(std::uint32_t color);
+
 /// Packed rgb of a segment: neighbouring labels get colours far apart; grey without a segment.
 std::uint32_t segmentColor(std::uint32_t label);
 

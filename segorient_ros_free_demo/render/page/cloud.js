@@ -4,7 +4,6 @@
 
 // As in the program: the true side, the wrong one, the true one from behind, and no normal.
 const FRONT = 0xe6e2d8, WRONG = 0xd03020, BEHIND = 0x94836c, NONE = 0x3060c0, GREY = 0x909090;
-const RAMP = [[48, 37, 107], [43, 122, 155], [88, 179, 104], [242, 227, 90]];
 
 class Bits {  // of a text, five letters for 32, the highest first
   constructor(text) {
@@ -61,20 +60,6 @@ function unpack(name, rows, width, Type) {
   return out;
 }
 
-function ramp(value) {  // 0 to 1, as rampColor of the program
-  if (!(value >= 0)) return GREY;
-  const t = Math.min(value, 1) * (RAMP.length - 1);
-  const stop = Math.min(Math.floor(t), RAMP.length - 2);
-  const mixed = RAMP[stop].map((from, c) => Math.round(from + (RAMP[stop + 1][c] - from) * (t - stop)));
-  return mixed[0] << 16 | mixed[1] << 8 | mixed[2];
-}
-
-function mix(color, other) {  // one part of the first and three of the other
-  let out = 0;
-  for (const shift of [16, 8, 0]) out |= ((color >> shift & 255) + 3 * (other >> shift & 255)) / 4 << shift;
-  return out;
-}
-
 class Cloud {
   constructor(level) {  // up to the end of a level: to there, points are spread evenly
     Object.assign(this, JSON.parse(document.getElementById("head").textContent));
@@ -88,8 +73,6 @@ class Cloud {
     this.scanOf = unpack("scans", n, 1, Uint32Array);
     this.confidences = unpack("confidences", n, 1, Uint8Array);
     this.colors = unpack("colors", n, 3, Uint8Array);
-    for (const segment of this.segments) segment.tint = mix(segment.color, FRONT);
-    this.ramps = Array.from({length: 256}, (_, i) => ramp(i / 255));
     this.box = this.bounds();
   }
 
@@ -124,7 +107,6 @@ class Cloud {
       if (p[i] < low[i % 3]) low[i % 3] = p[i];
       if (p[i] > high[i % 3]) high[i % 3] = p[i];
     }
-    this.height = [low[2], Math.max(1, high[2] - low[2])];
     return [low, high].map((corner) => corner.map((v) => v / 65535));
   }
 
@@ -137,14 +119,17 @@ class Cloud {
     return this.labels ? this.segments[this.labels[i]].confidence : undefined;
   }
 
+  rampAt(value) {  // 0 to 1
+    return value >= 0 ? this.ramp[Math.min(255, value * 255 | 0)] : GREY;
+  }
+
   colorOf(coloring, i) {  // packed rgb of the side that is seen, of the front in "orientation"
+    const low = this.box[0][2], high = this.box[1][2];
     if (coloring === "segment") return this.segments[this.labels[i]].color;
     if (coloring === "scan") return this.scans[this.scanOf[i]].color;
     if (coloring === "rgb") return this.colors[3 * i] << 16 | this.colors[3 * i + 1] << 8 | this.colors[3 * i + 2];
-    if (coloring === "height") {
-      return this.ramps[(this.positions[3 * i + 2] - this.height[0]) * 255 / this.height[1] | 0];
-    }
-    if (coloring === "confidence") return ramp(this.confidence(i));
+    if (coloring === "height") return this.rampAt((this.positions[3 * i + 2] / 65535 - low) / (high - low));
+    if (coloring === "confidence") return this.rampAt(this.confidence(i));
     if (!this.hasNormal(i)) return NONE;
     if (coloring === "orientation") return this.labels ? this.segments[this.labels[i]].tint : FRONT;
     return this.normal(i).reduce((rgb, v) => rgb << 8 | Math.round(127.5 * (1 + v)), 0);

@@ -115,6 +115,9 @@ class PageWriter {
     json.beginArray("levels");
     for (const std::size_t end : levels_) json.item(end);
     json.endArray();
+    json.beginArray("ramp");
+    for (int i = 0; i < 256; ++i) json.item(rampColor(i / 255.0));
+    json.endArray();
     writeTable(json, "segments", labels_, true);
     writeTable(json, "scans", scans_, false);
     writePlaces(json, "sensors", cloud_.sensors);
@@ -200,6 +203,7 @@ class PageWriter {
       json.beginItem();
       if (number != kNoSegment) json.field("label", number);
       json.field("color", segmentColor(number));
+      if (facts) json.field("tint", tinted(segmentColor(number)));
       if (facts && number < cloud_.segments.size()) {
         const PageSegment& s = cloud_.segments[number];
         if (s.confidence >= 0.F) json.field("confidence", s.confidence);

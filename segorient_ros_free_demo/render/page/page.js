@@ -79,7 +79,7 @@ class Page {
       return color;
     };
     const key = (rgb, text, className) => make("span", box(hex(rgb), className), text);
-    const stops = [0, 1 / 3, 2 / 3, 1].map((t) => hex(ramp(t)));
+    const stops = cloud.ramp.filter((_, i) => i % 51 === 0).map(hex);
     const bar = (title, low, high) => [title, make("span", low, box(`linear-gradient(90deg, ${stops})`, "bar"), high)];
     const named = ({label, color}) => key(color, label === undefined ? "none" : String(label));
     const height = (corner) => (cloud.low[2] + cloud.extent * corner[2]).toPrecision(4);

@@ -110,12 +110,13 @@ class Counting {
   }
   void fill(const std::vector<float>& radii, float middle) {
     place_.assign(points_.size, kNone);
+    rows_.reserve(points_.size);
     std::array<double, 3> sum{};
     for (std::size_t i = 0; i < points_.size; ++i) {
       // Far apart as floats can be: their squares overflow, and nothing lies before anything.
       if (!isFinite(points_[i]) || !(radii[i] > 0.F)) continue;
       place_[i] = static_cast<std::uint32_t>(rows_.size());
-      rows_.push_back(i);
+      rows_.push_back(static_cast<std::uint32_t>(i));
       for (std::size_t a = 0; a < 3; ++a) sum[a] += static_cast<double>(points_[i][a]);
     }
     sample_.middle = middle;
@@ -125,13 +126,13 @@ class Counting {
     sample_.noise.resize(rows_.size());
     std::vector<std::uint32_t> turns(rows_.size());
     const auto count = static_cast<std::ptrdiff_t>(rows_.size());
+    for (double& s : sum) s /= static_cast<double>(count);
 #pragma omp parallel for schedule(static, 4096) num_threads(threads_)
     for (std::ptrdiff_t k = 0; k < count; ++k) {
       const auto i = static_cast<std::size_t>(k);
       const std::size_t row = rows_[i];
       for (std::size_t a = 0; a < 3; ++a) {
-        sample_.points[i][a] = static_cast<float>(static_cast<double>(points_[row][a]) -
-                                                  sum[a] / static_cast<double>(count));
+        sample_.points[i][a] = static_cast<float>(static_cast<double>(points_[row][a]) - sum[a]);
       }
       sample_.normals[i] = normal(row);
       sample_.radii[i] = radii[row];
@@ -146,9 +147,10 @@ class Counting {
   static std::vector<std::vector<std::uint32_t>> shared(const std::vector<std::uint32_t>& turns,
                                                         std::size_t most) {
     std::vector<std::vector<std::uint32_t>> shares(turns.size() / most + 1);
-    for (auto& share : shares) share.reserve(turns.size() / shares.size());
+    const auto count = static_cast<std::uint32_t>(shares.size());
+    for (auto& share : shares) share.reserve(turns.size() / count);
     for (std::size_t i = 0; i < turns.size(); ++i) {
-      shares[turns[i] % shares.size()].push_back(static_cast<std::uint32_t>(i));
+      shares[turns[i] % count].push_back(static_cast<std::uint32_t>(i));
     }
     return shares;
   }
@@ -231,7 +233,7 @@ class Counting {
   const std::vector<float>& normals_;
   const Neighborhoods& neighborhoods_;
   int threads_;
-  std::vector<std::size_t> rows_;     // of the sample
+  std::vector<std::uint32_t> rows_;   // of the sample
   std::vector<std::uint32_t> place_;  // in the sample, by row
   Sample sample_;
   std::vector<std::uint8_t> front_;

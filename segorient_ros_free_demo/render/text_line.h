@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the segorient authors
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace segorient::program {
+
+/// A line of text: how much ink each pixel has, 0 to 255, row by row from the top. Lines of the
+/// same size are equally high, whatever their letters.
+struct TextLine {
+  int width = 0;
+  int height = 0;
+  std::vector<std::uint8_t> ink;
+};
+
+/// Sets text in VTK's own sans-serif font: no font need be installed, and the pixels are the same
+/// everywhere.
+/// \param size of the font, in pixels
+TextLine textLine(const std::string& text, int size);
+
+}  // namespace segorient::program
