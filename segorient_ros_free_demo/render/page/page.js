@@ -254,9 +254,8 @@ class Page {
 try {
   window.segorient = new Page();
 } catch (error) {
-  const message = element("message");
-  message.hidden = false;
-  message.textContent = error.message === "no WebGL 2"
+  const textContent = error.message === "no WebGL 2"
     ? "This page needs WebGL 2, which this browser does not have or has switched off."
     : `The cloud cannot be shown: ${error.message}`;
+  Object.assign(element("message"), {hidden: false, textContent});
 }
