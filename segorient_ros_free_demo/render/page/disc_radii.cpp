@@ -2,11 +2,11 @@
 // Copyright (c) 2026, the segorient authors
 #include "render/page/disc_radii.h"
 
-#include <segorient/common/threads.h>
-
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+
+#include "common/threads.h"
 
 namespace segorient::program {
 namespace {

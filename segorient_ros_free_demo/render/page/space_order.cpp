@@ -2,11 +2,11 @@
 // Copyright (c) 2026, the segorient authors
 #include "render/page/space_order.h"
 
-#include <segorient/common/threads.h>
-
 #include <algorithm>
 #include <array>
 #include <limits>
+
+#include "common/threads.h"
 
 namespace segorient::program {
 namespace {

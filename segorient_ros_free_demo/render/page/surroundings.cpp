@@ -2,11 +2,11 @@
 // Copyright (c) 2026, the segorient authors
 #include "render/page/surroundings.h"
 
-#include <segorient/common/threads.h>
 #include <segorient/search/median_hash_index.h>
 
 #include <cmath>
 
+#include "common/threads.h"
 #include "render/page/disc_radii.h"
 #include "render/page/vectors.h"
 
