@@ -117,6 +117,8 @@ bool needsScanScales(const PointView& points, const Neighborhoods& nb, int small
   // Edges make up to a sixth of the points of even clouds ask, rings and near surfaces a quarter to
   // three quarters of those of scans.
   constexpr double kManyAsk = 0.15;
+  // Noise that leaves the largest of them no say asks for more everywhere.
+  if (smallest >= kSheetNeighbors) return true;
   const std::size_t step = std::max<std::size_t>(1, points.size / kSamples);
   const std::size_t n = (points.size + step - 1) / step;
   std::size_t asking = 0;

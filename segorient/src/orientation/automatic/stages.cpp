@@ -9,6 +9,7 @@
 #include "features/sheet_denoise.h"
 #include "features/sheet_normals.h"
 #include "orientation/automatic/final_normals.h"
+#include "orientation/automatic/sensor_normals.h"
 #include "segmentation/region_growing.h"
 #include "segmentation/segmentation_rows.h"
 #include "segmentation/sheet_segmentation.h"
@@ -102,6 +103,9 @@ AutoStages runAutoStages(PreparedCloud& cloud, const PipelineOptions& options,
     out.final_traits =
         fitFinalNormals(cloud, out.segmentation, options.k > 0, options.threads,
                         record != nullptr ? &record->final_traits : nullptr, oriented);
+  }
+  if (!oriented.orientation.toward.empty()) {
+    leanToSensors(points, table, oriented.orientation.toward, options.threads, oriented.normals);
   }
   out.normals = std::move(oriented.normals);
   out.confidences = std::move(oriented.confidences);

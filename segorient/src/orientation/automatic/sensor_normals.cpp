@@ -1,0 +1,238 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the segorient authors
+#include "orientation/automatic/sensor_normals.h"
+
+#include <segorient/search/median_hash_index.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+
+#include "common/dot.h"
+#include "common/threads.h"
+#include "features/sheet_fit.h"
+
+namespace segorient::detail {
+namespace {
+
+// Neighbours whose normals are compared, and those of two planes; the largest one only where the
+// other contradicts the normal by more than 6 degrees.
+constexpr int kNearest = 8;
+constexpr int kNear = 16;
+constexpr int kWide = 32;
+constexpr int kWidest = 60;
+constexpr float kAgree = 0.995F;
+// Of the variances across a plane and along its shorter side: a third of the plane's weight. 30
+// points on two faces of an edge have .1 and more.
+constexpr float kFlat = 0.05F;
+// Radians: what is left where all agree.
+constexpr float kLeast = 0.02F;
+// A neighbour's plane counts while the point is within a tenth of a spacing of it, and noise.
+constexpr float kOffset = 0.1F;
+// ns a point, see resolveThreads().
+constexpr double kFitTime = 1500.0;
+constexpr double kMeanTime = 300.0;
+
+struct Vector {
+  float x = 0.F, y = 0.F, z = 0.F;
+
+  void add(const float* v, float weight) {
+    x += weight * v[0];
+    y += weight * v[1];
+    z += weight * v[2];
+  }
+  float length() const { return std::sqrt(x * x + y * y + z * z); }
+};
+
+// The direction of `n` that is likeliest if it is known to variance `square`. With c the cosine to
+// the sensor, c (c - c0) = square.
+void lean(const float* toward, float square, Vector& n) {
+  const float c0 = n.x * toward[0] + n.y * toward[1] + n.z * toward[2];
+  const float c = 0.5F * (c0 + std::sqrt(c0 * c0 + 4.F * square));
+  n.add(toward, c - c0);
+}
+
+bool scaleToUnit(Vector& n) {
+  const float length = n.length();
+  if (!(length > 0.F)) return false;
+  n = {n.x / length, n.y / length, n.z / length};
+  return true;
+}
+
+// Of unit vectors with a mean of that length: twice the mean of 1 - cosine.
+float scatterOf(float mean_length) {
+  return 2.F * std::max(0.F, 1.F - mean_length);
+}
+
+// Sums up the planes of one point's neighbours, each of them a few more.
+class GrowingPlane {
+ public:
+  GrowingPlane(const PointView& points, std::size_t i, float scale)
+      : points_(points), p_(points[i]), scale_(scale) {}
+
+  void add(pcl::index_t neighbor) {
+    const float* q = points_[static_cast<std::size_t>(neighbor)];
+    moments_.add((q[0] - p_[0]) * scale_, (q[1] - p_[1]) * scale_, (q[2] - p_[2]) * scale_);
+  }
+  Plane plane() const { return fitPlane(moments_); }
+
+ private:
+  const PointView& points_;
+  const float* p_;
+  float scale_;
+  Moments moments_;
+};
+
+class Leaner {
+ public:
+  Leaner(const PointView& points, const Neighborhoods& nb, const std::vector<float>& toward,
+         int threads, std::vector<float>& normals)
+      : points_(points), nb_(nb), toward_(toward), threads_(threads), normals_(normals) {}
+
+  void run() {
+    search::MedianHashIndex::Options options;
+    options.threads = threads_;
+    index_.build(points_, nullptr, options);
+    leaned_ = normals_;
+    tolerance_.assign(points_.size, 0.F);
+    int t = resolveThreads(threads_, points_.size, kFitTime);
+#pragma omp parallel for num_threads(t) schedule(dynamic, 512)
+    for (std::size_t i = 0; i < points_.size; ++i) {
+      if (isKnown(i)) leanOne(i);
+    }
+    t = resolveThreads(threads_, points_.size, kMeanTime);
+#pragma omp parallel for num_threads(t) schedule(dynamic, 1024)
+    for (std::size_t i = 0; i < points_.size; ++i) {
+      if (isKnown(i)) followAround(i);
+    }
+  }
+
+ private:
+  const float* toward(std::size_t i) const {
+    return &toward_[3 * i];
+  }
+  bool isKnown(std::size_t i) const {
+    return dot(toward(i), toward(i)) > 0.F && std::isfinite(normals_[4 * i]);
+  }
+
+  // With the planes around, in the first round.
+  void leanOne(std::size_t i) {
+    const pcl::index_t* row = nb_.indices(i);
+    const int count = nb_.count(i);
+    const float h = meanDistance(points_, nb_, i, 6);
+    if (!(h > 0.F)) return;
+    const float* n = &normals_[4 * i];
+    GrowingPlane sum(points_, i, 1.F / h);
+    Vector around;
+    float used = 0.F;
+    float variance = std::numeric_limits<float>::infinity();
+    for (int j = 0; j < std::min(count, kWide + 1); ++j) {
+      sum.add(row[j]);
+      if (j > kNear) continue;
+      const float* other = &normals_[4 * static_cast<std::size_t>(row[j])];
+      if (std::isfinite(other[0])) {
+        around.add(other, 1.F);
+        used += 1.F;
+      }
+      if (j == kNearest || j == kNear) variance = std::min(variance, varianceOf(sum.plane()));
+    }
+    Vector mean{n[0], n[1], n[2]};
+    const Plane wide = sum.plane();
+    variance = std::min(variance, varianceOf(wide));
+    float agreement = 1.F;
+    if (wide.valid) {
+      agreement = std::min(1.F, std::fabs(dot(wide.normal.data(), n)));
+      addPlane(wide, i, mean);
+      if (agreement < kAgree) {
+        const Plane widest = planeAround(i, 1.F / h);
+        variance = std::min(variance, varianceOf(widest));
+        addPlane(widest, i, mean);
+      }
+    }
+    tolerance_[i] = h * h * (kOffset * kOffset + (std::isfinite(variance) ? variance : 0.F));
+    if (!scaleToUnit(mean)) return;
+    const float square = kLeast * kLeast + scatterOf(agreement) +
+                         0.25F * scatterOf(used > 0.F ? around.length() / used : 1.F);
+    lean(toward(i), square, mean);
+    if (scaleToUnit(mean)) store(mean, &leaned_[4 * i]);
+  }
+
+  static float varianceOf(const Plane& plane) {
+    return plane.valid ? std::max(0.F, plane.lambda[0]) : std::numeric_limits<float>::infinity();
+  }
+
+  Plane planeAround(std::size_t i, float scale) const {
+    std::array<pcl::index_t, kWidest + 1> row;
+    std::array<float, kWidest + 1> squares;
+    const int found = index_.nearestK(points_[i], kWidest + 1, row.data(), squares.data(), 0.F);
+    GrowingPlane sum(points_, i, scale);
+    for (int j = 0; j < found; ++j) sum.add(row[static_cast<std::size_t>(j)]);
+    return sum.plane();
+  }
+
+  // Flat planes count as much as the normal itself.
+  void addPlane(const Plane& plane, std::size_t i, Vector& mean) const {
+    if (!plane.valid || !(plane.lambda[1] > 0.F)) return;
+    const float weight = 1.F / (1.F + plane.lambda[0] / (kFlat * plane.lambda[1]));
+    const float* p = plane.normal.data();
+    mean.add(p, dot(p, toward(i)) < 0.F ? -weight : weight);
+  }
+
+  // What the neighbours say that the point lies in the plane of, in the second round: twice.
+  void followAround(std::size_t i) {
+    const pcl::index_t* row = nb_.indices(i);
+    const int count = std::min(nb_.count(i), kNear + 1);
+    const float* p = points_[i];
+    const float scale = tolerance_[i] > 0.F ? 0.5F / tolerance_[i] : 0.F;
+    Vector around;
+    float total = 0.F;
+    for (int j = 1; j < count; ++j) {
+      const auto q = static_cast<std::size_t>(row[j]);
+      const float* n = &leaned_[4 * q];
+      if (!std::isfinite(n[0])) continue;
+      const float* at = points_[q];
+      const float off = (at[0] - p[0]) * n[0] + (at[1] - p[1]) * n[1] + (at[2] - p[2]) * n[2];
+      const float weight = std::exp(-scale * off * off);
+      around.add(n, weight);
+      total += weight;
+    }
+    Vector mean;
+    mean.add(&leaned_[4 * i], 1.F);
+    float square = kLeast * kLeast;
+    if (total > 1e-9F) {
+      const float length = around.length() / total;
+      square += 0.5F * scatterOf(length);
+      const float* sum = &around.x;
+      mean.add(sum, 2.F / total);
+      if (!scaleToUnit(mean)) return;
+    }
+    lean(toward(i), square, mean);
+    if (scaleToUnit(mean)) store(mean, &normals_[4 * i]);
+  }
+
+  static void store(const Vector& n, float* out) {
+    out[0] = n.x;
+    out[1] = n.y;
+    out[2] = n.z;
+  }
+
+  const PointView& points_;
+  const Neighborhoods& nb_;
+  const std::vector<float>& toward_;
+  int threads_;
+  std::vector<float>& normals_;
+  search::MedianHashIndex index_;
+  std::vector<float> leaned_;
+  std::vector<float> tolerance_;  // squares of distances
+};
+
+}  // namespace
+
+void leanToSensors(const PointView& points, const Neighborhoods& neighborhoods,
+                   const std::vector<float>& toward, int threads, std::vector<float>& normals) {
+  Leaner(points, neighborhoods, toward, threads, normals).run();
+}
+
+}  // namespace segorient::detail
