@@ -69,6 +69,31 @@ TEST(Sensors, AMovingScannerIsFoundAlongItsWay) {
   EXPECT_EQ(points, scan.view().size);
 }
 
+// Scanners that tilt turn about a level axis, along x here.
+TEST(Sensors, TiltingScannersAreFoundOfWhichTheAxisLiesLevel) {
+  const std::array<Vector, 3> truth{{{0.5, 3.4, 0.5}, {0.7, 2.2, 0.4}, {0.4, 1.0, 0.6}}};
+  Scan scan;
+  std::mt19937 random(5);
+  std::normal_distribution<double> noise(0.0, 0.02);
+  constexpr double kStep = 1.2 * kPi / 180.0;
+  for (const Vector& t : truth) {
+    for (double e = -1.45; e < 1.45; e += kStep) {
+      for (double a = 0.1 * kStep; a < 2.0 * kPi; a += kStep) {
+        scan.add(t, {std::sin(e), std::cos(e) * std::cos(a), std::cos(e) * std::sin(a)});
+      }
+    }
+  }
+  for (float& v : scan.rows()) v += static_cast<float>(noise(random));
+  const SensorReport report = findSensors(scan.view());
+  ASSERT_FALSE(report.sensors.empty()) << report.why;
+  for (const FoundSensor& s : report.sensors) {
+    double nearest = 1e30;
+    for (const Vector& t : truth) nearest = std::min(nearest, distanceTo(s, t));
+    EXPECT_LT(nearest, 0.3);
+    EXPECT_GT(std::fabs(s.axis[0]), 0.9F);
+  }
+}
+
 // Hills 10 x 10 whose points are in strips more than twice as dense as what is between, as aircraft
 // fly; with a thickness, another such sheet below.
 std::vector<float> hills(std::size_t count, float thickness) {
