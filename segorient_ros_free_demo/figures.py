@@ -6,12 +6,12 @@
 usage: figures.py [BUILD_DIRECTORY [CLOUDS]]
        figures.py BUILD_DIRECTORY --worst PICTURE CLOUD.ply ...
 
-The shipped Fandisk is enough for most of them. With CLOUDS, a directory of clouds with true normals
-and their manifest.tsv, those of the paper's other objects, a real scan and the
-worst places are drawn (which needs matplotlib), and the table of the methods of orientation is printed (target
-orientation_benchmark). Where the target search_benchmark was built, the plot of the search is drawn
-as well, which takes minutes. The second form draws only the worst place of each CLOUD, whose
-normals are the true ones.
+The shipped Fandisk is enough for most of them. With CLOUDS, a directory of clouds with true normals,
+their manifest.tsv and the generator make_synthetic.py, those of the paper's other objects, a real
+scan and the worst places are drawn (which needs matplotlib). Where these targets were built, the
+table of the methods of orientation is printed (orientation_benchmark) and the plot of the search is
+drawn (search_benchmark), which takes minutes. The second form draws only the worst place of each
+CLOUD, whose normals are the true ones.
 """
 
 import subprocess
@@ -78,9 +78,10 @@ def figures(build):
     PICTURES.mkdir(exist_ok=True)
     run(program, "compare", FANDISK, "--picture", ROOT / "segorient_ros_free_demo/fandisk_compare.png")
     with tempfile.TemporaryDirectory() as directory:
-        for command, picture in (("segment", "segments.png"), ("triangulate", "triangles.png")):
+        for command, picture, options in (("segment", "segments.png", ["--recompute", 2]),
+                                          ("triangulate", "triangles.png", [])):
             result = Path(directory) / "result.ply"
-            run(program, command, FANDISK, result, "--quiet")
+            run(program, command, FANDISK, result, "--quiet", *options)
             run(program, "render", result, PICTURES / picture, "--color", "segment", *SIZE)
 
     sys.path.insert(0, str(build / "python"))
@@ -102,6 +103,18 @@ def scan(build, cloud):
     """A real scan, PCL's normals beside ours: ten range scans of the Stanford Bunny, merged."""
     run(build / "bin/segorient", "compare", cloud, "--picture", PICTURES / "scan.png",
         "--azimuth", 265, "--elevation", 65, "--quiet")
+
+
+def missed(build, generator):
+    """Worst places in thin and noisy clouds: shape, seed, sampling, noise as a share of the diagonal."""
+    with tempfile.TemporaryDirectory() as directory:
+        clouds = []
+        for shape, seed, sampling, noise in (("box_holes", 1503, "striped", "0"), ("plate_k2", 1503, "striped", "0.0025"),
+                                             ("open_fold", 1501, "random", "0.0025")):
+            run(sys.executable, generator, "--shape", shape, "--n", 12000, "--seed", seed, "--sampling", sampling,
+                "--noise", noise, "--out", directory)
+            clouds.append(Path(directory) / f"{shape}_n12000_s{seed}_{sampling}_{noise}.ply")
+        worst(build, clouds, PICTURES / "missed.png")
 
 
 def read_ply(path, np):
@@ -146,7 +159,7 @@ def worst(build, clouds, picture):
         for chosen, color in ((right[near], "0.6"), (~right[near], "red")):
             axis.quiver(*flat[chosen].T, *arrow[chosen].T, color=color, width=0.003, scale=14)
             axis.plot(*flat[chosen].T, ".", color=color, markersize=4)
-        axis.set_title(f"{cloud.stem}: {(~right).sum()} of {len(points)}", fontsize=10)
+        axis.set_title(f"{cloud.stem}: {(~right).sum()} of {len(points)}", fontsize=9)
         axis.set(xlim=(-6.5, 6.5), ylim=(-6.5, 6.5), aspect="equal")
         axis.set_xlabel("spacings")
     figure.tight_layout()
@@ -163,8 +176,10 @@ def main():
     if len(sys.argv) > 2:
         names = ("thorlike_71292", "demosthenes_20k", "wingnut_20k")
         worst(build, [Path(sys.argv[2]) / f"{name}.ply" for name in names], PICTURES / "worst.png")
+        missed(build, Path(sys.argv[2]) / "make_synthetic.py")
         scan(build, Path(sys.argv[2]) / "real_bunny10scans_60k.ply")
         run(ROOT / "segorient_ros_free_demo/paper_figures.sh", sys.argv[2], build)
+    if len(sys.argv) > 2 and (build / "bin/orientation_benchmark").exists():
         run(build / "bin/orientation_benchmark", sys.argv[2])
     if (build / "bin/search_benchmark").exists():
         with tempfile.TemporaryDirectory() as directory:
