@@ -26,17 +26,18 @@ constexpr std::size_t kMany = 2'000'000;
 // not.
 constexpr std::size_t kAlike = 3;
 
-// What the neighbours of a splat tell of the surface around. Signs of normals play no part.
-void lookAround(const std::vector<Splat>& splats, const pcl::index_t* neighbors, int count,
-                Splat& s) {
+// What the neighbours of a splat tell of the surface around. Signs of normals play no part. Packed
+// positions and normals: those of all neighbours come from memory.
+void lookAround(const std::vector<float>& positions, const std::vector<float>& normals,
+                const pcl::index_t* neighbors, int count, Splat& s) {
   std::array<float, kCover> cosines{};
   std::array<float, kCover> heights{};
   std::size_t seen = 0;
   std::size_t same = 0;
   for (int j = 1; j < count; ++j) {
     const auto other = static_cast<std::size_t>(neighbors[j]);
-    const Splat& o = splats[other];
-    const float cosine = std::abs(dot(s.normal, o.normal));
+    const Vec normal = vectorAt(&normals[3 * other]);
+    const float cosine = std::abs(dot(s.normal, normal));
     if (!std::isfinite(cosine)) continue;
     if (j <= kCover) cosines[seen++] = cosine;
     if (cosine < kSameSheet) {
@@ -45,10 +46,10 @@ void lookAround(const std::vector<Splat>& splats, const pcl::index_t* neighbors,
     } else if (j <= kCover) {
       // On a round surface the planes of both lie as far off the other point, in opposite
       // directions.
-      const Vec d{o.position[0] - s.position[0], o.position[1] - s.position[1],
-                  o.position[2] - s.position[2]};
-      const float sign = dot(s.normal, o.normal) < 0.F ? -1.F : 1.F;
-      heights[same++] = 0.5F * std::abs(dot(s.normal, d) + sign * dot(o.normal, d));
+      const float* to = &positions[3 * other];
+      const Vec d{to[0] - s.position[0], to[1] - s.position[1], to[2] - s.position[2]};
+      const float sign = dot(s.normal, normal) < 0.F ? -1.F : 1.F;
+      heights[same++] = 0.5F * std::abs(dot(s.normal, d) + sign * dot(normal, d));
     }
   }
   if (same > 0) {
@@ -130,7 +131,7 @@ std::vector<Splat> makeSplats(const PointView& all, const NormalSource& normals,
     splats[i].radius = radii[i];
     splats[i].side = sides[i];
     if (normals.any()) {
-      lookAround(splats, neighborhoods.indices(i), neighborhoods.count(i), splats[i]);
+      lookAround(near, directions, neighborhoods.indices(i), neighborhoods.count(i), splats[i]);
     }
   }
   return splats;
