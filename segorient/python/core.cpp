@@ -358,23 +358,20 @@ py::tuple normals(const FloatArray& points, const py::dict& given, const py::obj
 
 py::tuple segment(const FloatArray& points, const py::dict& given, const py::object& progress) {
   const PointView rows = viewOf(points);
-  const PipelineOptions options = optionsFrom(given);
-  const bool split = given.contains("split") && given["split"].cast<bool>();
+  PipelineOptions options = optionsFrom(given);
+  options.segmentation.unite_smooth = given.contains("faces") && given["faces"].cast<bool>();
   const PipelineProgress callback = progressTo(progress);
-  Segmentation segmentation;
-  std::vector<float> normals_by_segment;
+  OrientedCloud cloud;
   {
     const py::gil_scoped_release unlocked;
-    FirstStages stages(rows, options, callback);
-    stages.findNormals();
-    stages.findSegments(split);
-    segmentation = stages.segmentation();
-    normals_by_segment = stages.normalsBySegment();
+    cloud = segmentCloud(rows, options, callback);
   }
   std::vector<std::uint8_t> kinds;
-  for (const Segment& s : segmentation.segments) kinds.push_back(static_cast<std::uint8_t>(s.kind));
-  const py::tuple normals = normalArrays(std::move(normals_by_segment));
-  return py::make_tuple(column(std::move(segmentation.labels)), column(std::move(kinds)),
+  for (const Segment& s : cloud.segmentation.segments) {
+    kinds.push_back(static_cast<std::uint8_t>(s.kind));
+  }
+  const py::tuple normals = normalArrays(std::move(cloud.normals));
+  return py::make_tuple(column(std::move(cloud.segmentation.labels)), column(std::move(kinds)),
                         normals[0], normals[1]);
 }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026, the segorient authors
-#include <segorient/orientation/first_stages.h>
+#include <segorient/orientation/pipeline.h>
 
 #include <array>
 #include <boost/program_options.hpp>
@@ -11,6 +11,7 @@
 #include "io/output_file.h"
 #include "io/readers.h"
 #include "support/command_line.h"
+#include "support/hint_options.h"
 #include "support/json.h"
 #include "support/progress_bar.h"
 #include "support/result_columns.h"
@@ -21,38 +22,38 @@ namespace segorient::program {
 namespace po = boost::program_options;
 namespace {
 
-void printSummary(const FirstStages& stages, const Segmentation& segmentation,
-                  std::size_t without_normal, const std::string& path) {
+void printSummary(const OrientedCloud& cloud, std::size_t without_normal, const std::string& path) {
   std::array<std::size_t, 3> count{0, 0, 0};
   std::array<std::size_t, 3> points{0, 0, 0};
-  for (const Segment& s : segmentation.segments) {
+  for (const Segment& s : cloud.segmentation.segments) {
     ++count[static_cast<std::size_t>(s.kind)];
     points[static_cast<std::size_t>(s.kind)] += s.size;
   }
   std::printf("points     %zu, %zu not finite, %zu duplicates; %zu without normal\n",
-              segmentation.labels.size(), stages.nonFinite(), stages.duplicates(), without_normal);
+              cloud.segmentation.labels.size(), cloud.report.non_finite, cloud.report.duplicates,
+              without_normal);
   for (const SegmentKind kind :
        {SegmentKind::Regular, SegmentKind::Connected, SegmentKind::Isolated}) {
     std::printf("%-10s %zu segments of %zu points\n", kindName(kind),
                 count[static_cast<std::size_t>(kind)], points[static_cast<std::size_t>(kind)]);
   }
-  std::printf("normals    %s\nseconds    %s\nwritten    %s\n", stages.normalsChosen().c_str(),
-              timesText(stages.times()).c_str(), path.c_str());
+  std::printf("normals    %s\nseconds    %s\nwritten    %s\n", cloud.report.normals_chosen.c_str(),
+              timesText(cloud.report.stages).c_str(), path.c_str());
 }
 
-std::string reportText(const FirstStages& stages, const StageMemory& memory,
-                       const Segmentation& segmentation, std::size_t without_normal,
-                       const std::array<double, 3>& origin) {
+std::string reportText(const OrientedCloud& cloud, const StageMemory& memory,
+                       std::size_t without_normal, const std::array<double, 3>& origin) {
+  const Segmentation& segmentation = cloud.segmentation;
   JsonWriter json;
   json.field("points", segmentation.labels.size());
-  json.field("non_finite", stages.nonFinite());
-  json.field("duplicates", stages.duplicates());
+  json.field("non_finite", cloud.report.non_finite);
+  json.field("duplicates", cloud.report.duplicates);
   json.field("without_normal", without_normal);
-  json.field("k", stages.k());
-  json.field("normals_chosen", stages.normalsChosen());
+  json.field("k", cloud.report.k);
+  json.field("normals_chosen", cloud.report.normals_chosen);
   json.beginObject("seconds");
   double total = 0.0;
-  for (const StageTime& s : stages.times()) {
+  for (const StageTime& s : cloud.report.stages) {
     json.field(s.stage, s.seconds);
     total += s.seconds;
   }
@@ -88,26 +89,36 @@ std::string reportText(const FirstStages& stages, const StageMemory& memory,
 int runSegment(const std::vector<std::string>& words) {
   CommandLine line(
       "segment IN OUT [options]",
-      "Cuts IN into faces: segments of similar normals, those united whose common border\n"
-      "is smooth unless --split is given. OUT (.pcd, .ply, .las) has the points of\n"
+      "Cuts IN into segments of similar normals: those that orient and triangulate have\n"
+      "with the same options, --method among them. With --normals or --recompute, and\n"
+      "method auto: the paper's segments by those normals. OUT (.pcd, .ply, .las) has the points "
+      "of\n"
       "IN in the same order, with normals that agree within each segment, curvature,\n"
       "colours, labels (largest segment first; 4294967295: in none) and segment_kind\n"
       "(0 regular, 1 connected, 2 isolated), and all other fields of IN but its rgb.",
       "segorient segment scan.ply segments.pcd --beta 25");
   CommonOptions common;
   StageOptions stage_options;
+  HintOptions hints;
+  bool faces = false;
   bool split = false;
   std::string report_path;
   line.arguments({"IN", "OUT"});
-  stage_options.add(line, false);
-  line.options()("split", po::bool_switch(&split),
-                 "leave round faces cut up by --beta, as triangulate and orient use them")(
+  stage_options.add(line, false, "32, with --normals or --recompute 12");
+  hints.add(line);
+  line.options()("faces", po::bool_switch(&faces),
+                 "unite segments whose common border is smooth: a cylinder is one face then")(
       "report", po::value(&report_path), "a table of the segments, as JSON");
+  // What --faces is not; up to version 1.0 it had to be asked for.
+  line.unlisted()("split", po::bool_switch(&split));
   common.add(line);
   if (!line.parse(words)) return 0;
   common.check();
+  require(!(faces && split), "--faces and --split contradict each other");
   PipelineOptions options;
   stage_options.apply(line, common, options);
+  options.segmentation.unite_smooth = faces;
+  hints.check(line, common, options);
   stage_options.warnOfUnused(line, common, options);
   requireEnding(line.argument("OUT"), {".pcd", ".ply", ".las"});
 
@@ -118,28 +129,24 @@ int runSegment(const std::vector<std::string>& words) {
   if (!report_path.empty()) report.emplace(report_path);
   StageMemory memory(!common.quiet || report);
   memory.begin("reading");
-  const CloudTable table = readUsableCloud(line.argument("IN"));
+  const CloudTable table = hints.read({line.argument("IN")}, common.quiet);
   const LocalPoints points(table);
+  hints.apply(table, line.argument("IN"), points, options);
   ProgressBar bar(!common.quiet, table.size);
-  FirstStages stages(points.view(), options, memory.watch(bar.callback()));
-  stages.findNormals();
-  stages.findSegments(split);
+  const OrientedCloud cloud = segmentCloud(points.view(), options, memory.watch(bar.callback()));
   memory.begin("output");
-  const Segmentation segmentation = stages.segmentation();
-  const std::vector<float> normals = stages.normalsBySegment();
   Results results;
-  results.normals = &normals;
-  results.segmentation = &segmentation;
+  results.normals = &cloud.normals;
+  results.segmentation = &cloud.segmentation;
   results.kinds = true;
   memory.begin("writing");
   writeResults(table, results, file);
   memory.end();
-  const std::size_t without_normal = countWithoutNormal(normals);
-  if (report)
-    report->write(reportText(stages, memory, segmentation, without_normal, points.origin()));
+  const std::size_t without_normal = countWithoutNormal(cloud.normals);
+  if (report) report->write(reportText(cloud, memory, without_normal, points.origin()));
   file.commit();
   if (report) report->commit();
-  if (!common.quiet) printSummary(stages, segmentation, without_normal, file.path());
+  if (!common.quiet) printSummary(cloud, without_normal, file.path());
   return 0;
 }
 

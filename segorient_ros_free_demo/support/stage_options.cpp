@@ -59,9 +59,10 @@ void StageOptions::addMethod(CommandLine& line, bool orients) {
       "extremal)");
 }
 
-void StageOptions::add(CommandLine& line, bool orients) {
-  const std::string k = orients ? "32 for method auto, else 12, 18 or 30 by the cloud's noise"
-                                : "12, and more for --normals auto where there is noise";
+void StageOptions::add(CommandLine& line, bool orients, const std::string& usual_k) {
+  const std::string k = !usual_k.empty() ? usual_k
+                        : orients ? "32 for method auto, else 12, 18 or 30 by the cloud's noise"
+                                  : "12, and more for --normals auto where there is noise";
   const std::string normals =
       orients ? "; method auto has its own way and does not look at this" : "";
   const std::string recompute = orients ? "; method auto does so in its own way" : "";

@@ -17,7 +17,8 @@ class StageOptions {
  public:
   /// \param orients whether the command comes to the orientation: otherwise what only that looks at
   /// is taken but not listed
-  void add(CommandLine& line, bool orients);
+  /// \param k what -k is if it is left out, where that is not as usual
+  void add(CommandLine& line, bool orients, const std::string& k = {});
 
   /// Checks the values and sets those that were given; the others keep the library's defaults.
   void apply(const CommandLine& line, const CommonOptions& common, PipelineOptions& options);

@@ -180,8 +180,7 @@ TEST(SheetSegmentation, NeverMixesTheWallsOfAPlate) {
     const Neighborhoods table = neighborsOf(cloud.xyz);
     const SheetNormals sheets = estimateSheetNormals(viewOf(cloud.xyz), table);
     const SheetField field = fieldOf(sheets);
-    const auto admissible = admissibleEdges(viewOf(cloud.xyz), table, field);
-    const Segmentation segments = segmentSheets(viewOf(cloud.xyz), table, field, admissible);
+    const Segmentation segments = segmentSheets(viewOf(cloud.xyz), table, field);
     std::size_t mixed = 0;
     for (std::size_t s = 0; s < segments.segments.size(); ++s) {
       std::size_t outward = 0;
@@ -201,8 +200,7 @@ TEST(SheetSegmentation, CoversEveryPointThatHasANormal) {
   const Neighborhoods table = neighborsOf(cloud.xyz);
   const SheetNormals sheets = estimateSheetNormals(viewOf(cloud.xyz), table);
   const SheetField field = fieldOf(sheets);
-  const Segmentation segments = segmentSheets(viewOf(cloud.xyz), table, field,
-                                              admissibleEdges(viewOf(cloud.xyz), table, field));
+  const Segmentation segments = segmentSheets(viewOf(cloud.xyz), table, field);
   ASSERT_EQ(segments.labels.size(), cloud.size());
   ASSERT_EQ(segments.members.size(), cloud.size());
   for (std::size_t s = 0; s < segments.segments.size(); ++s) {

@@ -8,6 +8,8 @@
 #include <cmath>
 #include <cstdlib>
 #include <sstream>
+#include <string>
+#include <vector>
 
 #include "io/readers.h"
 #include "run_program.h"
@@ -16,6 +18,32 @@ namespace segorient::test {
 namespace {
 
 using program::CloudTable;
+
+std::vector<double> labelsOf(const std::string& path) {
+  const CloudTable table = program::readCloud(path);
+  std::vector<double> out;
+  const program::Field* label = table.find("label");
+  for (std::size_t i = 0; label != nullptr && i < table.size; ++i) {
+    out.push_back(table.value(*label, i));
+  }
+  return out;
+}
+
+TEST(Segment, HasTheSegmentsOfOrientAndTriangulate) {
+  const ScratchDirectory directory;
+  const std::string out = directory.file("out.ply");
+  for (const std::string method : {"auto", "combined"}) {
+    std::vector<std::vector<double>> labels;
+    for (const std::string command : {"segment", "orient", "triangulate"}) {
+      const Outcome run = runProgram({command, fandisk(), out, "--method", method, "--beta", "25"});
+      ASSERT_EQ(run.status, 0) << run.err;
+      labels.push_back(labelsOf(out));
+    }
+    ASSERT_FALSE(labels[0].empty());
+    EXPECT_EQ(labels[0], labels[1]) << method;
+    EXPECT_EQ(labels[0], labels[2]) << method;
+  }
+}
 
 // Fronts of the mesh must look outward: its triangles agree with the true normals of their corners.
 TEST(Triangulate, IsOneMeshWithItsFrontsOutward) {

@@ -365,6 +365,8 @@ class BadArguments(unittest.TestCase):
             (TypeError, "gamma", lambda: segorient.orient(good, gamma="35")),
             (ValueError, "threads", lambda: segorient.orient(good, threads=-1)),
             (TypeError, "split", lambda: segorient.segment(good, split=1.5)),
+            (TypeError, "faces", lambda: segorient.segment(good, faces=1.5)),
+            (ValueError, "faces", lambda: segorient.segment(good, faces=True, split=True)),
             (TypeError, "closed", lambda: segorient.orient(good, closed="yes")),
             (ValueError, "viewpoint", lambda: segorient.orient(good, viewpoint=[1, 2])),
             (TypeError, "viewpoint", lambda: segorient.orient(good, viewpoint="above")),
@@ -607,13 +609,13 @@ class AsTheProgram(unittest.TestCase):
                                      json.loads(json.dumps(report[key]), parse_float=lambda t: round(float(t), 4)))
             by_program = self.run_program(directory, "segment", "-k", "14", "--alpha", "15", "--recompute", "1")
             by_module = segorient.segment(points, k=14, alpha=15, recompute=1)
-            whole = len(by_module.kinds)
             np.testing.assert_array_equal(by_module.labels, by_program["label"].astype(np.int32))
             np.testing.assert_array_equal(by_module.kinds[by_module.labels], by_program["segment_kind"])
-            by_program = self.run_program(directory, "segment", "--split")
-            by_module = segorient.segment(points, split=True)
+            by_program = self.run_program(directory, "segment")
+            by_module = segorient.segment(points)
             np.testing.assert_array_equal(by_module.labels, by_program["label"].astype(np.int32))
-            self.assertGreater(len(by_module.kinds), whole)  # the sphere is one face
+            np.testing.assert_array_equal(by_module.labels, segorient.orient(points).labels)
+            self.assertLess(len(segorient.segment(points, faces=True).kinds), len(by_module.kinds))  # a sphere is one
             by_program = self.run_program(directory, "normals", "--normals", "ldt")
             by_module = segorient.normals(points, normals="ldt")
             np.testing.assert_array_equal(by_module.curvatures, by_program["curvature"])

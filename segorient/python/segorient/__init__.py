@@ -589,7 +589,9 @@ def normals(
 def segment(
     points: npt.ArrayLike,
     *,
+    faces: bool = False,
     split: bool = False,
+    method: str = "auto",
     normals: str = "auto",
     k: Optional[int] = None,
     alpha: Optional[float] = None,
@@ -600,12 +602,16 @@ def segment(
     threads: int = 0,
     progress: Optional[Progress] = None,
 ) -> Segments:
-    """Cuts a cloud into faces: segments of similar normals, united where their border is smooth.
+    """Cuts a cloud into segments of similar normals: those that :func:`orient` gives with the same
+    arguments.
 
     :param points: (n, 3)
-    :param split: leave round faces cut up by `beta`, as triangulation and orientation use them
-    :param normals: estimator, see :func:`normals`
-    :param k: neighbours of a point; None: 12, or more where `normals` is ``auto`` and there is noise
+    :param faces: unite segments whose common border is smooth: a cylinder is one face then
+    :param split: what `faces` is not; up to version 1.0 it had to be asked for
+    :param method: see :func:`orient`
+    :param normals: estimator, see :func:`normals`; with it or `recompute`, and method ``auto``, segments
+        are the paper's by those normals
+    :param k: neighbours of a point; None: as :func:`orient`, and 12 with `normals` or `recompute`
     :param alpha: degrees, largest angle between normals of neighbours in a segment; about 20
     :param beta: degrees, largest angle between a normal and its segment's; 30
     :param delta: degrees, see :func:`normals`
@@ -616,9 +622,13 @@ def segment(
     :raises TypeError, ValueError: for arguments that make no sense
     """
     options = _options(k, normals, alpha, beta, delta, epsilon, recompute, threads)
-    if not isinstance(split, (bool, np.bool_)):
-        raise TypeError(f"split must be True or False, not {split!r}")
-    options["split"] = bool(split)
+    for name, value in (("faces", faces), ("split", split)):
+        if not isinstance(value, (bool, np.bool_)):
+            raise TypeError(f"{name} must be True or False, not {value!r}")
+    if faces and split:
+        raise ValueError("faces and split contradict each other")
+    options["faces"] = bool(faces)
+    options["method"] = _word("method", method)
     return Segments(*_core.segment(_local(points)[0], options, progress))
 
 

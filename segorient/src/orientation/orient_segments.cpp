@@ -7,11 +7,13 @@
 #include <utility>
 #include <vector>
 
+#include "common/dot.h"
 #include "orientation/automatic/orient_points.h"
 #include "orientation/paper/completion.h"
 #include "orientation/paper/hoppe_tree.h"
 #include "orientation/paper/outward_components.h"
 #include "orientation/paper/regular_segments.h"
+#include "segmentation/segmentation_rows.h"
 
 namespace segorient {
 namespace {
@@ -58,14 +60,29 @@ void summarizeSegments(const Segmentation& segmentation, DecidedBy by, Orientati
   }
 }
 
+// Signs for normals that the segments were not made from; points without one are in no segment.
+void giveSigns(const PointView& normals, Segmentation& segmentation) {
+  for (std::size_t i = 0; i < normals.size; ++i) {
+    std::int32_t& label = segmentation.labels[i];
+    if (!isFinite(normals[i])) label = -1;
+    if (label < 0) continue;
+    const float* reference =
+        segmentation.segments[static_cast<std::size_t>(label)].reference_normal.data();
+    segmentation.signs[i] = dot(normals[i], reference) < 0.F ? std::int8_t{-1} : std::int8_t{1};
+  }
+  segmentation::collectMembers(segmentation);
+}
+
 // The default method brings its own segments: each given point takes the sign that turns its normal
 // to the oriented one there, and each given segment that of most of its points.
+// \param own where not null: in place of given segments those of the default method
 OrientationResult orientAutomatically(const PointView& points, const PointView& normals,
                                       const Neighborhoods& neighborhoods,
                                       const Segmentation& segmentation,
-                                      const OrientationOptions& options, const PointHints& hints) {
-  detail::AutoNormals found =
-      detail::orientPoints(points, neighborhoods, options.automatic, hints, options.threads);
+                                      const OrientationOptions& options, const PointHints& hints,
+                                      FinishedSegments* own) {
+  detail::AutoNormals found = detail::orientPoints(points, neighborhoods, options.automatic, hints,
+                                                   options.threads, {}, nullptr, own);
   OrientationResult result;
   result.components = std::move(found.orientation.result.components);
   result.point_signs.assign(points.size, 0);
@@ -75,13 +92,13 @@ OrientationResult orientAutomatically(const PointView& points, const PointView& 
     const float* m = &found.normals[4 * i];
     const float* n = normals[i];
     if (!isFinite(n) || !isFinite(m) || found.components[i] < 0) continue;
-    const float agree = n[0] * m[0] + n[1] * m[1] + n[2] * m[2];
-    result.point_signs[i] = agree < 0.F ? std::int8_t{-1} : std::int8_t{1};
+    result.point_signs[i] = dot(n, m) < 0.F ? std::int8_t{-1} : std::int8_t{1};
     result.point_confidences[i] = found.confidences[i];
     result.point_components[i] = found.components[i];
   }
   completeOrientation(points, normals, neighborhoods, result);
-  summarizeSegments(segmentation, DecidedBy::GLOBAL, result);
+  if (own != nullptr) giveSigns(normals, own->segmentation);
+  summarizeSegments(own != nullptr ? own->segmentation : segmentation, DecidedBy::GLOBAL, result);
   return result;
 }
 
@@ -113,10 +130,12 @@ void keepLargestSegments(const Segmentation& segmentation, OrientationResult& re
 OrientationResult orientSegments(const PointView& points, const PointView& normals,
                                  const Neighborhoods& neighborhoods,
                                  const Segmentation& segmentation, const SegmentGraph& graph,
-                                 const OrientationOptions& options, const PointHints& hints) {
+                                 const OrientationOptions& options, const PointHints& hints,
+                                 FinishedSegments* own) {
   OrientationResult result;
+  const bool automatic = options.method == OrientationMethod::AUTO;
   if (normals.size != points.size || neighborhoods.size() != points.size ||
-      segmentation.labels.size() != points.size) {
+      (!(automatic && own != nullptr) && segmentation.labels.size() != points.size)) {
     result.point_signs.assign(points.size, 0);
     result.point_confidences.assign(points.size, 0.F);
     result.point_components.assign(points.size, -1);
@@ -127,9 +146,11 @@ OrientationResult orientSegments(const PointView& points, const PointView& norma
     summarizeSegments(segmentation, DecidedBy::PROPAGATION, result);
     return result;
   }
-  if (options.method == OrientationMethod::AUTO) {
-    result = orientAutomatically(points, normals, neighborhoods, segmentation, options, hints);
-    if (!options.turn_outward) keepLargestSegments(segmentation, result);
+  if (automatic) {
+    result = orientAutomatically(points, normals, neighborhoods, segmentation, options, hints, own);
+    if (!options.turn_outward) {
+      keepLargestSegments(own != nullptr ? own->segmentation : segmentation, result);
+    }
     return result;
   }
 

@@ -9,6 +9,7 @@
 #include <segorient/segmentation/segmentation.h>
 
 #include "orientation/sensors/point_hints.h"
+#include "segmentation/sheet_segmentation.h"
 
 namespace segorient {
 
@@ -18,10 +19,14 @@ namespace segorient {
 /// \param normals 4 floats a row; the sign of each is arbitrary
 /// \param neighborhoods of every point
 /// \param graph of the segmentation, see buildSegmentGraph()
+/// \param own for AUTO, where not null: in place of `segmentation` the default method's own
+/// segments
+///        are made, by the options therein, and oriented
 /// \return all signs 0 if the sizes do not agree
 OrientationResult orientSegments(const PointView& points, const PointView& normals,
                                  const Neighborhoods& neighborhoods,
                                  const Segmentation& segmentation, const SegmentGraph& graph,
-                                 const OrientationOptions& options, const PointHints& hints = {});
+                                 const OrientationOptions& options, const PointHints& hints = {},
+                                 FinishedSegments* own = nullptr);
 
 }  // namespace segorient

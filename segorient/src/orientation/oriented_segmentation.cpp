@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <utility>
 #include <vector>
 
 #include "common/unit_vector.h"
@@ -96,19 +97,26 @@ OrientedSegmentation orientSegmentation(const PointView& points, const NormalVie
   findNeighbors(cloud, k > 0 ? k : defaultNeighbors(options), search);
   const Neighborhoods& neighborhoods = cloud.neighborhoods();
 
-  const Segmentation of_points =
-      segmentation != nullptr
-          ? segmentation::gather(cloud, point_normals, *segmentation)
-          : segmentByNormals(cloud.points(), normal_view, neighborhoods,
-                             segmentation::inUnitOf(cloud, segmentation_options));
+  SegmentationOptions cuts = segmentation::inUnitOf(cloud, segmentation_options);
+  cuts.threads = options.threads;
+  FinishedSegments made;
+  made.options = cuts;
+  const bool own = segmentation == nullptr && options.method == OrientationMethod::AUTO;
+  Segmentation of_points;
+  if (segmentation != nullptr) {
+    of_points = segmentation::gather(cloud, point_normals, *segmentation);
+  } else if (!own) {
+    of_points = segmentByNormals(cloud.points(), normal_view, neighborhoods, cuts);
+  }
   SegmentGraph graph;  // the default method does without
   if (options.method != OrientationMethod::AUTO)
     graph = buildSegmentGraph(of_points, neighborhoods);
   PointHints hints;
   if (options.hints) hints = resolveHints(*options.hints, cloud);
-  out.orientation = scatter(
-      cloud, normals,
-      orientSegments(cloud.points(), normal_view, neighborhoods, of_points, graph, options, hints));
+  out.orientation = scatter(cloud, normals,
+                            orientSegments(cloud.points(), normal_view, neighborhoods, of_points,
+                                           graph, options, hints, own ? &made : nullptr));
+  if (own) of_points = std::move(made.segmentation);
   out.segmentation =
       segmentation != nullptr ? *segmentation : segmentation::scatter(cloud, of_points, &normals);
   invertTurned(out.orientation.segments, out.segmentation);

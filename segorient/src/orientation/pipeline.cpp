@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026, the segorient authors
+#include <segorient/orientation/first_stages.h>
 #include <segorient/orientation/pipeline.h>
 
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <cstdlib>
 #include <iomanip>
 #include <limits>
 #include <sstream>
@@ -46,18 +48,14 @@ void runPaper(const PipelineOptions& options, detail::StageClock& clock, Working
   clock.begin("normals", 0.4);
   surface.findNormals(options);
   report.normals_chosen = surface.normals_chosen;
-  clock.begin("segmentation", 0.5);
+  surface.recomputeNormals(options, clock);
+  clock.begin("segmentation", 0.75);
   SegmentationOptions cuts = options.segmentation;
   cuts.neighbors = 0;
-  cuts.threads = options.threads;
+  cuts.unite_smooth = false;
   // A point of a thin part that is given to the other side's segment is turned over with it.
   cuts.settle_edges = false;
-  surface.findSegments(cuts);
-  if (options.recomputations > 0) clock.begin("recomputation", 0.65);
-  for (int round = 0; round < options.recomputations; ++round) {
-    surface.recomputeNormals(options);
-    surface.findSegments(cuts);
-  }
+  surface.findSegments(cuts, options.threads);
   clock.begin("orientation", 0.8);
   OrientationOptions how = options.orientation;
   how.threads = options.threads;
@@ -196,6 +194,24 @@ void countRows(const PreparedCloud& cloud, const std::vector<pcl::index_t>& indi
   report.duplicates = report.points - report.non_finite - cloud.size();
 }
 
+// Segments by the paper's stages alone.
+OrientedCloud firstStages(const PointView& points, const PipelineOptions& options,
+                          const PipelineProgress& progress) {
+  FirstStages stages(points, options, progress);
+  stages.findNormals();
+  stages.findSegments();
+  OrientedCloud out;
+  out.normals = stages.normals();
+  out.segmentation = stages.segmentation();
+  out.report.points = points.size;
+  out.report.non_finite = stages.nonFinite();
+  out.report.duplicates = stages.duplicates();
+  out.report.k = stages.k();
+  out.report.normals_chosen = stages.normalsChosen();
+  out.report.stages = stages.times();
+  return out;
+}
+
 }  // namespace
 
 OrientedCloud orientCloud(const PointView& points, const std::vector<pcl::index_t>* indices,
@@ -223,6 +239,21 @@ OrientedCloud orientCloud(const PointView& points, const std::vector<pcl::index_
   out.report.stages = clock.times();
   for (const StageTime& stage : out.report.stages) out.report.seconds += stage.seconds;
   if (progress) progress("output", 1.0);
+  return out;
+}
+
+OrientedCloud segmentCloud(const PointView& points, const PipelineOptions& options,
+                           const PipelineProgress& progress) {
+  const bool automatic = options.orientation.method == OrientationMethod::AUTO;
+  const bool own_normals =
+      options.normals.estimator != NormalEstimator::Automatic || options.recomputations > 0;
+  OrientedCloud out = automatic && own_normals ? firstStages(points, options, progress)
+                                               : orientCloud(points, nullptr, options, progress);
+  for (std::size_t row = 0; row < out.segmentation.signs.size(); ++row) {
+    std::int8_t& sign = out.segmentation.signs[row];
+    for (std::size_t a = 0; a < 3 && sign < 0; ++a) out.normals[4 * row + a] *= -1.F;
+    sign = std::abs(sign);
+  }
   return out;
 }
 

@@ -3,6 +3,7 @@
 #include "orientation/surface_stages.h"
 
 #include <cstdint>
+#include <utility>
 
 #include "features/automatic_normals.h"
 #include "features/local_normals.h"
@@ -31,22 +32,33 @@ void SurfaceStages::findNormals(const PipelineOptions& options) {
   normals_chosen = "as asked for";
 }
 
-void SurfaceStages::findSegments(const SegmentationOptions& options, Segmentation* faces) {
+void SurfaceStages::findSegments(SegmentationOptions options, int threads) {
+  options.threads = threads;
+  Segmentation faces;
   segmentation = segmentByNormals(cloud.points(), normalView(), cloud.neighborhoods(),
-                                  segmentation::inUnitOf(cloud, options), nullptr, faces);
+                                  segmentation::inUnitOf(cloud, options), nullptr,
+                                  options.unite_smooth ? &faces : nullptr);
+  if (options.unite_smooth) segmentation = std::move(faces);
 }
 
-void SurfaceStages::recomputeNormals(const PipelineOptions& options) {
+void SurfaceStages::recomputeNormals(const PipelineOptions& options, StageClock& clock) {
   RecomputationOptions settings = options.recomputation;
   settings.estimator = options.normals.estimator;
   settings.k = 0;
   settings.threads = options.threads;
-  std::vector<std::uint8_t> regular;
-  for (const Segment& segment : segmentation.segments) {
-    regular.push_back(segment.kind == SegmentKind::Regular ? 1 : 0);
+  SegmentationOptions cuts = options.segmentation;
+  cuts.unite_smooth = false;
+  for (int round = 0; round < options.recomputations; ++round) {
+    clock.begin("segmentation", 0.5);
+    findSegments(cuts, options.threads);
+    clock.begin("recomputation", 0.65);
+    std::vector<std::uint8_t> regular;
+    for (const Segment& segment : segmentation.segments) {
+      regular.push_back(segment.kind == SegmentKind::Regular ? 1 : 0);
+    }
+    segorient::recomputeNormals(cloud.points(), cloud.neighborhoods(), regular, settings,
+                                segmentation.labels, normals);
   }
-  segorient::recomputeNormals(cloud.points(), cloud.neighborhoods(), regular, settings,
-                              segmentation.labels, normals);
 }
 
 }  // namespace segorient::detail

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "orientation/stage_clock.h"
 #include "search/prepared_cloud.h"
 
 namespace segorient::detail {
@@ -21,11 +22,11 @@ struct SurfaceStages {
   /// Unoriented normals (2.2) by `options.normals`. Automatic ones have the neighbours that were
   /// found and, unless the options say how many, more of them where the noise asks for more.
   void findNormals(const PipelineOptions& options);
-  /// Segments (2.3). \param faces see segmentByNormals()
-  void findSegments(const SegmentationOptions& options, Segmentation* faces = nullptr);
-  /// Normals near sharp edges from one side only (2.3.1), by the segments that were found; segments
-  /// are then to be found again.
-  void recomputeNormals(const PipelineOptions& options);
+  /// Segments (2.3), or faces where the options unite them.
+  void findSegments(SegmentationOptions options, int threads);
+  /// Normals near sharp edges from one side only (2.3.1), `options.recomputations` times, each time
+  /// by the segments of `options.segmentation` that the normals then make.
+  void recomputeNormals(const PipelineOptions& options, StageClock& clock);
 
   PreparedCloud cloud;
   int k = 0;  ///< neighbours of a point, itself not counted

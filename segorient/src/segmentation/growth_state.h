@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "segmentation/region_growing.h"
+#include "segmentation/sheet_edges.h"
 
 namespace segorient::segmentation {
 
@@ -105,6 +106,8 @@ struct GrowthState {
   int neighbors = 0;  ///< entries of each row to use, the first one (the point itself) included
   float scale = 1.F;  ///< coordinates of the nodes for one unit of the cloud
   PairLimits limits;
+  const SheetEdges* sheets = nullptr;  ///< where not null, these decide in place of the limits
+  int support = 0;  ///< neighbours in a segment that a point needs to join it, see supports()
   bool scattered = false;      ///< neighbours are far from each other in memory
   float typical_offset = 0.F;  ///< of a neighbour from a tangent plane, in spacings: the noise
   FastVector<Node> nodes;
@@ -123,6 +126,23 @@ struct GrowthState {
     const auto at = static_cast<std::size_t>(label);
     return clusters[at].size >= small_size && strips[at] == 0;
   }
+  /// Whether q, a neighbour of p, lies in the surface around p.
+  bool joins(std::size_t p, std::size_t q) const {
+    return sheets != nullptr ? sheets->join(p, q) : limits.admissible(nodes[p], nodes[q]);
+  }
+  /// Whether a segment has enough of p's neighbours, not more of them outside of p's surface than
+  /// in it.
+  bool supports(std::size_t p, std::int32_t label) const {
+    if (support == 0) return true;
+    int good = 0;
+    int bad = 0;
+    const pcl::index_t* row = neighborhoods->indices(p);
+    for (int j = 1; j < rowSize(p); ++j) {
+      const auto q = static_cast<std::size_t>(row[j]);
+      if (labels[q] == label) (joins(p, q) ? good : bad) += 1;
+    }
+    return good >= support && bad <= good;
+  }
   /// Asks the memory for a row of the table that is looked at soon.
   void fetchRow(std::size_t row) const { __builtin_prefetch(neighborhoods->indices(row)); }
   int rowSize(std::size_t row) const { return std::min(neighborhoods->count(row), neighbors); }
@@ -138,15 +158,18 @@ inline float scaledResidual(const SegmentationOptions& options, const GrowthStat
 void prepare(const PointView& points, const NormalView& normals, const SegmentationOptions& options,
              GrowthState& state);
 
+/// The same for sheets, whose normals and spacings are what they are.
+void prepare(const PointView& points, const SheetField& field, int threads, GrowthState& state);
+
+/// Growing over sheets went by residuals; the clean-up goes by curvatures.
+void setCurvature(const float* curvature, GrowthState& state);
+
 /// Region growing.
 void grow(const SegmentationOptions& options, GrowthState& state);
 
-/// Marks the clusters that have no inside: rows of points along sharp edges, where the normals lean
-/// over both faces and agree with each other. However long they are, they are no faces.
-void findStrips(const SegmentationOptions& options, GrowthState& state);
-
-/// The three clean-up passes; sets the kinds.
-void cleanUp(const SegmentationOptions& options, GrowthState& state, SegmentationReport& report);
+/// Region growing over the edges of `state.sheets`: from and over reliable points first, then over
+/// what is left around these, then from what is left at all.
+void growSheets(const SegmentationOptions& options, GrowthState& state);
 
 /// Moves points along sharp borders to the segment whose surface passes nearest to them.
 /// \return how many moved
@@ -156,8 +179,12 @@ std::size_t settleEdges(const SegmentationOptions& options, GrowthState& state);
 /// \return how many segments became part of another one
 std::size_t uniteSmooth(const SegmentationOptions& options, GrowthState& state);
 
-/// Final segment data.
+/// Segments by descending size, with their members and reference normals.
 /// \param labels those of the state, or a copy of them if it goes on being used; signs likewise
+Segmentation rank(const GrowthState& state, std::vector<std::int32_t> labels,
+                  std::vector<std::int8_t> signs);
+
+/// The same with centroids, areas and deviations from planes.
 Segmentation finish(const PointView& points, const GrowthState& state,
                     std::vector<std::int32_t> labels, std::vector<std::int8_t> signs);
 

@@ -4,6 +4,7 @@
 
 #include <utility>
 
+#include "segmentation/clean_up.h"
 #include "segmentation/growth_state.h"
 
 namespace segorient {
@@ -26,7 +27,7 @@ Segmentation segmentByNormals(const PointView& points, const NormalView& normals
     segmentation::grow(options, state);
     counts.grown = state.clusters.size();
     for (const auto& cluster : state.clusters) counts.small += cluster.size < options.small_size;
-    segmentation::cleanUp(options, state, counts);
+    segmentation::cleanUp(options, state, &counts);
     result = faces == nullptr ? segmentation::finish(points, state, std::move(state.labels),
                                                      std::move(state.signs))
                               : segmentation::finish(points, state, state.labels, state.signs);

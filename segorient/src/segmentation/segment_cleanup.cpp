@@ -1,52 +1,22 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026, the segorient authors
 #include "common/disjoint_sets.h"
-#include "segmentation/small_adjacency.h"
+#include "segmentation/clean_up.h"
 
 namespace segorient::segmentation {
 namespace {
 
 constexpr float kRightAngle = 1.5707963F;
 
-/// The clean-up of section 2.3. Small segments are lists of points, so that joining them is cheap.
-class CleanUp {
- public:
-  CleanUp(const SegmentationOptions& options, GrowthState& state)
-      : options_(options),
-        state_(state),
-        small_size_(
-            static_cast<std::uint32_t>(std::min(options.small_size, state.nodes.size() + 1))),
-        adjacency_(state, small_size_),
-        cos_join_(std::cos(std::min(options.beta + options.epsilon, kRightAngle))),
-        cos_alpha_(std::cos(std::min(options.alpha, kRightAngle))) {}
+}  // namespace
 
-  void absorbSmall(SegmentationReport& report);
-  void extractEdges(SegmentationReport& report);
-  void connectSmall();
-
- private:
-  struct Count {
-    std::int32_t label;
-    std::uint32_t points;
-  };
-
-  bool isSmall(std::int32_t label) const {
-    return state_.clusters[static_cast<std::size_t>(label)].size < small_size_;
-  }
-  bool isFace(std::int32_t label) const { return state_.isFace(label, small_size_); }
-  std::int32_t bestHost(std::int32_t label);
-  void join(std::int32_t from, std::int32_t into);
-  bool tryExtract(std::uint32_t slot);
-  void flip(std::size_t p);
-
-  const SegmentationOptions& options_;
-  GrowthState& state_;
-  std::uint32_t small_size_;
-  SmallAdjacency adjacency_;
-  float cos_join_;
-  float cos_alpha_;
-  std::vector<Count> counts_;
-};
+CleanUp::CleanUp(const SegmentationOptions& options, GrowthState& state)
+    : options_(options),
+      state_(state),
+      small_size_(static_cast<std::uint32_t>(std::min(options.small_size, state.nodes.size() + 1))),
+      adjacency_(state, small_size_),
+      cos_join_(std::cos(std::min(options.beta + options.epsilon, kRightAngle))),
+      cos_alpha_(std::cos(std::min(options.alpha, kRightAngle))) {}
 
 void CleanUp::flip(std::size_t p) {
   Node& node = state_.nodes[p];
@@ -105,7 +75,8 @@ void CleanUp::join(std::int32_t from, std::int32_t into) {
 }
 
 // Ascending size; a small segment that has taken in another one has its turn again at its new size.
-void CleanUp::absorbSmall(SegmentationReport& report) {
+std::size_t CleanUp::absorbSmall() {
+  std::size_t absorbed = 0;
   std::vector<std::vector<std::int32_t>> by_size(small_size_);
   for (std::size_t s = 0; s < state_.clusters.size(); ++s) {
     const std::uint32_t size = state_.clusters[s].size;
@@ -118,11 +89,12 @@ void CleanUp::absorbSmall(SegmentationReport& report) {
       const std::int32_t host = bestHost(label);
       if (host < 0) continue;
       join(label, host);
-      ++report.absorbed;
+      ++absorbed;
       const std::uint32_t new_size = state_.clusters[static_cast<std::size_t>(host)].size;
       if (new_size < small_size_) by_size[new_size].push_back(host);
     }
   }
+  return absorbed;
 }
 
 // Pass 2, one point: into the regular segment whose reference normal is nearest to its own.
@@ -132,12 +104,12 @@ bool CleanUp::tryExtract(std::uint32_t slot) {
   std::int32_t best = -1;
   double best_cosine = cos_join_;
   double best_sign = 1.0;
-  adjacency_.forEachNeighbor(slot, [&](std::size_t q) {
+  const auto consider = [&](std::size_t q) {
     const std::int32_t label = state_.labels[q];
     if (label == own || !isFace(label)) return;
     const Node& node = state_.nodes[p];
     if (!(std::abs(dotNormals(node, state_.nodes[q])) > cos_alpha_)) return;
-    if (!state_.limits.admissible(state_.nodes[q], node)) return;
+    if (!state_.joins(q, p) || !state_.supports(p, label)) return;
     const NormalSum& reference = state_.clusters[static_cast<std::size_t>(label)].normal;
     const double along = reference.dot(node) / std::sqrt(reference.squaredNorm());
     const double cosine = std::abs(along);
@@ -146,7 +118,12 @@ bool CleanUp::tryExtract(std::uint32_t slot) {
       best = label;
       best_sign = along < 0.0 ? -1.0 : 1.0;
     }
-  });
+  };
+  if (state_.support > 0) {
+    adjacency_.forEachInRow(slot, consider);
+  } else {
+    adjacency_.forEachNeighbor(slot, consider);
+  }
   if (best < 0) return false;
   Cluster& source = state_.clusters[static_cast<std::size_t>(own)];
   Cluster& target = state_.clusters[static_cast<std::size_t>(best)];
@@ -160,7 +137,8 @@ bool CleanUp::tryExtract(std::uint32_t slot) {
 }
 
 // A point is tried again whenever a neighbour of it has moved, until nothing moves.
-void CleanUp::extractEdges(SegmentationReport& report) {
+std::size_t CleanUp::extractEdges() {
+  std::size_t extracted = 0;
   std::vector<std::uint32_t> queue;
   std::vector<std::uint8_t> queued(adjacency_.size(), 0);
   for (std::uint32_t slot = 0; slot < adjacency_.size(); ++slot) {
@@ -172,7 +150,7 @@ void CleanUp::extractEdges(SegmentationReport& report) {
     const std::uint32_t slot = queue[head];
     queued[slot] = 0;
     if (isFace(state_.labels[adjacency_.point(slot)]) || !tryExtract(slot)) continue;
-    ++report.extracted;
+    ++extracted;
     adjacency_.forEachNeighbor(slot, [&](std::size_t q) {
       const std::uint32_t other = adjacency_.slot(q);
       if (other == SmallAdjacency::kNone || queued[other] != 0 || isFace(state_.labels[q])) return;
@@ -180,6 +158,7 @@ void CleanUp::extractEdges(SegmentationReport& report) {
       queued[other] = 1;
     });
   }
+  return extracted;
 }
 
 // Pass 3: union-find over the small segments that touch.
@@ -215,8 +194,6 @@ void CleanUp::connectSmall() {
   }
 }
 
-}  // namespace
-
 void findStrips(const SegmentationOptions& options, GrowthState& state) {
   // The inside of a band of w spacings is about 1 - 2 / w of it.
   constexpr std::uint32_t kPointsPerInner = 4;
@@ -241,18 +218,25 @@ void findStrips(const SegmentationOptions& options, GrowthState& state) {
   }
 }
 
-void cleanUp(const SegmentationOptions& options, GrowthState& state, SegmentationReport& report) {
-  state.strips.assign(state.clusters.size(), 0);
-  if (options.settle_edges) findStrips(options, state);
-  CleanUp passes(options, state);
-  if (options.absorb_small) passes.absorbSmall(report);
-  if (options.extract_edges) passes.extractEdges(report);
-  if (options.settle_edges) report.settled = settleEdges(options, state);
+void setKinds(const SegmentationOptions& options, GrowthState& state) {
   state.kinds.assign(state.clusters.size(), SegmentKind::Regular);
   for (std::size_t s = 0; s < state.clusters.size(); ++s) {
     if (state.clusters[s].size < options.small_size) state.kinds[s] = SegmentKind::Isolated;
   }
+}
+
+void cleanUp(const SegmentationOptions& options, GrowthState& state, SegmentationReport* report) {
+  if (options.settle_edges) findStrips(options, state);
+  CleanUp passes(options, state);
+  const std::size_t absorbed = options.absorb_small ? passes.absorbSmall() : 0;
+  const std::size_t extracted = options.extract_edges ? passes.extractEdges() : 0;
+  const std::size_t settled = options.settle_edges ? settleEdges(options, state) : 0;
+  setKinds(options, state);
   if (options.connect_small) passes.connectSmall();
+  if (report == nullptr) return;
+  report->absorbed = absorbed;
+  report->extracted = extracted;
+  report->settled = settled;
 }
 
 }  // namespace segorient::segmentation

@@ -72,18 +72,18 @@ void measure(const PointView& points, const GrowthState& state, Segmentation& re
 
 }  // namespace
 
-Segmentation finish(const PointView& points, const GrowthState& state,
-                    std::vector<std::int32_t> labels, std::vector<std::int8_t> signs) {
+Segmentation rank(const GrowthState& state, std::vector<std::int32_t> labels,
+                  std::vector<std::int8_t> signs) {
   std::size_t count = 0;
   std::vector<std::uint32_t> sizes;
   sizes.reserve(state.clusters.size());
   for (const Cluster& cluster : state.clusters) sizes.push_back(cluster.size);
-  const std::vector<std::int32_t> rank = rankLabels(labels, sizes, count);
+  const std::vector<std::int32_t> ranks = rankLabels(labels, sizes, count);
   Segmentation result;
   result.segments.resize(count);
-  for (std::size_t s = 0; s < rank.size(); ++s) {
-    if (rank[s] < 0) continue;
-    Segment& segment = result.segments[static_cast<std::size_t>(rank[s])];
+  for (std::size_t s = 0; s < ranks.size(); ++s) {
+    if (ranks[s] < 0) continue;
+    Segment& segment = result.segments[static_cast<std::size_t>(ranks[s])];
     const NormalSum& n = state.clusters[s].normal;
     const double length = std::sqrt(n.squaredNorm());
     if (length > 0.0) {
@@ -95,11 +95,17 @@ Segmentation finish(const PointView& points, const GrowthState& state,
     segment.size = state.clusters[s].size;
   }
   for (std::int32_t& label : labels) {
-    if (label >= 0) label = rank[static_cast<std::size_t>(label)];
+    if (label >= 0) label = ranks[static_cast<std::size_t>(label)];
   }
   result.labels = std::move(labels);
   result.signs = std::move(signs);
   collectMembers(result);
+  return result;
+}
+
+Segmentation finish(const PointView& points, const GrowthState& state,
+                    std::vector<std::int32_t> labels, std::vector<std::int8_t> signs) {
+  Segmentation result = rank(state, std::move(labels), std::move(signs));
   measure(points, state, result);
   return result;
 }

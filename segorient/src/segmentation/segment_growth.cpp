@@ -22,8 +22,12 @@ std::uint32_t orderedBits(float curvature) {
 /// for its next seed; where that happens often, its points are sorted.
 class SeedOrder {
  public:
-  explicit SeedOrder(const GrowthState& state)
-      : nodes_(state.nodes), labels_(state.labels), blocks_(nodes_.size() / kBlock + 1) {
+  /// \param allowed not 0 at the points that may be seeds; null = all
+  explicit SeedOrder(const GrowthState& state, const std::uint8_t* allowed = nullptr)
+      : nodes_(state.nodes),
+        labels_(state.labels),
+        allowed_(allowed),
+        blocks_(nodes_.size() / kBlock + 1) {
     firsts_.reserve(blocks_.size());
     for (std::size_t block = 0; block < blocks_.size(); ++block) {
       const std::uint64_t key = leastOf(block);
@@ -59,7 +63,11 @@ class SeedOrder {
     std::size_t at = 0;  ///< once it is sorted, its next entry in sorted_
   };
 
-  static bool usable(const Node& p) { return std::isfinite(p.nx + p.ny + p.nz + p.x + p.y + p.z); }
+  bool usable(std::size_t i) const {
+    const Node& p = nodes_[i];
+    return std::isfinite(p.nx + p.ny + p.nz + p.x + p.y + p.z) &&
+           (allowed_ == nullptr || allowed_[i] != 0);
+  }
   // Curvature above, index below.
   std::uint64_t keyOf(std::size_t p) const {
     return std::uint64_t{orderedBits(nodes_[p].curvature)} << 32U | p;
@@ -72,7 +80,7 @@ class SeedOrder {
   void forEachSeed(std::size_t block, Visit&& visit) const {
     const std::size_t end = std::min(nodes_.size(), (block + 1) * kBlock);
     for (std::size_t p = block * kBlock; p < end; ++p) {
-      if (labels_[p] < 0 && usable(nodes_[p])) visit(keyOf(p));
+      if (labels_[p] < 0 && usable(p)) visit(keyOf(p));
     }
   }
 
@@ -101,19 +109,63 @@ class SeedOrder {
 
   const FastVector<Node>& nodes_;
   const std::vector<std::int32_t>& labels_;
+  const std::uint8_t* allowed_;
   std::vector<Block> blocks_;
   std::vector<std::uint64_t> firsts_;
   std::vector<std::uint64_t> sorted_;  ///< block after block, each with kNone at its end
 };
 
+/// Edges by distances and tangent planes, as PairLimits has them.
+struct LimitedEdges {
+  PairLimits limits;
+
+  std::uint32_t among(std::size_t /*p*/) const { return ~0U; }
+  bool admits(const Node& p, const Node& q, std::size_t /*index*/) const {
+    return limits.admissible(p, q);
+  }
+  bool supports(std::size_t /*q*/, std::int32_t /*label*/, std::uint32_t /*size*/) const {
+    return true;
+  }
+};
+
+/// Edges of single sheets.
+struct ListedEdges {
+  const GrowthState& state;
+  const std::vector<std::uint32_t> masks;  ///< see SheetEdges::list()
+  const std::uint8_t* reliable;            ///< null = all points are
+
+  std::uint32_t among(std::size_t p) const { return masks[p]; }
+  bool admits(const Node& /*p*/, const Node& /*q*/, std::size_t index) const {
+    return reliable == nullptr || reliable[index] != 0;
+  }
+
+  // As GrowthState::supports().
+  bool supports(std::size_t q, std::int32_t label, std::uint32_t size) const {
+    constexpr std::uint32_t kYoung = 6;  // a segment that small has not so many to offer
+    const int wanted = size <= kYoung ? 0 : state.support;
+    const pcl::index_t* row = state.neighborhoods->indices(q) + 1;
+    const int last = state.rowSize(q) - 1;
+    int good = 0;
+    int bad = 0;
+    // Most points have one sheet around them, so that nothing can speak against it.
+    const bool one_sheet = state.support == 0 || masks[q] == (1U << last) - 1U;
+    for (int j = 0; j < last && !(one_sheet && good >= wanted); ++j) {
+      if (state.labels[static_cast<std::size_t>(row[j])] != label) continue;
+      ((masks[q] >> j & 1U) != 0 ? good : bad) += 1;
+    }
+    return one_sheet ? good >= wanted : bad <= good && good >= wanted;
+  }
+};
+
 /// Grows one segment after the other; the queue is one array for all of them. The arrays are held
 /// by plain pointers: this loop is most of the time that segmentation takes.
+template <typename Edges>
 class Grower {
  public:
-  Grower(const SegmentationOptions& options, GrowthState& state,
+  Grower(const SegmentationOptions& options, const Edges& edges, GrowthState& state,
          std::vector<std::uint8_t>& on_border)
       : hood_(*state.neighborhoods),
-        limits_(state.limits),
+        edges_(edges),
         scattered_(state.scattered),
         row_size_(state.neighbors),
         cos_alpha_(options.alpha < kRightAngle ? std::cos(options.alpha) : 0.F),
@@ -162,6 +214,23 @@ class Grower {
     clusters_.push_back(cluster_);
   }
 
+  /// Goes on from the points that have neighbours in other segments or in none, in their order, and
+  /// from what these reach.
+  void growOn(std::size_t points) {
+    tail_ = 0;
+    for (std::size_t p = 0; p < points; ++p) {
+      if (labels_[p] >= 0 && on_border_[p] != 0) queue_[tail_++] = static_cast<pcl::index_t>(p);
+    }
+    for (std::size_t head = 0; head < tail_; ++head) {
+      const auto p = static_cast<std::size_t>(queue_[head]);
+      label_ = labels_[p];
+      cluster_ = clusters_[static_cast<std::size_t>(label_)];
+      threshold_ = sqr_cos_beta_ * cluster_.normal.squaredNorm();
+      spread(p);
+      clusters_[static_cast<std::size_t>(label_)] = cluster_;
+    }
+  }
+
  private:
   static constexpr std::size_t kRowsAhead = 32;
   static constexpr std::size_t kLabelsAhead = 16;
@@ -197,9 +266,11 @@ class Grower {
     std::uint8_t border = 0;
     for (int first = 1; first < count; first += kMaskBits) {
       const int last = std::min(count, first + kMaskBits);
-      for (std::uint32_t others = othersAmong(row + first, last - first); others != 0;
-           others &= others - 1) {
-        const auto q = static_cast<std::size_t>(row[first + __builtin_ctz(others)]);
+      const std::uint32_t others = othersAmong(row + first, last - first);
+      std::uint32_t open = others & edges_.among(p);
+      if (open != others) border = 1;
+      for (; open != 0; open &= open - 1) {
+        const auto q = static_cast<std::size_t>(row[first + __builtin_ctz(open)]);
         if (labels_[q] == label_) continue;  // twice in the row
         if (labels_[q] >= 0 || !tryAccept(node, q)) border = 1;
       }
@@ -227,16 +298,17 @@ class Grower {
   bool tryAccept(const Node& p, std::size_t q) {
     const Node& candidate = nodes_[q];
     const float cosine = dotNormals(compare_with_seed_ ? seed_ : p, candidate);
-    if (!(std::abs(cosine) >= cos_alpha_) || !limits_.admissible(p, candidate)) return false;
+    if (!(std::abs(cosine) >= cos_alpha_) || !edges_.admits(p, candidate, q)) return false;
     const int sign = cosine < 0.F ? -1 : 1;
     const double along = sign * cluster_.normal.dot(candidate);
     if (cos_beta_ > 0.F && !(along > 0.0 && along * along >= threshold_)) return false;
+    if (!edges_.supports(q, label_, cluster_.size)) return false;
     accept(q, sign, residual(p, candidate) <= max_residual_);
     return true;
   }
 
   const Neighborhoods& hood_;
-  PairLimits limits_;
+  const Edges& edges_;
   bool scattered_;
   int row_size_;
   bool full_ = true;  ///< no row is shorter
@@ -259,8 +331,10 @@ class Grower {
   double threshold_ = 0.0;  ///< squared length that the sum must have along a candidate
 };
 
-// Eight at a time: nearly all are 0.
-void listBorder(const std::vector<std::uint8_t>& on_border, GrowthState& state) {
+// What is left to do after growing: the border, eight points at a time, as nearly all are not on
+// it.
+void end(const std::vector<std::uint8_t>& on_border, GrowthState& state) {
+  state.strips.assign(state.clusters.size(), 0);
   const std::size_t n = on_border.size();
   for (std::size_t first = 0; first < n; first += sizeof(std::uint64_t)) {
     std::uint64_t any = 0;
@@ -274,17 +348,38 @@ void listBorder(const std::vector<std::uint8_t>& on_border, GrowthState& state) 
   }
 }
 
-}  // namespace
-
-void grow(const SegmentationOptions& options, GrowthState& state) {
+// Nothing is labelled. \return one a point: it may have a neighbour in another segment
+std::vector<std::uint8_t> start(GrowthState& state) {
   const std::size_t n = state.nodes.size();
   state.labels.assign(n, -1);
   state.signs.assign(n, 1);
-  std::vector<std::uint8_t> on_border(n, 1);
+  return std::vector<std::uint8_t>(n, 1);
+}
+
+}  // namespace
+
+void grow(const SegmentationOptions& options, GrowthState& state) {
+  std::vector<std::uint8_t> on_border = start(state);
   SeedOrder seeds(state);
-  Grower grower(options, state, on_border);
+  const LimitedEdges edges{state.limits};
+  Grower<LimitedEdges> grower(options, edges, state, on_border);
   for (std::size_t seed = 0; seeds.next(seed);) grower.grow(seed);
-  listBorder(on_border, state);
+  end(on_border, state);
+}
+
+void growSheets(const SegmentationOptions& options, GrowthState& state) {
+  std::vector<std::uint8_t> on_border = start(state);
+  const SheetEdges& sheets = *state.sheets;
+  ListedEdges edges{state, sheets.list(*state.neighborhoods, options.threads),
+                    sheets.field().reliable};
+  Grower<ListedEdges> grower(options, edges, state, on_border);
+  SeedOrder sure(state, edges.reliable);
+  for (std::size_t seed = 0; sure.next(seed);) grower.grow(seed);
+  edges.reliable = nullptr;
+  grower.growOn(state.nodes.size());
+  SeedOrder rest(state);
+  for (std::size_t seed = 0; rest.next(seed);) grower.grow(seed);
+  end(on_border, state);
 }
 
 }  // namespace segorient::segmentation

@@ -2,6 +2,7 @@
 // Copyright (c) 2026, the segorient authors
 
 #include <array>
+#include <cstring>
 #include <limits>
 
 #include "common/threads.h"
@@ -14,6 +15,8 @@ namespace {
 /// On a surface with one random sample per square of side 1 the squared distance to the i-th
 /// neighbour is i / pi in the mean, so over the first six it is 3.5 / pi.
 constexpr float kSqrSpacingPerMean = 3.14159265F / 3.5F;
+/// The same from the mean distance to the first six, which is .977 there.
+constexpr float kSidePerMeanDistance = 1.0233F;
 /// Points that the noise is estimated from.
 constexpr std::size_t kNoiseSamples = 4096;
 
@@ -208,6 +211,36 @@ void prepare(const PointView& points, const NormalView& normals, const Segmentat
     // Two deviations of a noisy neighbour, and never so much that a wall of one spacing would leak.
     state.limits.offset = std::clamp(2.F * state.typical_offset, options.max_offset,
                                      std::max(0.9F, options.max_offset));
+  }
+}
+
+void prepare(const PointView& points, const SheetField& field, int threads, GrowthState& state) {
+  // Seeds are told apart to a percent or so: near points one after the other.
+  constexpr std::uint32_t kLeading = 0xffff0000U;
+  const auto n = static_cast<std::ptrdiff_t>(points.size);
+  state.nodes.resize(points.size);
+#pragma omp parallel for num_threads(resolveThreads(threads, points.size, 20.0)) schedule(static)
+  for (std::ptrdiff_t i = 0; i < n; ++i) {
+    const auto row = static_cast<std::size_t>(i);
+    const float* p = points[row];
+    const float* m = field.normals + 4 * row;
+    std::uint32_t bits = 0;
+    std::memcpy(&bits, m + 3, sizeof bits);
+    bits &= kLeading;
+    Node& node = state.nodes[row];
+    node = {p[0], p[1], p[2], kSidePerMeanDistance * field.spacing[row], m[0], m[1], m[2], 0.F};
+    std::memcpy(&node.curvature, &bits, sizeof bits);
+  }
+  state.limits.gap_sqr = std::numeric_limits<float>::max();
+  state.limits.offset = state.sheets->offset();
+  state.typical_offset = typicalOffset(state);
+  state.scattered = isScattered(*state.neighborhoods);
+}
+
+void setCurvature(const float* curvature, GrowthState& state) {
+  for (std::size_t i = 0; i < state.nodes.size(); ++i) {
+    state.nodes[i].curvature =
+        std::isnan(curvature[i]) ? std::numeric_limits<float>::max() : curvature[i];
   }
 }
 

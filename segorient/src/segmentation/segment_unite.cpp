@@ -69,7 +69,7 @@ class BorderTest {
       const Node& p = state_.nodes[pair->p];
       const Node& q = state_.nodes[pair->q];
       const float cosine = dotNormals(p, q);
-      if (!(std::abs(cosine) >= cos_alpha_) || !state_.limits.admissible(p, q)) continue;
+      if (!(std::abs(cosine) >= cos_alpha_) || !state_.joins(pair->p, pair->q)) continue;
       if (!passesOn(p, q) || !passesOn(q, p)) continue;
       ++within;
       agreement += static_cast<double>(cosine);

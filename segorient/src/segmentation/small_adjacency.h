@@ -48,17 +48,18 @@ class SmallAdjacency {
   /// Neighbours in both directions come twice.
   template <typename Visit>
   void forEachNeighbor(std::uint32_t slot, Visit&& visit) const {
+    forEachInRow(slot, visit);
+    for (std::size_t i = reverse_starts_[slot]; i < reverse_starts_[slot + 1]; ++i) {
+      visitNear(point(slot), reverse_[i], visit);
+    }
+  }
+  /// The same for those in the point's own row only.
+  template <typename Visit>
+  void forEachInRow(std::uint32_t slot, Visit&& visit) const {
     const std::size_t p = point(slot);
-    const auto visitNear = [&](pcl::index_t index) {
-      const auto q = static_cast<std::size_t>(index);
-      if (state_.labels[q] >= 0 && state_.limits.near(state_.nodes[p], state_.nodes[q])) visit(q);
-    };
     const pcl::index_t* row = state_.neighborhoods->indices(p);
     const int count = state_.rowSize(p);
-    for (int j = 1; j < count; ++j) visitNear(row[j]);
-    for (std::size_t i = reverse_starts_[slot]; i < reverse_starts_[slot + 1]; ++i) {
-      visitNear(reverse_[i]);
-    }
+    for (int j = 1; j < count; ++j) visitNear(p, row[j], visit);
   }
 
   /// visit(point) for the points of a small segment.
@@ -79,7 +80,7 @@ class SmallAdjacency {
       first_stamp_ = 1;
     }
     for (std::uint32_t s = heads_[static_cast<std::size_t>(label)]; s != kNone; s = next_[s]) {
-      const Node& node = state_.nodes[point(s)];
+      const std::size_t p = point(s);
       forEachNeighbor(s, [&](std::size_t q) {
         if (state_.labels[q] == label) return;
         if (stamps_[q] < first_stamp_) {
@@ -87,7 +88,7 @@ class SmallAdjacency {
           around_.push_back({q, false});
         }
         Around& entry = around_[stamps_[q] - first_stamp_];
-        entry.admissible = entry.admissible || state_.limits.admissible(state_.nodes[q], node);
+        entry.admissible = entry.admissible || state_.joins(q, p);
       });
     }
     first_stamp_ += static_cast<std::uint32_t>(around_.size());
@@ -106,6 +107,11 @@ class SmallAdjacency {
     bool admissible;
   };
   void listReverse();
+  template <typename Visit>
+  void visitNear(std::size_t p, pcl::index_t index, Visit&& visit) const {
+    const auto q = static_cast<std::size_t>(index);
+    if (state_.labels[q] >= 0 && state_.limits.near(state_.nodes[p], state_.nodes[q])) visit(q);
+  }
 
   const GrowthState& state_;
   std::vector<pcl::index_t> points_;

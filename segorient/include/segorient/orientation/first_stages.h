@@ -33,15 +33,12 @@ class SEGORIENT_ORIENTATION_EXPORT FirstStages {
   /// Unoriented ones, by `options.normals`; those near sharp edges anew, `options.recomputations`
   /// times.
   void findNormals();
-  /// After findNormals(). \param split whether faces that bend by more than beta stay in pieces, as
-  /// the paper has it; otherwise these are united
-  void findSegments(bool split);
+  /// After findNormals(), by `options.segmentation`.
+  void findSegments();
 
   // By input row. Rows that repeat a point have that point's result.
   std::vector<float> normals() const;  ///< 4 floats: normal, curvature; NaN where there is none
-  /// The same with the signs that agree within each segment.
-  std::vector<float> normalsBySegment() const;
-  Segmentation segmentation() const;  ///< sizes are in rows
+  Segmentation segmentation() const;   ///< sizes are in rows
 
   const std::vector<StageTime>& times() const;
   int k() const;  ///< neighbours used, the point itself not counted

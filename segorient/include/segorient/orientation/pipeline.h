@@ -25,11 +25,12 @@ struct PipelineOptions {
   int k = 0;
   /// How normals are estimated, by default as the cloud asks for; its k and threads are not used.
   LocalNormalOptions normals{NormalEstimator::Automatic};
-  /// Its threads are not used, its neighbors only by FirstStages, and its settle_edges only there
-  /// and by OrientationMethod::AUTO.
+  /// Its threads are not used. OrientationMethod::AUTO grows by AutomaticOptions and takes from
+  /// here what is about the clean-up; the paper's methods do not settle edges, unite segments or
+  /// look at its neighbors.
   SegmentationOptions segmentation;
-  /// How often normals near sharp edges are found anew (paper, 2.3.1); the cloud is segmented
-  /// again after that. Not for OrientationMethod::AUTO.
+  /// How often normals near sharp edges are found anew (paper, 2.3.1), each time by the segments
+  /// that the normals then make. Not for OrientationMethod::AUTO.
   int recomputations = 0;
   RecomputationOptions recomputation;  ///< its estimator, k and threads are not used
   OrientationOptions orientation;      ///< its threads are not used
@@ -101,6 +102,14 @@ SEGORIENT_ORIENTATION_EXPORT OrientedCloud orientCloud(const PointView& points,
                                                        const std::vector<pcl::index_t>* indices,
                                                        const PipelineOptions& options,
                                                        const PipelineProgress& progress = {});
+
+/// The segments of a cloud: those of orientCloud() with the same options. Where these name an
+/// estimator or recomputations, which OrientationMethod::AUTO does not look at, those of
+/// FirstStages.
+/// \return as orientCloud(), but normals agree within each segment: all signs are 1
+SEGORIENT_ORIENTATION_EXPORT OrientedCloud segmentCloud(const PointView& points,
+                                                        const PipelineOptions& options,
+                                                        const PipelineProgress& progress = {});
 
 /// Bytes that orientCloud() takes beside its input at most, or a little more: linear in the points.
 SEGORIENT_ORIENTATION_EXPORT std::size_t expectedMemory(std::size_t points,

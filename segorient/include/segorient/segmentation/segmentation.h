@@ -107,6 +107,10 @@ struct SegmentationOptions {
   /// point there goes to the segment whose flat part, continued, passes nearest to it. So do the
   /// points of strips: segments without an inside, such as the row of points on an edge of a grid.
   bool settle_edges = true;
+  /// Beyond the paper, at the end: segments whose common border is smooth are one face, see
+  /// segmentByNormals(), which gives both and does not look at this. Faces that bend by more than
+  /// beta cannot be triangulated or oriented as one.
+  bool unite_smooth = false;
   bool connect_small = true;  ///< clean-up pass 3: small segments that touch become connected ones
   int threads = 0;            ///< see resolveThreads()
 };

@@ -52,7 +52,7 @@ std::vector<std::uint8_t> lookAround(const SheetNormals& sheets,
 AutoNormals orientAtOneScale(const PointView& points, const Neighborhoods& neighborhoods,
                              const AutomaticOptions& settings, const PointHints& hints, int threads,
                              const std::function<void(const char*, double)>& begin,
-                             SheetRecord* record) {
+                             SheetRecord* record, FinishedSegments* finished) {
   AutoNormals out;
   if (begin) begin("normals", 0.3);
   SheetNormalOptions normal_options;
@@ -75,8 +75,8 @@ AutoNormals orientAtOneScale(const PointView& points, const Neighborhoods& neigh
     cuts.epsilon = settings.epsilon;
     cuts.require_support = settings.require_support;
     cuts.clean_up = settings.clean_up;
-    Segmentation segments = segmentSheets(
-        points, neighborhoods, field, admissibleEdges(points, neighborhoods, field, threads), cuts);
+    cuts.threads = threads;
+    Segmentation segments = segmentSheets(points, neighborhoods, field, cuts, finished);
     if (begin) begin("orientation", 0.62);
     out.orientation =
         record != nullptr && record->known
@@ -135,16 +135,16 @@ AutoNormals orientAtOneScale(const PointView& points, const Neighborhoods& neigh
 
 AutoNormals orientPoints(const PointView& points, const Neighborhoods& neighborhoods,
                          const AutomaticOptions& settings, const PointHints& hints, int threads,
-                         const std::function<void(const char*, double)>& begin,
-                         SheetRecord* record) {
+                         const std::function<void(const char*, double)>& begin, SheetRecord* record,
+                         FinishedSegments* finished) {
   AutoNormals out =
-      orientAtOneScale(points, neighborhoods, settings, hints, threads, begin, record);
+      orientAtOneScale(points, neighborhoods, settings, hints, threads, begin, record, finished);
   // Whether a coarser scale is better is for the whole cloud to tell.
   // Where points have sensors of their own, those decide.
   if (record != nullptr || !settings.coarse_levels || !hints.sensors.empty()) return out;
   const auto orient = [&](const PointView& subset, const Neighborhoods& table,
                           const PointHints& of_subset) {
-    return orientAtOneScale(subset, table, settings, of_subset, threads, {}, nullptr);
+    return orientAtOneScale(subset, table, settings, of_subset, threads, {}, nullptr, nullptr);
   };
   // A coarser level knows nothing of what is around each point.
   const std::vector<std::uint8_t> around = out.around;

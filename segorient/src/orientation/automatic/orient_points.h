@@ -70,9 +70,11 @@ struct SheetRecord {
 /// \param begin called with a stage's name and the fraction of the work done before it; may be
 ///        empty
 /// \param record null unless the cloud is part of a larger one
+/// \param finished where not null: the sheets' segments as a user wants to see them, their signs
+///        those of the sheets' normals, which are not known any more; see segmentSheets()
 AutoNormals orientPoints(const PointView& points, const Neighborhoods& neighborhoods,
                          const AutomaticOptions& settings, const PointHints& hints, int threads,
                          const std::function<void(const char*, double)>& begin = {},
-                         SheetRecord* record = nullptr);
+                         SheetRecord* record = nullptr, FinishedSegments* finished = nullptr);
 
 }  // namespace segorient::detail

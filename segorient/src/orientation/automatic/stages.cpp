@@ -6,13 +6,12 @@
 
 #include <cmath>
 
+#include "common/dot.h"
 #include "features/sheet_denoise.h"
 #include "features/sheet_normals.h"
 #include "orientation/automatic/final_normals.h"
 #include "orientation/automatic/sensor_normals.h"
-#include "segmentation/region_growing.h"
 #include "segmentation/segmentation_rows.h"
-#include "segmentation/sheet_segmentation.h"
 
 namespace segorient::detail {
 namespace {
@@ -42,32 +41,45 @@ void findNeighbors(PreparedCloud& cloud, const PipelineOptions& options, const S
   cloud.dropIndex();
 }
 
-// Segments of the oriented normals, turned as most of their points are.
-void segmentOriented(const PointView& points, const Neighborhoods& table,
-                     SegmentationOptions settings, int threads, const AutoNormals& oriented,
-                     AutoStages& out) {
-  settings.neighbors = kSheetDegree;
-  settings.threads = threads;
-  out.segmentation =
-      segmentByNormals(points, {oriented.normals.data(), 4, points.size}, table, settings);
+// Points that have no plane of their own, but a normal from those around them, are of the segment
+// of the nearest that has one.
+void labelTheRest(const Neighborhoods& table, const std::vector<float>& normals,
+                  Segmentation& segmentation) {
+  const std::vector<std::int32_t> labels = segmentation.labels;
+  bool any = false;
+  for (std::size_t i = 0; i < labels.size(); ++i) {
+    if (labels[i] >= 0 || !std::isfinite(normals[4 * i])) continue;
+    for (int j = 1; j < table.count(i) && segmentation.labels[i] < 0; ++j) {
+      segmentation.labels[i] = labels[static_cast<std::size_t>(table.indices(i)[j])];
+      any = any || segmentation.labels[i] >= 0;
+    }
+  }
+  if (any) segmentation::collectMembers(segmentation);
+}
+
+// Turns the segments as most of their points are.
+void turnSegments(const AutoNormals& oriented, AutoStages& out) {
   Segmentation& segmentation = out.segmentation;
   out.segments.resize(segmentation.segments.size());
   for (std::size_t s = 0; s < segmentation.segments.size(); ++s) {
+    Segment& segment = segmentation.segments[s];
     long balance = 0;
     double confidence = 0.0;
     for (const auto* p = segmentation.begin(s); p != segmentation.end(s); ++p) {
-      balance += segmentation.signs[static_cast<std::size_t>(*p)];
-      confidence += static_cast<double>(oriented.confidences[static_cast<std::size_t>(*p)]);
+      const auto i = static_cast<std::size_t>(*p);
+      const bool agrees = dot(&oriented.normals[4 * i], segment.reference_normal.data()) >= 0.F;
+      segmentation.signs[i] = agrees ? std::int8_t{1} : std::int8_t{-1};
+      balance += segmentation.signs[i];
+      confidence += static_cast<double>(oriented.confidences[i]);
     }
     if (balance < 0) {
       for (const auto* p = segmentation.begin(s); p != segmentation.end(s); ++p) {
         auto& sign = segmentation.signs[static_cast<std::size_t>(*p)];
         sign = static_cast<std::int8_t>(-sign);
       }
-      for (float& c : segmentation.segments[s].reference_normal) c = -c;
+      for (float& c : segment.reference_normal) c = -c;
     }
-    const auto size =
-        static_cast<double>(std::max<std::uint32_t>(1, segmentation.segments[s].size));
+    const auto size = static_cast<double>(std::max<std::uint32_t>(1, segment.size));
     const double unanimous = std::fabs(static_cast<double>(balance)) / size;
     SegmentOrientationResult& result = out.segments[s];
     result.sign = 1;
@@ -93,11 +105,13 @@ AutoStages runAutoStages(PreparedCloud& cloud, const PipelineOptions& options,
       out.denoised ? PointView{smoothed.data(), 4, cloud.size()} : cloud.points();
   const Neighborhoods& table = out.denoised ? of_smoothed : cloud.neighborhoods();
   const AutomaticOptions& settings = options.orientation.automatic;
+  FinishedSegments finished;
+  finished.options = segmentation::inUnitOf(cloud, options.segmentation);
+  finished.options.threads = options.threads;
   AutoNormals oriented =
-      orientPoints(points, table, settings, hints, options.threads, begin, record);
-  begin("segmentation", 0.78);
-  segmentOriented(points, table, segmentation::inUnitOf(cloud, options.segmentation),
-                  options.threads, oriented, out);
+      orientPoints(points, table, settings, hints, options.threads, begin, record, &finished);
+  out.segmentation = std::move(finished.segmentation);
+  labelTheRest(table, oriented.normals, out.segmentation);
   if (settings.fit_normals && !out.denoised && !oriented.scan_scales) {
     begin("recomputation", 0.88);
     out.final_traits =
@@ -107,6 +121,7 @@ AutoStages runAutoStages(PreparedCloud& cloud, const PipelineOptions& options,
   if (!oriented.orientation.toward.empty()) {
     leanToSensors(points, table, oriented.orientation.toward, options.threads, oriented.normals);
   }
+  turnSegments(oriented, out);
   out.normals = std::move(oriented.normals);
   out.confidences = std::move(oriented.confidences);
   out.components = std::move(oriented.components);
