@@ -211,13 +211,13 @@ int runOrient(const std::vector<std::string>& words) {
   stages.apply(line, common, options);
   hints.check(line, common, options);
   stages.warnOfUnused(line, common, options);
-  if (tiles.wanted()) {
-    runAllSteps(tiles.request(line, common, options, hints), tiles.folder(), common.quiet);
+  if (report_path == line.argument("OUT")) throw UsageError("--report and OUT are the same file");
+  if (tiles.wanted() || tiles.needed(line, common, options)) {
+    runAllSteps(tiles.request(line, common, options, hints), tiles.folder(), report_path,
+                common.quiet);
     return 0;
   }
   requireEnding(line.argument("OUT"), {".pcd", ".ply", ".las"});
-
-  if (report_path == line.argument("OUT")) throw UsageError("--report and OUT are the same file");
 
   OutputFile out(line.argument("OUT"));
   std::optional<OutputFile> report;

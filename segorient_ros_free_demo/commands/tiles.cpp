@@ -25,6 +25,9 @@ constexpr const char* kPurpose =
     "  segorient tiles tile DIR N                       each tile again, in any order, or not:\n"
     "                                                   write does what is left of that\n"
     "  segorient tiles write DIR [N]                    each output from 0 on, or all\n"
+    "  segorient tiles draw DIR OUT.ply                 after join: tiles, halos and the graph as "
+    "a\n"
+    "                                                   cloud, for 'render --color rgb'\n"
     "  segorient tiles clean DIR                        removes the steps' files\n"
     "Files are there whole or not at all; a step whose result is there does nothing.\n"
     "'tile' without N works on all tiles that are not done. See segorient/doc/tiles.md.";
@@ -89,17 +92,20 @@ int runTiles(const std::vector<std::string>& words) {
   const std::string step = words.empty() ? "" : words[0];
   const std::vector<std::string> rest(words.begin() + (words.empty() ? 0 : 1), words.end());
   if (step == "plan") return runPlan(rest);
-  CommandLine line("tiles plan|tile|join|write|clean DIR [N] [options]", kPurpose, kExample);
+  CommandLine line("tiles plan|tile|join|write|draw|clean DIR [N] [options]", kPurpose, kExample);
   CommonOptions common;
   line.arguments({"STEP", "DIR", "N"}, 1);
   common.add(line);
   if (!line.parse(words)) return 0;
   common.check();
-  require(step == "tile" || step == "join" || step == "write" || step == "clean",
-          "'" + step + "' is no step: plan, tile, join, write or clean");
+  require(step == "tile" || step == "join" || step == "write" || step == "draw" || step == "clean",
+          "'" + step + "' is no step: plan, tile, join, write, draw or clean");
   const std::string folder = line.argument("DIR");
   const std::string number = line.argument("N");
-  require(step == "tile" || step == "write" || number.empty(), step + " takes no number");
+  const bool draws = step == "draw";
+  require(step == "tile" || step == "write" || draws || number.empty(), step + " takes no number");
+  require(!draws || !number.empty(), "OUT.ply is missing: segorient tiles draw DIR OUT.ply");
+  if (draws) requireEnding(number, {".ply", ".pcd"});
   if (step == "clean") {
     requireFolder(folder);
     WorkFolder(folder, true).remove();
@@ -108,6 +114,7 @@ int runTiles(const std::vector<std::string>& words) {
   const Plan plan = loadPlan(folder);  // before the folder is made where there is none
   const WorkFolder work(folder, step == "join");
   if (step == "join") joinStep(plan, folder, common.threads);
+  if (draws) drawStep(plan, folder, number);
   if (step == "tile") {
     forEachAsked(number, plan.tiles(), "tile", [&](std::size_t n) {
       const bool joined = std::filesystem::exists(joinPath(folder));

@@ -41,7 +41,17 @@ bool CloudStream::canRead(const std::string& path) {
   return rowsOf(file).has_value();
 }
 
-CloudStream::CloudStream(const std::string& path) : file_(path), format_(requireRows(file_)) {}
+CloudStream::CloudStream(const std::string& path, std::size_t buffer)
+    : file_(path, buffer),
+      bytes_in_all_(file_.remaining()),
+      format_(requireRows(file_)),
+      first_byte_(bytes_in_all_ - file_.remaining()) {}
+
+void CloudStream::skipTo(std::uint64_t point) {
+  if (point == read_) return;
+  read_ = std::min(point, format_.size);
+  file_.seek(first_byte_ + read_ * format_.file_bytes);
+}
 
 bool CloudStream::next(CloudTable& block, std::size_t most) {
   const auto count = static_cast<std::size_t>(std::min<std::uint64_t>(most, format_.size - read_));

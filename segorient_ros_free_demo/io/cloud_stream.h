@@ -37,17 +37,22 @@ class CloudStream {
   static bool canRead(const std::string& path);
 
   /// Throws where canRead() is false.
-  explicit CloudStream(const std::string& path);
+  /// \param buffer see InputFile
+  explicit CloudStream(const std::string& path, std::size_t buffer = std::size_t{1} << 20);
 
   const std::string& path() const { return file_.path(); }
   std::uint64_t size() const { return format_.size; }
   const CloudTable& layout() const { return format_.layout; }
   /// The next points, `most` at most. \return false behind the last one
   bool next(CloudTable& block, std::size_t most = std::size_t{1} << 16);
+  /// Goes on at any point.
+  void skipTo(std::uint64_t point);
 
  private:
   InputFile file_;
+  std::uint64_t bytes_in_all_;
   RowFormat format_;
+  std::uint64_t first_byte_;
   std::uint64_t read_ = 0;
   std::vector<std::uint8_t> bytes_;
 };

@@ -16,7 +16,7 @@ constexpr std::size_t kBuffer = std::size_t{1} << 20;
 
 }  // namespace
 
-InputFile::InputFile(std::string path) : path_(std::move(path)) {
+InputFile::InputFile(std::string path, std::size_t buffer) : path_(std::move(path)) {
   struct stat info {};
   if (stat(path_.c_str(), &info) != 0) fail(std::strerror(errno));
   if (S_ISDIR(info.st_mode)) fail("is a directory");
@@ -26,7 +26,7 @@ InputFile::InputFile(std::string path) : path_(std::move(path)) {
   size_ = static_cast<std::uint64_t>(info.st_size);
   if (size_ == 0) fail("is empty");
   std::setvbuf(file_.get(), nullptr, _IONBF, 0);  // buffered here
-  buffer_.resize(static_cast<std::size_t>(std::min<std::uint64_t>(size_, kBuffer)));
+  buffer_.resize(static_cast<std::size_t>(std::min<std::uint64_t>(size_, buffer)));
 }
 
 bool InputFile::fill() {

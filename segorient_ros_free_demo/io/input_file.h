@@ -19,7 +19,8 @@ namespace segorient::program {
 class InputFile {
  public:
   /// Throws if there is no such file, or it is a directory, device or pipe, or may not be read.
-  explicit InputFile(std::string path);
+  /// \param buffer bytes that are read at once; small where it is read here and there
+  explicit InputFile(std::string path, std::size_t buffer = std::size_t{1} << 20);
 
   const std::string& path() const { return path_; }
   std::uint64_t remaining() const { return size_ - position_; }  ///< bytes not yet read

@@ -67,11 +67,23 @@ std::vector<double> timesOf(const CloudTable& table, const std::string& path) {
                   "has no field time, gps_time, t, timestamp or GPSTime to join a trajectory to");
 }
 
-// What the trajectory says comes before what the cloud says.
 void addTrajectory(const Trajectory& trajectory, const std::string& path, bool quiet,
                    CloudTable& table) {
-  const TrajectoryJoin join = joinTrajectory(trajectory, timesOf(table, path));
+  const TrajectoryJoin join = addViewpoints(trajectory, path, table);
   if (join.joined == 0) throw FileError(path, explainNoOverlap(trajectory, join));
+  const std::size_t without = join.outside + join.without_time;
+  if (without > 0) {
+    warn(path + ": " + std::to_string(without) +
+         " points were not measured within the trajectory's time; it says no sensor for them");
+  }
+  if (!quiet) std::printf("trajectory      %zu points have a place of the sensor\n", join.joined);
+}
+
+}  // namespace
+
+TrajectoryJoin addViewpoints(const Trajectory& trajectory, const std::string& path,
+                             CloudTable& table) {
+  TrajectoryJoin join = joinTrajectory(trajectory, timesOf(table, path));
   const std::array<const Field*, 3> known = table.viewpoints();
   const bool had = table.hasViewpoints();
   std::vector<double> before;
@@ -88,15 +100,8 @@ void addTrajectory(const Trajectory& trajectory, const std::string& path, bool q
       table.setReal(*to[a], i, had && !joined ? before[3 * i + a] : join.viewpoints[3 * i + a]);
     }
   }
-  const std::size_t without = join.outside + join.without_time;
-  if (without > 0) {
-    warn(path + ": " + std::to_string(without) +
-         " points were not measured within the trajectory's time; it says no sensor for them");
-  }
-  if (!quiet) std::printf("trajectory      %zu points have a place of the sensor\n", join.joined);
+  return join;
 }
-
-}  // namespace
 
 CloudTable HintOptions::read(const std::vector<std::string>& paths, bool quiet) const {
   std::vector<CloudTable> clouds;
@@ -190,6 +195,9 @@ void HintOptions::apply(TileRequest& request) const {
   request.closed = closed_;
   request.open = open_;
   request.find_sensors = !no_sensors_;
+  request.keep_orientation = keep_;
+  request.seeds = seeds_;
+  request.trajectory = trajectory_;
 }
 
 }  // namespace segorient::program

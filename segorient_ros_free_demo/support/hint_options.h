@@ -3,6 +3,7 @@
 #pragma once
 
 #include <segorient/orientation/pipeline.h>
+#include <segorient/orientation/trajectory.h>
 
 #include <string>
 #include <vector>
@@ -15,6 +16,11 @@ namespace segorient::program {
 
 /// The origin of the file's coordinates, as `points` have it: where many sensors put themselves.
 std::array<float, 3> localOrigin(const LocalPoints& points);
+
+/// Gives each point its place at the point's time as vp_x, vp_y, vp_z; where the trajectory says
+/// none, those that it had. \param path names `table` in messages
+TrajectoryJoin addViewpoints(const Trajectory& trajectory, const std::string& path,
+                             CloudTable& table);
 
 /// Pixels in a row of an organised cloud, else 0.
 std::size_t imageWidth(const CloudTable& table);

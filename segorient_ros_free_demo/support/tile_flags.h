@@ -17,6 +17,10 @@ class TileFlags {
   void add(CommandLine& line);
   /// Whether that was asked for.
   bool wanted() const { return !memory_.empty(); }
+  /// Whether it is the only way: the inputs can be read point by point, and would not fit in what
+  /// memory there is as a whole. Then it is as if it had been asked for, with most of that memory,
+  /// or as much as a run had that is to be gone on with; and said on standard error unless `quiet`.
+  bool needed(const CommandLine& line, const CommonOptions& common, const PipelineOptions& options);
   const std::string& folder() const { return folder_; }
 
   /// Before anything is read: throws UsageError where values make no sense, or options do not go
@@ -28,6 +32,7 @@ class TileFlags {
   std::string memory_;
   std::string folder_;
   std::uint64_t tile_points_ = 0;
+  std::uint64_t available_ = 0;  ///< instead of what there is; 0 = what there is
 };
 
 }  // namespace segorient::program

@@ -25,10 +25,10 @@ namespace {
 bool isOurs(const std::string& name, bool unfinished_only) {
   static const std::regex kFinished(
       "plan|join|labels|lock|input-[0-9]+\\.ply|"
-      "tile-[0-9]+\\.(points|rows|share|ties|signs|rows2|ties2|final|patches)");
+      "tile-[0-9]+\\.(points|rows|share|ties|signs|rows2|ties2|patches)");
   static const std::regex kUnfinished(
       "(plan|join|labels|input-[0-9]+\\.ply|"
-      "tile-[0-9]+\\.(points|rows|share|ties|signs|rows2|ties2|final|patches))"
+      "tile-[0-9]+\\.(points|rows|share|ties|signs|rows2|ties2|patches))"
       "\\.([A-Za-z0-9]{6}|part)");
   return std::regex_match(name, kUnfinished) ||
          (!unfinished_only && std::regex_match(name, kFinished));

@@ -19,13 +19,8 @@ void append(const std::vector<TileTie>& more, std::vector<TileTie>& ties) {
 }
 
 // What each two tiles say of the points that they have in common.
-// \param file of a tile's ties
-template <typename Joiner, typename File>
-void addTies(const Plan& plan, const File& file, Joiner& joiner) {
-  std::vector<TieReader> ties;
-  for (std::size_t t = 0; t < plan.tiles(); ++t) {
-    ties.emplace_back(file(t), plan.run, static_cast<std::uint32_t>(t));
-  }
+template <typename Joiner>
+void addTies(const std::vector<TieReader>& ties, Joiner& joiner) {
   for (std::uint32_t a = 0; a < ties.size(); ++a) {
     std::set<std::uint32_t> others;
     for (const TieSlice& slice : ties[a].slices()) others.insert(slice.other);
@@ -46,7 +41,10 @@ void addTies(const Plan& plan, const File& file, Joiner& joiner) {
 
 JoinSummary readSummary(const Plan& plan, const std::string& folder) {
   TileFileReader file(joinPath(folder), TileFileKind::JOIN, plan.run);
-  const auto summary = file.value<JoinSummary>();
+  JoinSummary summary;
+  summary.pieces = file.value<std::uint64_t>();
+  summary.again = file.value<std::uint64_t>();
+  summary.components = file.list<ComponentOrientationResult>();
   file.end();
   return summary;
 }
@@ -59,9 +57,18 @@ JoinSummary joinStep(const Plan& plan, const std::string& folder, int threads) {
   options.traits = plan.traits;
   options.threads = threads;
   options.hints = hintsOf(plan, plan.origin);
+  for (const PlanSeed& s : plan.seeds) {
+    OrientationHints::Seed seed;
+    for (std::size_t a = 0; a < 3; ++a) {
+      seed.position[a] = static_cast<float>(s.position[a] - plan.origin[a]);
+      seed.normal[a] = static_cast<float>(s.normal[a]);
+    }
+    options.hints.seeds.push_back(seed);
+  }
   TileJoiner joiner;
+  std::vector<TileShare> found(plan.tiles());
   for (std::size_t t = 0; t < plan.tiles(); ++t) {
-    const ShareFile share =
+    ShareFile share =
         loadShare(tilePath(folder, t, "share"), plan.run, static_cast<std::uint32_t>(t));
     std::array<double, 3> offset{};
     for (std::size_t a = 0; a < 3; ++a) offset[a] = plan.tile_origins[t][a] - plan.origin[a];
@@ -70,19 +77,32 @@ JoinSummary joinStep(const Plan& plan, const std::string& folder, int threads) {
     joiner.addTile(share.piece_sizes, share.votes, patches.patches, offset);
     options.hints.viewpoints.insert(options.hints.viewpoints.end(), patches.viewpoints.begin(),
                                     patches.viewpoints.end());
+    options.hints.normals.insert(options.hints.normals.end(), patches.normals.begin(),
+                                 patches.normals.end());
+    found[t].piece_sizes = std::move(share.piece_sizes);
+    found[t].piece_signs = std::move(share.piece_signs);
+    found[t].votes = std::move(share.votes);
   }
-  addTies(
-      plan, [&](std::size_t t) { return tilePath(folder, t, "ties"); }, joiner);
-  JoinedTiles joined = joiner.join(options);
+  std::vector<TieReader> ties;
   for (std::size_t t = 0; t < plan.tiles(); ++t) {
-    saveSigns(joined.tiles[t], tilePath(folder, t, "signs"), plan.run,
-              static_cast<std::uint32_t>(t));
+    ties.emplace_back(tilePath(folder, t, "ties"), plan.run, static_cast<std::uint32_t>(t));
   }
+  addTies(ties, joiner);
+  JoinedTiles joined = joiner.join(options);
   JoinSummary summary;
+  for (std::size_t t = 0; t < plan.tiles(); ++t) {
+    SignsFile file;
+    file.again = needsFinishing(found[t], joined.tiles[t]);
+    file.signs = std::move(joined.tiles[t]);
+    summary.again += file.again ? 1 : 0;
+    saveSigns(file, tilePath(folder, t, "signs"), plan.run, static_cast<std::uint32_t>(t));
+  }
   summary.pieces = joined.pieces;
-  summary.components = joined.components.size();
+  summary.components = std::move(joined.components);
   TileFileWriter file(joinPath(folder), TileFileKind::JOIN, plan.run);
-  file.value(summary);
+  file.value(summary.pieces);
+  file.value(summary.again);
+  file.list(summary.components);
   file.commit();
   return summary;
 }
@@ -99,20 +119,14 @@ std::uint64_t labelStep(const Plan& plan, const std::string& folder) {
     return count(loadLabels(labelsPath(folder), plan.run, plan.tiles()));
   }
   LabelJoiner joiner;
-  std::vector<bool> again(plan.tiles());
+  std::vector<TieReader> ties;
   for (std::size_t t = 0; t < plan.tiles(); ++t) {
     const auto tile = static_cast<std::uint32_t>(t);
-    FinalFile made = loadFinal(tilePath(folder, t, "final"), plan.run, tile);
-    again[t] = made.again;
-    if (!made.again) {
-      ShareFile share = loadShare(tilePath(folder, t, "share"), plan.run, tile);
-      made.segment_sizes = std::move(share.segment_sizes);
-    }
-    joiner.addTile(made.segment_sizes);
+    const bool again = loadSigns(tilePath(folder, t, "signs"), plan.run, tile).again;
+    ties.emplace_back(tilePath(folder, t, again ? "ties2" : "ties"), plan.run, tile);
+    joiner.addTile(ties.back().segmentSizes());
   }
-  addTies(
-      plan, [&](std::size_t t) { return tilePath(folder, t, again[t] ? "ties2" : "ties"); },
-      joiner);
+  addTies(ties, joiner);
   std::size_t segments = 0;
   const LabelFile labels = joiner.join(segments);
   saveLabels(labels, labelsPath(folder), plan.run);

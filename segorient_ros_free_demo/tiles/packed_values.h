@@ -10,6 +10,7 @@ namespace segorient::program {
 /// Bits of a packed normal: to a hundredth of a degree. A third of that many would spoil what
 /// surfaces without noise tell.
 constexpr unsigned kNormalBits = 28;
+constexpr std::uint64_t kNoNormal = (std::uint64_t{1} << kNormalBits) - 1;  ///< of no normal
 /// Bits of a packed curvature, of which PCL's definition leaves 0 to 1/3: to a thousandth of it.
 constexpr unsigned kCurvatureBits = 14;
 

@@ -28,6 +28,13 @@ void forEachNumber(P& p, const Visit& visit) {
   visit(p.open);
   visit(p.find_sensors);
   visit(p.found_sensors);
+  visit(p.memory);
+  visit(p.keep_orientation);
+  visit(p.adds_scans);
+  visit(p.adds_viewpoints);
+  visit(p.alpha);
+  visit(p.beta);
+  visit(p.epsilon);
 }
 
 }  // namespace
@@ -57,7 +64,9 @@ void savePlan(const Plan& plan, const std::string& folder) {
   for (const PlanInput& in : plan.inputs) {
     file.text(in.path);
     file.text(in.streamed);
-    for (const std::uint64_t v : {in.bytes, in.head, in.first_row, in.rows}) file.value(v);
+    for (const std::uint64_t v : {in.bytes, in.head, in.first_row, in.rows, in.first_scan}) {
+      file.value(v);
+    }
     file.value(in.time);
   }
   file.value<std::uint64_t>(plan.outputs.size());
@@ -69,6 +78,8 @@ void savePlan(const Plan& plan, const std::string& folder) {
   file.list(plan.tile_origins);
   file.list(plan.tile_points);
   file.list(plan.tree.nodes());
+  file.text(plan.trajectory);
+  file.list(plan.seeds);
   file.commit();
 }
 
@@ -82,7 +93,7 @@ Plan loadPlan(const std::string& folder) {
     PlanInput in;
     in.path = file.text();
     in.streamed = file.text();
-    for (std::uint64_t* v : {&in.bytes, &in.head, &in.first_row, &in.rows}) {
+    for (std::uint64_t* v : {&in.bytes, &in.head, &in.first_row, &in.rows, &in.first_scan}) {
       *v = file.value<std::uint64_t>();
     }
     in.time = file.value<std::int64_t>();
@@ -99,6 +110,8 @@ Plan loadPlan(const std::string& folder) {
   plan.tile_origins = file.list<std::array<double, 3>>();
   plan.tile_points = file.list<std::uint64_t>();
   std::vector<TileTree::Node> nodes = file.list<TileTree::Node>();
+  plan.trajectory = file.text();
+  plan.seeds = file.list<PlanSeed>();
   file.end();
   if (!TileTree::restore(std::move(nodes), plan.tree) || plan.tree.tiles() != plan.tiles() ||
       plan.tile_origins.size() != plan.tiles()) {

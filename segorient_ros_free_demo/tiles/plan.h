@@ -28,6 +28,12 @@ struct TileRequest {
   bool closed = false;
   bool open = false;
   bool find_sensors = true;
+  bool keep_orientation = false;
+  std::string seeds;       ///< a file, or empty
+  std::string trajectory;  ///< a file, or empty
+  float alpha = 0.F;       ///< settings of segments, see TileOptions
+  float beta = 0.F;
+  float epsilon = 0.F;
   int threads = 0;  ///< changes no result
 };
 
@@ -40,6 +46,7 @@ struct PlanInput {
   std::uint64_t head = 0;  ///< checksum of its first bytes
   std::uint64_t first_row = 0;
   std::uint64_t rows = 0;
+  std::uint64_t first_scan = 0;  ///< in a field of the joint output
 };
 
 /// A file that is written: the results of some inputs.
@@ -49,6 +56,12 @@ struct PlanOutput {
   std::uint32_t inputs = 0;
 };
 
+/// A point whose normal is known.
+struct PlanSeed {
+  std::array<double, 3> position{0, 0, 0};
+  std::array<double, 3> normal{0, 0, 0};
+};
+
 /// What plan found out and all other steps go by.
 struct Plan {
   std::uint64_t run = 0;  ///< stands for inputs, outputs and options
@@ -56,6 +69,7 @@ struct Plan {
   std::vector<PlanOutput> outputs;
   std::uint64_t rows = 0;
   std::uint64_t finite = 0;
+  std::uint64_t memory = 0;  ///< as it was asked for
   std::array<double, 3> origin{0, 0, 0};
   TileTree tree;
   std::vector<std::array<double, 3>> tile_origins;
@@ -70,7 +84,15 @@ struct Plan {
   bool closed = false;
   bool open = false;
   bool find_sensors = true;
+  bool keep_orientation = false;
+  bool adds_scans = false;       ///< whether outputs get a field scan: the number of the input
+  bool adds_viewpoints = false;  ///< whether they get fields vp_x, vp_y, vp_z
+  float alpha = 0.F;
+  float beta = 0.F;
+  float epsilon = 0.F;
   std::uint32_t found_sensors = 0;
+  std::string trajectory;
+  std::vector<PlanSeed> seeds;
 
   std::size_t tiles() const { return tile_points.size(); }
 };

@@ -70,9 +70,17 @@ std::uint64_t runOf(const TileRequest& request, const Plan& plan) {
   sum.addValue(request.tile_points);
   sum.addValue(request.k);
   sum.addValue(request.viewpoint);
-  for (const bool b :
-       {request.has_viewpoint, request.up, request.closed, request.open, request.find_sensors}) {
+  for (const bool b : {request.has_viewpoint, request.up, request.closed, request.open,
+                       request.find_sensors, request.keep_orientation}) {
     sum.addValue(b);
+  }
+  for (const float v : {request.alpha, request.beta, request.epsilon}) sum.addValue(v);
+  for (const std::string& path : {request.seeds, request.trajectory}) {
+    text(path);
+    if (path.empty()) continue;
+    const InputState state = stateOf(path);
+    for (const std::uint64_t v : {state.bytes, state.head}) sum.addValue(v);
+    sum.addValue(state.time);
   }
   return std::max<std::uint64_t>(1, sum.value());
 }
@@ -139,6 +147,15 @@ void planFiles(const TileRequest& request, Plan& plan) {
   plan.run = runOf(request, plan);
 }
 
+void addSeeds(const std::string& path, Plan& plan) {
+  if (path.empty()) return;
+  const CloudTable cloud = readUsableCloud(path);
+  if (!cloud.hasNormals()) throw FileError(path, "has no normals");
+  for (std::size_t i = 0; i < cloud.size; ++i) {
+    plan.seeds.push_back({cloud.position(i), cloud.triple(cloud.normals(), i)});
+  }
+}
+
 void openInputs(const std::string& folder, Plan& plan) {
   CloudTable first;
   std::size_t with_viewpoint = 0;
@@ -157,12 +174,20 @@ void openInputs(const std::string& folder, Plan& plan) {
     in.rows = stream.size();
     plan.rows += in.rows;
     plan.has_viewpoints = plan.has_viewpoints || layout.hasViewpoints();
+    if (plan.keep_orientation && !layout.hasNormals()) {
+      throw FileError(in.path, "has no normals whose orientation to keep");
+    }
     const std::array<double, 3> here{layout.viewpoint[0], layout.viewpoint[1], layout.viewpoint[2]};
     if (here == std::array<double, 3>{0, 0, 0}) continue;
     viewpoint = here;
     ++with_viewpoint;
   }
-  if (plan.has_viewpoint || plan.up || with_viewpoint == 0) return;
+  // One output of several inputs says which point is whose, and where its sensor was.
+  plan.adds_scans = plan.outputs.size() == 1 && plan.inputs.size() > 1;
+  const bool headers = !plan.has_viewpoint && !plan.up && with_viewpoint > 0;
+  plan.adds_viewpoints = plan.adds_scans && (plan.has_viewpoints || headers);
+  if (!plan.trajectory.empty()) plan.has_viewpoints = true;
+  if (!headers) return;
   if (plan.inputs.size() == 1) {
     plan.has_viewpoint = true;
     plan.viewpoint = viewpoint;

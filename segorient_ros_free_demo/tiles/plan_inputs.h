@@ -18,6 +18,9 @@ void planFiles(const TileRequest& request, Plan& plan);
 
 /// Makes copies in the folder of inputs that can't be read point by point, counts the points, and
 /// looks for viewpoints; sets the plan's own where one file names one for all.
+/// Points whose normals are known. \param path a cloud, or empty
+void addSeeds(const std::string& path, Plan& plan);
+
 void openInputs(const std::string& folder, Plan& plan);
 
 }  // namespace segorient::program

@@ -10,6 +10,7 @@
 #include "io/cloud_stream.h"
 #include "tiles/plan_inputs.h"
 #include "tiles/plan_sensors.h"
+#include "tiles/planned_input.h"
 #include "tiles/point_files.h"
 #include "tiles/point_sample.h"
 #include "tiles/steps.h"
@@ -30,21 +31,57 @@ std::array<float, 3> near(const Place& p, const Place& origin) {
   return out;
 }
 
-// Calls visit(row, place, block, row in block) for all points of all inputs, and begin(layout) for
-// each input.
+// Calls visit(row, place, block, row in block) for all points of all inputs, and begin(block) for
+// the first of each input. Numbers their scans.
 template <typename Begin, typename Visit>
-void forEachPoint(const Plan& plan, const StepProgress& progress, double from, double to,
-                  const Begin& begin, const Visit& visit) {
-  for (const PlanInput& in : plan.inputs) {
-    CloudStream stream(in.streamed);
-    begin(stream.layout());
+void forEachPoint(const StepProgress& progress, double from, double to, const Begin& begin,
+                  const Visit& visit, Plan& plan) {
+  const Trajectory trajectory = trajectoryOf(plan);
+  std::uint64_t scans = 0;
+  for (PlanInput& in : plan.inputs) {
+    in.first_scan = scans;
+    PlannedInput stream(plan, in, trajectory);
     CloudTable block;
     std::uint64_t row = in.first_row;
     while (stream.next(block)) {
+      if (row == in.first_row) begin(block);
       const auto xyz = block.xyz();
       for (std::size_t i = 0; i < block.size; ++i) visit(row++, block.triple(xyz, i), block, i);
       if (progress) {
         progress(from + (to - from) * static_cast<double>(row) / static_cast<double>(plan.rows));
+      }
+    }
+    scans += stream.scans();
+  }
+}
+
+// Draws a sample of all inputs: of those that are small enough all points are looked at, of others
+// pages from all over them, by no pattern that a file could have, too.
+// \param begin called with each input's layout
+template <typename Begin>
+void drawSample(const Plan& plan, const StepProgress& progress, const Begin& begin,
+                PointSample& sample) {
+  constexpr std::uint64_t kRead = std::uint64_t{1} << 22;  // points
+  constexpr std::uint64_t kPage = 256;
+  constexpr std::size_t kSmallBuffer = 4096;
+  const bool all = plan.rows <= kRead;
+  const double share = static_cast<double>(kRead) / static_cast<double>(plan.rows);
+  const auto limit = static_cast<std::uint64_t>(std::ldexp(all ? 0.5 : share, 64));
+  for (const PlanInput& in : plan.inputs) {
+    CloudStream stream(in.streamed, kSmallBuffer);
+    begin(stream.layout());
+    CloudTable block;
+    for (std::uint64_t row = 0; row < in.rows; row += kPage) {
+      if (!all && PointSample::scatter((in.first_row + row) / kPage) > limit) continue;
+      stream.skipTo(row);
+      if (!stream.next(block, kPage)) break;
+      const auto xyz = block.xyz();
+      for (std::size_t i = 0; i < block.size; ++i) {
+        const Place place = block.triple(xyz, i);
+        if (isFinite(place)) sample.add(in.first_row + row + i, place);
+      }
+      if (progress) {
+        progress(0.35 * static_cast<double>(in.first_row + row) / static_cast<double>(plan.rows));
       }
     }
   }
@@ -150,12 +187,13 @@ void distribute(const TileRequest& request, const std::string& folder, const Ste
                 const PlanSensors& sensors, Probe& probe, Plan& plan) {
   constexpr std::uint64_t kLeast = std::uint64_t{1} << 26;
   const auto waiting = static_cast<std::size_t>(std::max(kLeast, request.memory / 4));
-  PointFiles files(folder, plan.run, plan.tree.tiles(), plan.has_viewpoints, waiting);
+  PointFiles files(folder, plan.run, plan.tree.tiles(),
+                   {plan.has_viewpoints, plan.keep_orientation}, waiting);
   plan.tile_points.assign(plan.tree.tiles(), 0);
   Viewpoints viewpoints(sensors);
   const double step = roundingStep(plan.tree);
   forEachPoint(
-      plan, progress, 0.4, 0.95, [&](const CloudTable& layout) { viewpoints.begin(layout); },
+      progress, 0.4, 0.95, [&](const CloudTable& block) { viewpoints.begin(block); },
       [&](std::uint64_t row, const Place& place, const CloudTable& block, std::size_t i) {
         if (!isFinite(place)) return;
         StoredPoint point;
@@ -169,8 +207,16 @@ void distribute(const TileRequest& request, const std::string& folder, const Ste
         const std::uint32_t owner = plan.tree.owner(point.place, reach);
         point.cell = plan.tree.cellOf(point.place);
         ++plan.tile_points[owner];
+        ++plan.finite;
+        if (plan.keep_orientation) {
+          point.normal = near(block.triple(block.normals(), i), {0.0, 0.0, 0.0});
+        }
         files.add(owner, point);
-      });
+      },
+      plan);
+  if (plan.finite == 0) {
+    throw FileError(plan.inputs[0].path, "has no point with finite coordinates");
+  }
   files.commit();
 }
 
@@ -183,7 +229,7 @@ double mostPoints(const TileRequest& request, double points_each) {
     most = static_cast<double>(room) / (1.15 * static_cast<double>(kBytesPerPoint));
   }
   // A sample tells a tile's points to a few hundredths.
-  constexpr double kSafe = 0.95;
+  constexpr double kSafe = 0.9;
   return std::max(1.0, points_each > 1.0 ? kSafe * most : most);
 }
 
@@ -206,26 +252,31 @@ Plan planStep(const TileRequest& request, const std::string& folder, const StepP
   plan.closed = request.closed;
   plan.open = request.open;
   plan.find_sensors = request.find_sensors;
+  plan.keep_orientation = request.keep_orientation;
+  if (!request.trajectory.empty()) {
+    plan.trajectory = std::filesystem::absolute(request.trajectory).lexically_normal().string();
+  }
+  plan.alpha = request.alpha;
+  plan.beta = request.beta;
+  plan.epsilon = request.epsilon;
+  plan.memory = request.memory;
   openInputs(folder, plan);
+  addSeeds(request.seeds, plan);
   PointSample sample;
   std::size_t image_width = 0;
-  forEachPoint(
-      plan, progress, 0.0, 0.35,
+  drawSample(
+      plan, progress,
       [&](const CloudTable& layout) {
         const bool image = layout.height > 1 && layout.width * layout.height == plan.rows;
         image_width = image ? layout.width : 0;
       },
-      [&](std::uint64_t row, const Place& place, const CloudTable&, std::size_t) {
-        if (isFinite(place)) sample.add(row, place);
-      });
-  plan.finite = sample.seen();
-  if (plan.finite == 0) {
-    throw FileError(plan.inputs[0].path, "has no point with finite coordinates");
-  }
+      sample);
   const std::vector<Place>& places = sample.places();
+  const double points_each =
+      static_cast<double>(plan.rows) / std::max(1.0, static_cast<double>(sample.places().size()));
   const Bounds bulk = bulkBounds(places.size(), [&](std::size_t i) { return places[i]; });
   if (bulk.isFar()) plan.origin = bulk.middle();
-  plan.tree = TileTree(places, sample.pointsEach(), mostPoints(request, sample.pointsEach()));
+  plan.tree = TileTree(places, points_each, mostPoints(request, points_each));
   const TileTree& tree = plan.tree;
   std::vector<Bounds> bounds(tree.tiles());
   double reach = 0.0;
@@ -233,8 +284,8 @@ Plan planStep(const TileRequest& request, const std::string& folder, const StepP
   for (const Bounds& b : bounds) plan.tile_origins.push_back(tileOrigin(b));
   const std::uint64_t most_patches =
       std::max<std::uint64_t>(kSamplePoints, request.memory / kBytesPerPatch);
-  plan.patch_points = static_cast<std::uint32_t>((plan.finite + most_patches - 1) / most_patches);
-  Probe probe(places, sample.pointsEach(), plan.origin);
+  plan.patch_points = static_cast<std::uint32_t>((plan.rows + most_patches - 1) / most_patches);
+  Probe probe(places, points_each, plan.origin);
   const PlanSensors sensors(plan, sample, image_width, request.threads);
   plan.found_sensors = static_cast<std::uint32_t>(sensors.found());
   plan.has_viewpoints = plan.has_viewpoints || sensors.found() > 0;

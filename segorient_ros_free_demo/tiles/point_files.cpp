@@ -18,10 +18,10 @@ constexpr std::size_t kPacketPoints = 256;
 
 }  // namespace
 
-PointFiles::PointFiles(std::string folder, std::uint64_t run, std::size_t tiles, bool viewpoints,
-                       std::size_t memory)
+PointFiles::PointFiles(std::string folder, std::uint64_t run, std::size_t tiles,
+                       const PointFields& fields, std::size_t memory)
     : folder_(std::move(folder)),
-      viewpoints_(viewpoints),
+      fields_(fields),
       most_waiting_(std::max<std::size_t>(
           kPacketPoints, memory / std::max<std::size_t>(1, tiles) / sizeof(StoredPoint))),
       files_(tiles) {
@@ -71,7 +71,7 @@ void PointFiles::flush(std::size_t tile) {
     std::sort(waiting.begin() + static_cast<std::ptrdiff_t>(first),
               waiting.begin() + static_cast<std::ptrdiff_t>(last),
               [](const StoredPoint& p, const StoredPoint& q) { return p.row < q.row; });
-    packPoints(&waiting[first], last - first, viewpoints_, packet_);
+    packPoints(&waiting[first], last - first, fields_, packet_);
     packet.part = {file.offset + bytes_.size(), packet_.size(),
                    checksumOf(packet_.data(), packet_.size())};
     file.packets.push_back(packet);

@@ -27,7 +27,7 @@ struct PointPacket {
 class PointFiles {
  public:
   /// \param memory for all that waits to be written
-  PointFiles(std::string folder, std::uint64_t run, std::size_t tiles, bool viewpoints,
+  PointFiles(std::string folder, std::uint64_t run, std::size_t tiles, const PointFields& fields,
              std::size_t memory);
   ~PointFiles();  ///< removes what was not committed
   PointFiles(const PointFiles&) = delete;
@@ -47,7 +47,7 @@ class PointFiles {
   void append(std::size_t tile, const void* data, std::size_t bytes);
 
   std::string folder_;
-  bool viewpoints_;
+  PointFields fields_;
   std::size_t most_waiting_;  // points
   std::vector<File> files_;
   std::vector<std::uint8_t> bytes_;

@@ -7,6 +7,7 @@
 #include <cstring>
 
 #include "tiles/bit_stream.h"
+#include "tiles/packed_values.h"
 
 namespace segorient::program {
 namespace {
@@ -62,6 +63,11 @@ Axis axisOf(const StoredPoint* points, std::size_t count, std::size_t a) {
   return axis;
 }
 
+std::uint64_t packedNormal(const std::array<float, 3>& n) {
+  const float length = std::hypot(n[0], n[1], n[2]);
+  return std::isfinite(length) && length > 0.F ? packNormal(n.data(), kNormalBits) : kNoNormal;
+}
+
 bool sameViewpoints(const StoredPoint* points, std::size_t count) {
   // By bits: unknown ones are NaN.
   return std::all_of(points, points + count, [&](const StoredPoint& p) {
@@ -71,7 +77,7 @@ bool sameViewpoints(const StoredPoint* points, std::size_t count) {
 
 }  // namespace
 
-void packPoints(const StoredPoint* points, std::size_t count, bool viewpoints,
+void packPoints(const StoredPoint* points, std::size_t count, const PointFields& fields,
                 std::vector<std::uint8_t>& out) {
   out.clear();
   if (count == 0) return;
@@ -80,8 +86,8 @@ void packPoints(const StoredPoint* points, std::size_t count, bool viewpoints,
   head.row = points[0].row;
   head.span = points[count - 1].row - points[0].row;
   for (std::size_t a = 0; a < 3; ++a) head.axes[a] = axisOf(points, count, a);
-  head.one_place = !viewpoints || sameViewpoints(points, count) ? 1 : 0;
-  if (viewpoints) head.seen_from = points[0].seen_from;
+  head.one_place = !fields.viewpoints || sameViewpoints(points, count) ? 1 : 0;
+  if (fields.viewpoints) head.seen_from = points[0].seen_from;
   const auto* bytes = reinterpret_cast<const std::uint8_t*>(&head);
   out.insert(out.end(), bytes, bytes + sizeof(head));
   BitWriter bits(out);
@@ -97,12 +103,13 @@ void packPoints(const StoredPoint* points, std::size_t count, bool viewpoints,
       std::memcpy(&raw, &points[i].seen_from[a], sizeof(raw));
       bits.put(raw, 32);
     }
+    if (fields.normals) bits.put(packedNormal(points[i].normal), kNormalBits);
   }
   bits.flush();
 }
 
-bool unpackPoints(const std::vector<std::uint8_t>& packet, std::size_t count, bool viewpoints,
-                  std::vector<StoredPoint>& out) {
+bool unpackPoints(const std::vector<std::uint8_t>& packet, std::size_t count,
+                  const PointFields& fields, std::vector<StoredPoint>& out) {
   if (count == 0) return packet.empty();
   Head head;
   if (packet.size() < sizeof(head)) return false;
@@ -114,7 +121,7 @@ bool unpackPoints(const std::vector<std::uint8_t>& packet, std::size_t count, bo
   const RiceCode rows(head.span, count);
   StoredPoint p;
   p.row = head.row;
-  if (viewpoints) p.seen_from = head.seen_from;
+  if (fields.viewpoints) p.seen_from = head.seen_from;
   for (std::size_t i = 0; i < count; ++i) {
     if (i > 0) p.row += rows.get(bits) + 1;
     for (std::size_t a = 0; a < 3; ++a) {
@@ -125,6 +132,13 @@ bool unpackPoints(const std::vector<std::uint8_t>& packet, std::size_t count, bo
     for (std::size_t a = 0; head.one_place == 0 && a < 3; ++a) {
       const auto raw = static_cast<std::uint32_t>(bits.get(32));
       std::memcpy(&p.seen_from[a], &raw, sizeof(raw));
+    }
+    if (fields.normals) {
+      const std::uint64_t packed = bits.get(kNormalBits);
+      p.normal = {0.F, 0.F, 0.F};
+      if (packed != kNoNormal) {
+        unpackNormal(static_cast<std::uint32_t>(packed), kNormalBits, p.normal.data());
+      }
     }
     out.push_back(p);
   }

@@ -19,26 +19,22 @@ class PointSample {
   using Place = std::array<double, 3>;
 
   void add(std::uint64_t row, const Place& place) {
-    ++seen_;
     if (scatter(row) > limit_) return;
     rows_.push_back(row);
     places_.push_back(place);
     if (places_.size() > kSamplePoints) halve();
   }
-  std::uint64_t seen() const { return seen_; }
   const std::vector<Place>& places() const { return places_; }
   const std::vector<std::uint64_t>& rows() const { return rows_; }  ///< of the places
-  double pointsEach() const {
-    return places_.empty() ? 1.0 : static_cast<double>(seen_) / static_cast<double>(places_.size());
-  }
 
- private:
   // Numbers without a pattern from numbers in a row (the finalizer of MurmurHash3).
   static std::uint64_t scatter(std::uint64_t x) {
     x = (x ^ x >> 33) * 0xff51afd7ed558ccdULL;
     x = (x ^ x >> 33) * 0xc4ceb9fe1a85ec53ULL;
     return x ^ x >> 33;
   }
+
+ private:
   void halve() {
     limit_ /= 2;
     std::size_t kept = 0;
@@ -52,7 +48,6 @@ class PointSample {
   }
 
   std::uint64_t limit_ = ~std::uint64_t{0};
-  std::uint64_t seen_ = 0;
   std::vector<std::uint64_t> rows_;
   std::vector<Place> places_;
 };

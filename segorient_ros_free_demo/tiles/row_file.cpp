@@ -13,7 +13,6 @@ namespace segorient::program {
 namespace {
 
 constexpr std::size_t kBlockRows = 2048;
-constexpr std::uint64_t kNoNormal = (std::uint64_t{1} << kNormalBits) - 1;  // of no normal
 
 std::uint64_t pairOf(const RowRecord& r) {
   return static_cast<std::uint64_t>(static_cast<std::uint32_t>(r.label)) << 32 |

@@ -2,13 +2,17 @@
 // Copyright (c) 2026, the segorient authors
 #include "tiles/run_tiles.h"
 
+#include <sys/resource.h>
+
 #include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
 
+#include "io/output_file.h"
 #include "support/command_line.h"
+#include "support/json.h"
 #include "support/progress_bar.h"
 #include "tiles/input_state.h"
 #include "tiles/plan_inputs.h"
@@ -26,10 +30,41 @@ std::string stageName(const char* stage, std::size_t tile, std::size_t tiles) {
   return std::string(stage) + " " + std::to_string(tile + 1) + "/" + std::to_string(tiles);
 }
 
+std::string reportText(const Plan& plan, const JoinSummary& joined, std::uint64_t segments,
+                       double seconds) {
+  JsonWriter json;
+  json.field("points", plan.rows);
+  json.field("non_finite", plan.rows - plan.finite);
+  json.field("tiles", plan.tiles());
+  json.field("tiles_finished_again", joined.again);
+  json.field("pieces", joined.pieces);
+  json.field("segments", segments);
+  json.field("sensors_found", plan.found_sensors);
+  json.field("noise_in_spacings", plan.traits.noise);
+  json.field("denoised", plan.traits.denoise != 0);
+  json.beginObject("seconds");
+  json.field("total", seconds);
+  json.endObject();
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  json.field("peak_memory_bytes", std::int64_t{1024} * usage.ru_maxrss);
+  json.beginArray("components");
+  for (const ComponentOrientationResult& c : joined.components) {
+    json.beginItem();
+    json.field("points", c.points);
+    json.field("oriented_by", toString(c.by));
+    json.field("sign", static_cast<int>(c.sign));
+    json.field("evidence", c.evidence);
+    json.field("confidence", c.confidence);
+    json.endObject();
+  }
+  json.endArray();
+  return json.finish();
+}
+
 }  // namespace
 
 std::uint64_t parseMemory(const std::string& text) {
-  constexpr double kLeast = 200e6;
   char* end = nullptr;
   const double number = std::strtod(text.c_str(), &end);
   std::string unit(end);
@@ -42,16 +77,19 @@ std::uint64_t parseMemory(const std::string& text) {
   const double bytes = number * factor;
   require(end != text.c_str() && factor > 0.0 && std::isfinite(bytes) && bytes < 1e18,
           "--memory takes a size, as in --memory 2G");
-  require(bytes >= kLeast, "--memory must be 200M at least");
+  require(bytes >= static_cast<double>(kLeastMemory), "--memory must be 200M at least");
   return static_cast<std::uint64_t>(bytes);
 }
 
-void runAllSteps(const TileRequest& request, std::string folder, bool quiet) {
-  if (folder.empty()) {
-    folder = request.output;
-    while (folder.size() > 1 && folder.back() == '/') folder.pop_back();
-    folder += ".work";
-  }
+std::string workFolderOf(std::string output, const std::string& folder) {
+  if (!folder.empty()) return folder;
+  while (output.size() > 1 && output.back() == '/') output.pop_back();
+  return output + ".work";
+}
+
+void runAllSteps(const TileRequest& request, const std::string& folder_asked_for,
+                 const std::string& report_path, bool quiet) {
+  const std::string folder = workFolderOf(request.output, folder_asked_for);
   const auto begin = std::chrono::steady_clock::now();
   Plan plan;
   planFiles(request, plan);  // what is wrong with the names is known before there is a folder
@@ -93,16 +131,22 @@ void runAllSteps(const TileRequest& request, std::string folder, bool quiet) {
                 report("write", from, from + (1.0 - kFinished) / outputs));
     }
   }
+  const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - begin;
+  if (!report_path.empty()) {
+    OutputFile file(report_path);
+    file.write(reportText(plan, joined, segments, seconds.count()));
+    file.commit();
+  }
   work.remove();
   if (quiet) return;
-  const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - begin;
   std::printf("points          %llu, %llu not finite\n", static_cast<unsigned long long>(plan.rows),
               static_cast<unsigned long long>(plan.rows - plan.finite));
-  std::printf("tiles           %zu\n", plan.tiles());
+  std::printf("tiles           %zu, of which %llu were worked on again with the whole's signs\n",
+              plan.tiles(), static_cast<unsigned long long>(joined.again));
   std::printf("segments        %llu, of %llu pieces in %llu components\n",
               static_cast<unsigned long long>(segments),
               static_cast<unsigned long long>(joined.pieces),
-              static_cast<unsigned long long>(joined.components));
+              static_cast<unsigned long long>(joined.components.size()));
   if (plan.found_sensors > 0) std::printf("sensors found   %u\n", plan.found_sensors);
   std::printf("seconds         %.2f\n", seconds.count());
   for (const PlanOutput& out : plan.outputs) std::printf("written         %s\n", out.path.c_str());

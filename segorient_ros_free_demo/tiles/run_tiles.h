@@ -11,7 +11,15 @@ namespace segorient::program {
 /// All steps on this machine, one tile after another on all cores. Goes on where a run with the
 /// same inputs and options was interrupted, and removes the folder's files at the end. \param
 /// folder to work in; empty = the output's name and .work
-void runAllSteps(const TileRequest& request, std::string folder, bool quiet);
+/// \param report where what was done is written as JSON; empty = nowhere
+void runAllSteps(const TileRequest& request, const std::string& folder, const std::string& report,
+                 bool quiet);
+
+/// \param folder that was asked for; empty = the output's name and .work
+std::string workFolderOf(std::string output, const std::string& folder);
+
+/// The least that a step can do with.
+constexpr std::uint64_t kLeastMemory = 200'000'000;
 
 /// "2G", "500M" or a number of bytes; throws UsageError for anything else, and what is too little.
 std::uint64_t parseMemory(const std::string& text);

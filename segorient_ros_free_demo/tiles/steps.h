@@ -2,8 +2,11 @@
 // Copyright (c) 2026, the segorient authors
 #pragma once
 
+#include <segorient/orientation/orientation_result.h>
+
 #include <cstdint>
 #include <string>
+#include <vector>
 
 #include "tiles/plan.h"
 
@@ -30,7 +33,8 @@ std::uint64_t labelStep(const Plan& plan, const std::string& folder);
 /// What was found in joining, for summaries.
 struct JoinSummary {
   std::uint64_t pieces = 0;
-  std::uint64_t components = 0;
+  std::uint64_t again = 0;                             ///< tiles that have to be worked on again
+  std::vector<ComponentOrientationResult> components;  ///< by descending number of points
 };
 
 /// The signs of all tiles' pieces, from what tiles say of them.
@@ -39,6 +43,11 @@ JoinSummary joinStep(const Plan& plan, const std::string& folder, int threads);
 /// Writes one output: the points of its inputs in their order. Finishes tiles that are not.
 void writeStep(const Plan& plan, const std::string& folder, std::size_t output, int threads,
                const StepProgress& progress = {});
+
+/// Draws what steps up to join made, as a coloured cloud: tiles apart from each other, each with
+/// its halo in grey, and above them the graph of the larger pieces, black where pieces of one tile
+/// vote on each other, red where two tiles have points of both. For clouds that fit in memory.
+void drawStep(const Plan& plan, const std::string& folder, const std::string& out);
 
 /// Bytes that a step takes for each point of its tile (395 were measured), and for each patch in
 /// joining (180, and as much again for pieces and votes where the surface is rough); beside what

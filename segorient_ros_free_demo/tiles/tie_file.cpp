@@ -51,22 +51,25 @@ void pack(const SharedPoints& shared, const std::vector<TileTie>& ties,
 
 }  // namespace
 
-void saveTies(const std::vector<SharedPoints>& shared, const std::vector<TileTie>& ties,
+void saveTies(const std::vector<SharedPoints>& shared, const TileShare& share,
               const std::string& path, std::uint64_t run, std::uint32_t tile) {
   PartsWriter file(path, TileFileKind::TIES, run, tile);
   std::vector<TieSlice> slices;
   std::vector<std::uint8_t> bytes;
   for (const SharedPoints& s : shared) {
-    pack(s, ties, bytes);
+    pack(s, share.ties, bytes);
     slices.push_back({s.other, s.owner, s.points.size(), file.add(bytes)});
   }
   ListWriter lists;
   lists.list(slices);
+  lists.list(share.segment_sizes);
   file.commit(lists);
 }
 
 TieReader::TieReader(const std::string& path, std::uint64_t run, std::uint32_t tile)
-    : file_(path, TileFileKind::TIES, run, tile), slices_(file_.list<TieSlice>()) {}
+    : file_(path, TileFileKind::TIES, run, tile),
+      slices_(file_.list<TieSlice>()),
+      segment_sizes_(file_.list<std::uint32_t>()) {}
 
 std::vector<TileTie> TieReader::about(std::uint32_t other, std::uint32_t owner) const {
   const auto slice = std::find_if(slices_.begin(), slices_.end(), [&](const TieSlice& s) {

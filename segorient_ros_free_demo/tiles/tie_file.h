@@ -11,8 +11,8 @@
 namespace segorient::program {
 
 /// Writes what a tile says of the points that others have as well.
-/// \param ties ascending by row
-void saveTies(const std::vector<SharedPoints>& shared, const std::vector<TileTie>& ties,
+/// \param share its ties and the sizes of its segments
+void saveTies(const std::vector<SharedPoints>& shared, const TileShare& share,
               const std::string& path, std::uint64_t run, std::uint32_t tile);
 
 /// Reads it in parts.
@@ -23,11 +23,13 @@ class TieReader {
   /// where there are none. One entry for each, without piece and label where nothing is known.
   std::vector<TileTie> about(std::uint32_t other, std::uint32_t owner) const;
   const std::vector<TieSlice>& slices() const { return slices_; }
+  const std::vector<std::uint32_t>& segmentSizes() const { return segment_sizes_; }
   [[noreturn]] void fail() const { file_.fail(); }
 
  private:
   PartsReader file_;
   std::vector<TieSlice> slices_;
+  std::vector<std::uint32_t> segment_sizes_;
 };
 
 }  // namespace segorient::program

@@ -23,7 +23,6 @@ enum class TileFileKind : std::uint32_t {
   TIES,
   SIGNS,
   JOIN,
-  FINAL,
   LABELS,
   PATCHES
 };

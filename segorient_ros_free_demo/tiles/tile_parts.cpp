@@ -5,6 +5,12 @@
 #include <utility>
 
 namespace segorient::program {
+namespace {
+
+// Parts are read as a whole, and nothing between them.
+constexpr std::size_t kSmallBuffer = 256;
+
+}  // namespace
 
 std::uint64_t checksumOf(const void* data, std::size_t bytes) {
   Checksum sum;
@@ -36,7 +42,7 @@ void PartsWriter::commit(const ListWriter& lists) {
 
 PartsReader::PartsReader(std::string path, TileFileKind kind, std::uint64_t run, std::uint32_t tile)
     : path_(std::move(path)) {
-  InputFile file(path_);
+  InputFile file(path_, kSmallBuffer);
   const std::uint64_t size = file.remaining();
   requireHeader(file, kind, run, tile);
   PartsEnd end;
@@ -51,7 +57,7 @@ PartsReader::PartsReader(std::string path, TileFileKind kind, std::uint64_t run,
 }
 
 std::vector<std::uint8_t> PartsReader::part(const FilePart& part) const {
-  InputFile file(path_);
+  InputFile file(path_, kSmallBuffer);
   const std::uint64_t size = file.remaining();
   if (part.offset > size || part.bytes > size - part.offset) fail();
   std::vector<std::uint8_t> bytes(static_cast<std::size_t>(part.bytes));

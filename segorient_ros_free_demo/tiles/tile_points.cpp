@@ -83,7 +83,8 @@ void Reader::readFile(std::uint32_t owner) {
     const auto last = is_near_.begin() + packet.last_cell + 1;
     if (owner != tile_ && std::find(first, last, 1) == last) continue;
     points.clear();
-    if (!unpackPoints(file.part(packet.part), packet.count, plan_.has_viewpoints, points)) {
+    if (!unpackPoints(file.part(packet.part), packet.count,
+                      {plan_.has_viewpoints, plan_.keep_orientation}, points)) {
       file.fail();
     }
     for (const StoredPoint& p : points) addPoint(p, owner);
@@ -127,6 +128,9 @@ void Reader::push(const StoredPoint& p, TileRole role, double whole) {
   if (plan_.has_viewpoints) {
     out_.viewpoints.insert(out_.viewpoints.end(), p.seen_from.begin(), p.seen_from.end());
   }
+  if (plan_.keep_orientation) {
+    out_.normals.insert(out_.normals.end(), p.normal.begin(), p.normal.end());
+  }
 }
 
 // The entries of an array, `width` numbers each, in another order.
@@ -155,6 +159,7 @@ void Reader::sortByRow() {
   reorder(order, 1, out_.roles);
   reorder(order, 1, out_.whole);
   reorder(order, 3, out_.viewpoints);
+  reorder(order, 3, out_.normals);
   std::vector<std::uint32_t> now(order.size());
   for (std::size_t i = 0; i < order.size(); ++i)
     now[order[i].place] = static_cast<std::uint32_t>(i);

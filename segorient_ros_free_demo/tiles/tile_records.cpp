@@ -52,7 +52,6 @@ void saveShare(const ShareFile& share, const std::string& path, std::uint64_t ru
   TileFileWriter file(path, TileFileKind::SHARE, run, tile);
   file.list(share.piece_sizes);
   file.list(share.piece_signs);
-  file.list(share.segment_sizes);
   file.list(share.votes);
   file.commit();
 }
@@ -62,7 +61,6 @@ ShareFile loadShare(const std::string& path, std::uint64_t run, std::uint32_t ti
   ShareFile share;
   share.piece_sizes = file.list<std::uint32_t>();
   share.piece_signs = file.list<std::int8_t>();
-  share.segment_sizes = file.list<std::uint32_t>();
   share.votes = file.list<TileVote>();
   file.end();
   return share;
@@ -76,6 +74,7 @@ void savePatches(const PatchFile& patches, const std::string& path, std::uint64_
   for (const TilePatch& patch : patches.patches) stored.push_back(storedOf(patch));
   file.list(stored);
   file.list(patches.viewpoints);
+  file.list(patches.normals);
   file.commit();
 }
 
@@ -84,44 +83,31 @@ PatchFile loadPatches(const std::string& path, std::uint64_t run, std::uint32_t 
   PatchFile patches;
   for (const StoredPatch& s : file.list<StoredPatch>()) patches.patches.push_back(patchOf(s));
   patches.viewpoints = file.list<float>();
+  patches.normals = file.list<float>();
   file.end();
   return patches;
 }
 
-void saveSigns(const TileSigns& signs, const std::string& path, std::uint64_t run,
+void saveSigns(const SignsFile& signs, const std::string& path, std::uint64_t run,
                std::uint32_t tile) {
   TileFileWriter file(path, TileFileKind::SIGNS, run, tile);
-  file.list(signs.pieces);
-  file.list(signs.patches);
-  file.list(signs.toward);
+  file.value(signs.again);
+  file.list(signs.signs.pieces);
+  // Without sensors, patches are turned as their pieces are.
+  file.list(signs.signs.toward.empty() ? std::vector<std::int8_t>() : signs.signs.patches);
+  file.list(signs.signs.toward);
   file.commit();
 }
 
-TileSigns loadSigns(const std::string& path, std::uint64_t run, std::uint32_t tile) {
+SignsFile loadSigns(const std::string& path, std::uint64_t run, std::uint32_t tile) {
   TileFileReader file(path, TileFileKind::SIGNS, run, tile);
-  TileSigns signs;
-  signs.pieces = file.list<std::int8_t>();
-  signs.patches = file.list<std::int8_t>();
-  signs.toward = file.list<float>();
+  SignsFile signs;
+  signs.again = file.value<bool>();
+  signs.signs.pieces = file.list<std::int8_t>();
+  signs.signs.patches = file.list<std::int8_t>();
+  signs.signs.toward = file.list<float>();
   file.end();
   return signs;
-}
-
-void saveFinal(const FinalFile& made, const std::string& path, std::uint64_t run,
-               std::uint32_t tile) {
-  TileFileWriter file(path, TileFileKind::FINAL, run, tile);
-  file.value(made.again);
-  file.list(made.segment_sizes);
-  file.commit();
-}
-
-FinalFile loadFinal(const std::string& path, std::uint64_t run, std::uint32_t tile) {
-  TileFileReader file(path, TileFileKind::FINAL, run, tile);
-  FinalFile made;
-  made.again = file.value<bool>();
-  made.segment_sizes = file.list<std::uint32_t>();
-  file.end();
-  return made;
 }
 
 void saveLabels(const LabelFile& labels, const std::string& path, std::uint64_t run) {

@@ -33,7 +33,6 @@ struct TieSlice {
 struct ShareFile {
   std::vector<std::uint32_t> piece_sizes;
   std::vector<std::int8_t> piece_signs;
-  std::vector<std::uint32_t> segment_sizes;
   std::vector<TileVote> votes;
 };
 
@@ -41,6 +40,7 @@ struct ShareFile {
 struct PatchFile {
   std::vector<TilePatch> patches;
   std::vector<float> viewpoints;  ///< 3 a patch, relative to the plan's origin; or empty
+  std::vector<float> normals;     ///< 3 a patch, known beforehand, 0 = none; or empty
 };
 
 void savePatches(const PatchFile& file, const std::string& path, std::uint64_t run,
@@ -51,19 +51,15 @@ void saveShare(const ShareFile& share, const std::string& path, std::uint64_t ru
                std::uint32_t tile);
 ShareFile loadShare(const std::string& path, std::uint64_t run, std::uint32_t tile);
 
-void saveSigns(const TileSigns& signs, const std::string& path, std::uint64_t run,
-               std::uint32_t tile);
-TileSigns loadSigns(const std::string& path, std::uint64_t run, std::uint32_t tile);
-
-/// What a tile's second round made: empty where the first one's results stay.
-struct FinalFile {
-  bool again = false;  ///< whether there are rows and ties of it
-  std::vector<std::uint32_t> segment_sizes;
+/// What join says of a tile.
+struct SignsFile {
+  TileSigns signs;
+  bool again = false;  ///< see needsFinishing()
 };
 
-void saveFinal(const FinalFile& made, const std::string& path, std::uint64_t run,
+void saveSigns(const SignsFile& file, const std::string& path, std::uint64_t run,
                std::uint32_t tile);
-FinalFile loadFinal(const std::string& path, std::uint64_t run, std::uint32_t tile);
+SignsFile loadSigns(const std::string& path, std::uint64_t run, std::uint32_t tile);
 
 /// Labels of the whole cloud, by tile and by its own label.
 using LabelFile = std::vector<std::vector<std::uint32_t>>;

@@ -39,10 +39,14 @@ Work prepare(const Plan& plan, const std::string& folder, std::size_t number, in
   TileOptions& options = work.options;
   options.traits = plan.traits;
   options.k = plan.k;
+  options.alpha = plan.alpha;
+  options.beta = plan.beta;
+  options.epsilon = plan.epsilon;
   options.patch_points = plan.patch_points;
   options.threads = threads;
   options.hints = hintsOf(plan, plan.tile_origins[number]);
   options.hints.viewpoints = work.points.viewpoints;
+  options.hints.normals = work.points.normals;
   for (std::size_t i = 0; i < options.hints.viewpoints.size(); ++i) {
     const std::size_t a = i % 3;
     options.hints.viewpoints[i] =
@@ -50,6 +54,18 @@ Work prepare(const Plan& plan, const std::string& folder, std::size_t number, in
                            plan.tile_origins[number][a]);
   }
   return work;
+}
+
+// Three numbers of the first point of each patch; none where points have none.
+std::vector<float> ofPatches(const std::vector<float>& of_points,
+                             const std::vector<TilePatch>& patches) {
+  std::vector<float> out;
+  for (const TilePatch& p : patches) {
+    if (of_points.empty()) break;
+    const auto from = of_points.begin() + std::ptrdiff_t{3} * p.row;
+    out.insert(out.end(), from, from + 3);
+  }
+  return out;
 }
 
 }  // namespace
@@ -64,49 +80,30 @@ void tileStep(const Plan& plan, const std::string& folder, std::size_t number, i
   const Work work = prepare(plan, folder, number, threads);
   TileShare share = workOnTile(work.view(), work.points.roles, work.points.whole, work.options);
   saveRows(ownRows(work.points, share), tilePath(folder, tile, "rows"), plan.run, tile);
-  saveTies(work.points.shared, share.ties, tilePath(folder, tile, "ties"), plan.run, tile);
+  saveTies(work.points.shared, share, tilePath(folder, tile, "ties"), plan.run, tile);
   ShareFile file;
   file.piece_sizes = std::move(share.piece_sizes);
   file.piece_signs = std::move(share.piece_signs);
-  file.segment_sizes = std::move(share.segment_sizes);
   file.votes = std::move(share.votes);
   PatchFile patches;
   patches.patches = std::move(share.patch_list);
-  for (const TilePatch& p : patches.patches) {
-    if (!plan.has_viewpoints) break;
-    const float* seen_from = &work.points.viewpoints[std::size_t{3} * p.row];
-    patches.viewpoints.insert(patches.viewpoints.end(), seen_from, seen_from + 3);
-  }
+  patches.viewpoints = ofPatches(work.points.viewpoints, patches.patches);
+  patches.normals = ofPatches(work.points.normals, patches.patches);
   savePatches(patches, tilePath(folder, tile, "patches"), plan.run, tile);
   saveShare(file, share_path, plan.run, tile);
 }
 
 void finishStep(const Plan& plan, const std::string& folder, std::size_t number, int threads) {
   const auto tile = static_cast<std::uint32_t>(number);
-  const std::string path = tilePath(folder, tile, "final");
-  if (std::filesystem::exists(path)) {  // the last file that is written
-    loadFinal(path, plan.run, tile);
-    return;
-  }
-  const TileSigns signs = loadSigns(tilePath(folder, tile, "signs"), plan.run, tile);
-  TileShare first;
-  {
-    ShareFile share = loadShare(tilePath(folder, tile, "share"), plan.run, tile);
-    first.piece_sizes = std::move(share.piece_sizes);
-    first.piece_signs = std::move(share.piece_signs);
-    first.votes = std::move(share.votes);
-  }
-  FinalFile file;
-  file.again = needsFinishing(first, signs);
-  if (file.again) {
-    const Work work = prepare(plan, folder, number, threads);
-    TileShare share =
-        finishTile(work.view(), work.points.roles, work.points.whole, work.options, signs);
-    saveRows(ownRows(work.points, share), tilePath(folder, tile, "rows2"), plan.run, tile);
-    saveTies(work.points.shared, share.ties, tilePath(folder, tile, "ties2"), plan.run, tile);
-    file.segment_sizes = std::move(share.segment_sizes);
-  }
-  saveFinal(file, path, plan.run, tile);
+  const SignsFile file = loadSigns(tilePath(folder, tile, "signs"), plan.run, tile);
+  const std::string ties_path = tilePath(folder, tile, "ties2");
+  // The last file that is written.
+  if (!file.again || std::filesystem::exists(ties_path)) return;
+  const Work work = prepare(plan, folder, number, threads);
+  const TileShare share =
+      finishTile(work.view(), work.points.roles, work.points.whole, work.options, file.signs);
+  saveRows(ownRows(work.points, share), tilePath(folder, tile, "rows2"), plan.run, tile);
+  saveTies(work.points.shared, share, ties_path, plan.run, tile);
 }
 
 }  // namespace segorient::program

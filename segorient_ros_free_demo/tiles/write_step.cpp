@@ -8,9 +8,9 @@
 #include <queue>
 #include <utility>
 
-#include "io/cloud_stream.h"
 #include "io/cloud_writer.h"
 #include "support/colors.h"
+#include "tiles/planned_input.h"
 #include "tiles/row_file.h"
 #include "tiles/steps.h"
 #include "tiles/tile_records.h"
@@ -27,10 +27,10 @@ class Results {
       : labels_(loadLabels(labelsPath(folder), plan.run, plan.tiles())) {
     for (std::size_t t = 0; t < plan.tiles(); ++t) {
       const auto tile = static_cast<std::uint32_t>(t);
-      signs_.push_back(loadSigns(tilePath(folder, t, "signs"), plan.run, tile).pieces);
-      const bool again = loadFinal(tilePath(folder, t, "final"), plan.run, tile).again;
-      rows_.push_back(std::make_unique<RowReader>(tilePath(folder, t, again ? "rows2" : "rows"),
-                                                  plan.run, tile, first_row));
+      SignsFile file = loadSigns(tilePath(folder, t, "signs"), plan.run, tile);
+      signs_.push_back(std::move(file.signs.pieces));
+      rows_.push_back(std::make_unique<RowReader>(
+          tilePath(folder, t, file.again ? "rows2" : "rows"), plan.run, tile, first_row));
       if (!rows_[t]->done()) next_.emplace(rows_[t]->row().row, t);
     }
   }
@@ -106,8 +106,9 @@ void writeStep(const Plan& plan, const std::string& folder, std::size_t output, 
   }
   const std::uint64_t first_row = plan.inputs[to.first_input].first_row;
   Results results(plan, folder, first_row);
+  const Trajectory trajectory = trajectoryOf(plan);
   for (std::size_t i = to.first_input; i < to.first_input + to.inputs; ++i) {
-    CloudStream stream(plan.inputs[i].streamed);
+    PlannedInput stream(plan, plan.inputs[i], trajectory);
     CloudTable block;
     std::uint64_t row = plan.inputs[i].first_row;
     while (stream.next(block)) {

@@ -82,6 +82,7 @@ TEST(Packing, PointsComeBackExactly) {
   std::mt19937_64 random(7);
   std::uniform_real_distribution<double> uniform(-1.0, 1.0);
   for (int kind = 0; kind < 4; ++kind) {
+    const PointFields fields{true, kind == 1};
     std::vector<StoredPoint> points(kind == 3 ? 1 : 500);
     std::uint64_t row = 12345678901ULL;
     for (StoredPoint& p : points) {
@@ -93,23 +94,25 @@ TEST(Packing, PointsComeBackExactly) {
         if (kind == 1) x = 5400000.0 + std::ldexp(std::round(std::ldexp(x, 20)), -14);
         if (kind == 2) x = 0.25;
       }
+      if (fields.normals) p.normal = {0.F, row % 2 == 0 ? 1.F : 0.F, 0.F};
       p.seen_from = {static_cast<float>(kind), std::numeric_limits<float>::quiet_NaN(),
                      kind == 1 ? static_cast<float>(row % 7) : 0.F};
     }
     std::vector<std::uint8_t> packet;
-    packPoints(points.data(), points.size(), true, packet);
+    packPoints(points.data(), points.size(), fields, packet);
     std::vector<StoredPoint> back;
-    ASSERT_TRUE(unpackPoints(packet, points.size(), true, back));
+    ASSERT_TRUE(unpackPoints(packet, points.size(), fields, back));
     ASSERT_EQ(back.size(), points.size());
     for (std::size_t i = 0; i < points.size(); ++i) {
       ASSERT_EQ(back[i].row, points[i].row) << kind;
       ASSERT_EQ(back[i].place, points[i].place) << kind;
+      ASSERT_EQ(back[i].normal, points[i].normal) << kind;
       ASSERT_EQ(std::memcmp(&back[i].seen_from, &points[i].seen_from, 12), 0) << kind;
     }
     if (kind == 2) {
       EXPECT_LT(packet.size(), 2 * points.size());
     }
-    EXPECT_FALSE(unpackPoints({1, 2, 3}, points.size(), true, back));
+    EXPECT_FALSE(unpackPoints({1, 2, 3}, points.size(), fields, back));
   }
 }
 

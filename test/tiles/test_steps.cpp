@@ -141,7 +141,7 @@ TEST(Tiles, WhatDoesNotGoWithTilesIsWrongUsage) {
        std::vector<std::vector<std::string>>{{"--memory", "x"},
                                              {"--memory", "1M"},
                                              {"--memory", "1G", "--method", "hoppe"},
-                                             {"--memory", "1G", "--seeds", fandisk()}}) {
+                                             {"--memory", "1G", "--report", out}}) {
     std::vector<std::string> words{"orient", fandisk(), out};
     words.insert(words.end(), wrong.begin(), wrong.end());
     const Outcome run = runProgram(words);

@@ -112,6 +112,13 @@ void Tile::run(const TileOptions& options) {
   PipelineOptions pipeline = pipelineOptions(options.k, options.threads);
   // All that is seen of a tile alone may well be what one place could see.
   pipeline.orientation.automatic.infer_viewpoint = std::all_of(roles_.begin(), roles_.end(), isOwn);
+  const auto set = [](float value, float& a, float& b) {
+    if (value > 0.F) a = b = value;
+  };
+  AutomaticOptions& automatic = pipeline.orientation.automatic;
+  set(options.alpha, automatic.alpha, pipeline.segmentation.alpha);
+  set(options.beta, automatic.beta, pipeline.segmentation.beta);
+  set(options.epsilon, automatic.epsilon, pipeline.segmentation.epsilon);
   stages_ = detail::runAutoStages(
       cloud_, pipeline, resolveHints(options.hints, cloud_), [](const char*, double) {}, &record_);
 }

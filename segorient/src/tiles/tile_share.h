@@ -106,7 +106,10 @@ struct TileSigns {
 
 struct TileOptions {
   TileTraits traits;
-  int k = 0;                       ///< neighbours, 0 = the default
+  int k = 0;            ///< neighbours, 0 = the default
+  float alpha = 0.F;    ///< radians, 0 = the default: largest angle between neighbours' normals,
+  float beta = 0.F;     ///< between a normal and its segment's,
+  float epsilon = 0.F;  ///< and what clean-up allows beyond that
   std::uint32_t patch_points = 1;  ///< most points of a patch
   int threads = 0;                 ///< 0 = all cores; the result does not depend on it
   /// What is known beforehand, by row of the tile's input. It helps the tile where its normals need

@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the segorient authors
+#include "tiles/planned_input.h"
+
+#include <algorithm>
+#include <array>
+#include <cstring>
+#include <limits>
+#include <vector>
+
+#include "io/readers.h"
+#include "support/hint_options.h"
+
+namespace segorient::program {
+namespace {
+
+constexpr double kMostScan = 2147483647.0;
+
+}  // namespace
+
+PlannedInput::PlannedInput(const Plan& plan, const PlanInput& input, const Trajectory& trajectory)
+    : plan_(plan), input_(input), trajectory_(trajectory), stream_(input.streamed) {}
+
+bool PlannedInput::next(CloudTable& block) {
+  if (!stream_.next(read_)) return false;
+  block = read_;
+  if (plan_.adds_scans) addScan(block);
+  if (trajectory_.size() > 0) addViewpoints(trajectory_, input_.path, block);
+  return true;
+}
+
+// As joinClouds() does: fields of the input's own sensors stay what they are.
+void PlannedInput::addScan(CloudTable& block) {
+  std::vector<Field> added{{"scan", 'U', 4, 1, 0}};
+  const std::uint32_t size = block.find("x")->size;
+  if (plan_.adds_viewpoints) {
+    for (const char* name : {"vp_x", "vp_y", "vp_z"}) added.push_back({name, 'F', size, 1, 0});
+  }
+  block.appendFields(added);
+  const Field* own = read_.find("scan");
+  const bool has_viewpoints = read_.hasViewpoints();
+  const bool known =
+      read_.viewpoint[0] != 0.0 || read_.viewpoint[1] != 0.0 || read_.viewpoint[2] != 0.0;
+  for (std::size_t i = 0; i < block.size; ++i) {
+    const double v = own == nullptr ? 0.0 : read_.value(*own, i);
+    const std::uint64_t number = v >= 0.0 && v < kMostScan ? static_cast<std::uint64_t>(v) : 0;
+    scans_ = std::max(scans_, number + 1);
+    const auto scan = static_cast<std::uint32_t>(input_.first_scan + number);
+    std::memcpy(block.at(*block.find("scan"), i), &scan, sizeof(scan));
+    if (!plan_.adds_viewpoints) continue;
+    constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+    std::array<double, 3> seen_from{kNaN, kNaN, kNaN};
+    if (known) std::copy_n(read_.viewpoint.begin(), 3, seen_from.begin());
+    if (has_viewpoints) seen_from = read_.triple(read_.viewpoints(), i);
+    for (std::size_t a = 0; a < 3; ++a) {
+      block.setReal(*block.viewpoints()[a], i, seen_from[a]);
+    }
+  }
+}
+
+Trajectory trajectoryOf(const Plan& plan) {
+  return plan.trajectory.empty() ? Trajectory() : readTrajectory(plan.trajectory);
+}
+
+}  // namespace segorient::program
