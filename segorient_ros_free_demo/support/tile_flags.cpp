@@ -2,6 +2,7 @@
 // Copyright (c) 2026, the segorient authors
 #include "support/tile_flags.h"
 
+#include <algorithm>
 #include <cstdio>
 #include <filesystem>
 
@@ -53,8 +54,8 @@ bool TileFlags::needed(const CommandLine& line, const CommonOptions& common,
   } catch (const FileError&) {
     return false;  // who reads it says why it can't be read
   }
-  if (bytes <= available || most < kLeastMemory) return false;
-  std::uint64_t memory = most;
+  if (bytes <= available || (most < kLeastMemory && available_ == 0)) return false;
+  std::uint64_t memory = std::max(most, kLeastMemory);
   const std::string folder = workFolderOf(line.argument("OUT"), folder_);
   if (std::filesystem::exists(planPath(folder))) memory = loadPlan(folder).memory;
   memory_ = std::to_string(memory);

@@ -40,6 +40,19 @@ inline std::string writeDoubles(const std::string& path, const std::vector<doubl
   return path;
 }
 
+/// A binary PLY with any fields of doubles, row by row.
+inline std::string writeFields(const std::string& path, const std::vector<std::string>& names,
+                               const std::vector<double>& values) {
+  std::ofstream file(path, std::ios::binary);
+  file << "ply\nformat binary_little_endian 1.0\nelement vertex " << values.size() / names.size()
+       << '\n';
+  for (const std::string& name : names) file << "property double " << name << '\n';
+  file << "end_header\n";
+  file.write(reinterpret_cast<const char*>(values.data()),
+             static_cast<std::streamsize>(sizeof(double) * values.size()));
+  return path;
+}
+
 /// How many normals of `a` are turned as those of `b`; both have the same points.
 inline std::size_t sameSides(const std::string& a, const std::string& b) {
   const program::CloudTable x = program::readCloud(a);

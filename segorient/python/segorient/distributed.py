@@ -81,7 +81,8 @@ def orient(
             threads.
         work: the folder for tiles, which all workers see; the output's name and ".work" by default.
             A run that was interrupted goes on there if it is called again.
-        options: more words for ``segorient tiles plan``, as in ["--up"].
+        options: more words for ``segorient tiles plan``, as in ["--up"], or
+            ["--trajectory", "flight.txt"] with a name that all workers know.
         threads: threads of one task; as many as a worker's ``nthreads`` leaves it.
         program: the program's name on the workers; by default where it is here, or "segorient".
         retries: how often a task that failed is tried again.
@@ -107,7 +108,9 @@ def orient(
 
     plan = [*tiles, "plan", folder, *map(_absolute, inputs), _absolute(output)]
     count, outputs = _counts(run([[*plan, "--memory", memory, *how, *options]])[0])
-    run([[*tiles, "tile", folder, str(n), *how] for n in range(count)])
+    every_tile = [[*tiles, "tile", folder, str(n), *how] for n in range(count)]
+    run(every_tile)
     run([[*tiles, "join", folder, *how]])
+    run(every_tile)  # with the signs of the whole, where a tile's own were others
     run([[*tiles, "write", folder, str(n)] for n in range(outputs)])
     run([[*tiles, "clean", folder]])
