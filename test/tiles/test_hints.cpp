@@ -1,0 +1,174 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the segorient authors
+// What is known beforehand, tile by tile; and when the program works so by itself.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+
+#include "run_program.h"
+#include "tile_clouds.h"
+
+namespace segorient::test {
+namespace {
+
+void expectRuns(std::vector<std::string> words) {
+  words.insert(words.end(), {"-q", "--memory", "1G", "--tile-points", "700"});
+  const Outcome run = runProgram(words);
+  ASSERT_EQ(run.status, 0) << run.err;
+}
+
+// A sheet of 50 by 50 points in the plane z = 0, with more numbers a point.
+std::vector<double> sheet(const std::vector<double>& more) {
+  std::mt19937 random(1);
+  std::uniform_real_distribution<double> shift(-0.3, 0.3);
+  std::vector<double> out;
+  for (int i = 0; i < 2500; ++i) {
+    out.insert(out.end(), {i % 50 + shift(random), i / 50 + shift(random), 0.0});
+    out.insert(out.end(), more.begin(), more.end());
+  }
+  return out;
+}
+
+std::size_t facingDown(const std::string& path) {
+  const program::CloudTable cloud = program::readCloud(path);
+  std::size_t down = 0;
+  for (std::size_t i = 0; i < cloud.size; ++i) {
+    down += cloud.triple(cloud.normals(), i)[2] < 0.0 ? 1 : 0;
+  }
+  return down;
+}
+
+class Hints : public testing::Test {
+ protected:
+  ScratchDirectory scratch;
+  std::string out = scratch.file("out.ply");
+};
+
+// By itself, a sheet faces up.
+TEST_F(Hints, SeedsTurnASheet) {
+  const std::string in = writeDoubles(scratch.file("in.ply"), sheet({}));
+  const std::string seeds =
+      writeFields(scratch.file("seeds.ply"), {"x", "y", "z", "nx", "ny", "nz"},
+                  {3.0, 4.0, 0.0, 0.0, 0.0, -1.0});
+  expectRuns({"orient", in, out});
+  EXPECT_EQ(facingDown(out), 0U);
+  expectRuns({"orient", in, out, "--seeds", seeds});
+  EXPECT_EQ(facingDown(out), 2500U);
+}
+
+TEST_F(Hints, NormalsOfTheInputTurnASheet) {
+  const std::string in = writeFields(scratch.file("in.ply"), {"x", "y", "z", "nx", "ny", "nz"},
+                                     sheet({0.1, 0.0, -1.0}));
+  expectRuns({"orient", in, out, "--keep-orientation"});
+  EXPECT_EQ(facingDown(out), 2500U);
+  const std::string without = writeDoubles(scratch.file("without.ply"), sheet({}));
+  const Outcome run =
+      runProgram({"orient", without, out, "-q", "--memory", "1G", "--keep-orientation"});
+  EXPECT_EQ(run.status, 1);
+  EXPECT_NE(run.err.find("has no normals"), std::string::npos) << run.err;
+}
+
+// A sensor that flew below, by the points' time.
+TEST_F(Hints, ATrajectoryTurnsASheetAndIsWritten) {
+  const std::string in =
+      writeFields(scratch.file("in.ply"), {"x", "y", "z", "time"}, sheet({12.5}));
+  const std::string path = scratch.write("path.txt", "10 0 25 -30\n20 50 25 -30\n");
+  expectRuns({"orient", in, out, "--trajectory", path});
+  EXPECT_EQ(facingDown(out), 2500U);
+  const program::CloudTable cloud = program::readCloud(out);
+  ASSERT_TRUE(cloud.hasViewpoints());
+  EXPECT_DOUBLE_EQ(cloud.triple(cloud.viewpoints(), 17)[0], 12.5);
+}
+
+TEST_F(Hints, OneOutputOfSeveralInputsSaysWhichPointIsWhose) {
+  std::vector<double> moved = sheet({});
+  for (std::size_t i = 0; i < moved.size(); i += 3) moved[i] += 50.0;
+  const std::string a = writeDoubles(scratch.file("a.ply"), sheet({}));
+  const std::string b = writeDoubles(scratch.file("b.ply"), moved);
+  const std::string report = scratch.file("report.json");
+  expectRuns({"orient", a, b, out, "--report", report, "--beta", "25"});
+  const program::CloudTable cloud = program::readCloud(out);
+  const program::Field* scan = cloud.find("scan");
+  ASSERT_NE(scan, nullptr);
+  ASSERT_EQ(cloud.size, 5000U);
+  EXPECT_EQ(cloud.value(*scan, 2499), 0.0);
+  EXPECT_EQ(cloud.value(*scan, 2500), 1.0);
+  EXPECT_NE(readFile(report).find("\"points\": 5000"), std::string::npos) << readFile(report);
+}
+
+// What does not fit in memory is worked on tile by tile without being asked for.
+TEST_F(Hints, WhatDoesNotFitIsWorkedOnTileByTile) {
+  const std::string in = writeDoubles(scratch.file("in.ply"), hollowSphere(4000, 0.0, 0.0, 0.0));
+  const std::string whole = scratch.file("whole.ply");
+  ASSERT_EQ(runProgram({"orient", in, whole, "-q"}).status, 0);
+  const Outcome run = runProgram({"orient", in, out, "--available-memory", "900000"});
+  ASSERT_EQ(run.status, 0) << run.err;
+  EXPECT_NE(run.err.find("tile by tile"), std::string::npos) << run.err;
+  EXPECT_EQ(sameSides(whole, out), 4000U);
+  const Outcome enough = runProgram({"orient", in, out, "--available-memory", "9000000"});
+  EXPECT_EQ(enough.err.find("tile by tile"), std::string::npos) << enough.err;
+}
+
+// Points on the inside of a box.
+std::vector<double> room(std::size_t n) {
+  std::mt19937 random(2);
+  std::uniform_real_distribution<double> uniform(-1.0, 1.0);
+  const double half[3] = {3.0, 2.5, 1.3};
+  std::vector<double> out;
+  for (std::size_t i = 0; i < n; ++i) {
+    double p[3];
+    for (int a = 0; a < 3; ++a) p[a] = half[a] * uniform(random);
+    const std::size_t wall = i % 6;
+    p[wall / 2] = wall % 2 == 0 ? half[wall / 2] : -half[wall / 2];
+    out.insert(out.end(), p, p + 3);
+  }
+  return out;
+}
+
+TEST_F(Hints, ARoomFacesItsSensorAsInMemory) {
+  const std::string in = writeDoubles(scratch.file("in.ply"), room(6000));
+  const std::string whole = scratch.file("whole.ply");
+  ASSERT_EQ(runProgram({"orient", in, whole, "-q", "--viewpoint=0.2,0.1,0.3", "--open"}).status, 0);
+  expectRuns({"orient", in, out, "--viewpoint=0.2,0.1,0.3", "--open"});
+  EXPECT_EQ(sameSides(whole, out), 6000U);
+}
+
+// Ground and fronts along a street, each point seen from the nearest of 20 poses.
+TEST_F(Hints, AStreetOfTwentyPosesFacesThemAsInMemory) {
+  std::mt19937 random(3);
+  std::uniform_real_distribution<double> uniform(0.0, 1.0);
+  std::vector<double> values;
+  for (int i = 0; i < 9000; ++i) {
+    const double x = 60.0 * uniform(random);
+    const double across = uniform(random);
+    double y = 8.0 * across - 4.0;
+    double z = 0.0;
+    if (i % 3 != 0) {
+      y = i % 3 == 1 ? 4.0 : -4.0;
+      z = 6.0 * across;
+    }
+    const double pose = std::min(19.0, std::floor(x / 3.0));
+    values.insert(values.end(), {x, y, z, 3.0 * pose + 1.5, 0.3, 1.8});
+  }
+  const std::string in =
+      writeFields(scratch.file("in.ply"), {"x", "y", "z", "vp_x", "vp_y", "vp_z"}, values);
+  const std::string whole = scratch.file("whole.ply");
+  ASSERT_EQ(runProgram({"orient", in, whole, "-q"}).status, 0);
+  expectRuns({"orient", in, out});
+  EXPECT_EQ(sameSides(whole, out), 9000U);
+  const program::CloudTable cloud = program::readCloud(out);
+  std::size_t away = 0;
+  for (std::size_t i = 0; i < cloud.size; ++i) {
+    const auto n = cloud.triple(cloud.normals(), i);
+    const auto from = cloud.triple(cloud.viewpoints(), i);
+    const auto p = cloud.position(i);
+    double dot = 0.0;
+    for (std::size_t a = 0; a < 3; ++a) dot += n[a] * (from[a] - p[a]);
+    away += dot < 0.0 ? 1 : 0;
+  }
+  EXPECT_LE(away, 9U);
+}
+
+}  // namespace
+}  // namespace segorient::test
