@@ -23,7 +23,6 @@ class Page {
     this.canvas = element("view");
     this.cloud = new Cloud(FIRST);
     this.count = this.cloud.loaded;
-    this.coloring = "";
     this.drawing = new Drawing(this.canvas, this.cloud);
     this.camera = new Camera(this.cloud.positions);
     element("count").textContent = this.counts();
