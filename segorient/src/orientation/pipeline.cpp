@@ -9,6 +9,8 @@
 #include <cstdlib>
 #include <iomanip>
 #include <limits>
+#include <memory>
+#include <optional>
 #include <sstream>
 #include <utility>
 
@@ -104,17 +106,41 @@ std::string sheetChoice(const detail::AutoStages& stages) {
   return text.str();
 }
 
-// What the caller knows, and where nothing is known of sensors, what can be found.
+const OrientationHints& givenHints(const PipelineOptions& options) {
+  static const OrientationHints kNone;
+  return options.orientation.hints ? *options.orientation.hints : kNone;
+}
+
+// What the caller knows, and where nothing is known of sensors, what can be found. One place for
+// all points may be a guess of whoever gives it: densities that tell it for sure know better.
 PointHints findHints(const PointView& points, const PipelineOptions& options, PreparedCloud& cloud,
                      PipelineReport& report) {
-  const OrientationHints none;
-  const OrientationHints& given = options.orientation.hints ? *options.orientation.hints : none;
-  if (!options.orientation.automatic.find_sensors || !detail::lacksSensors(given)) {
+  const OrientationHints& given = givenHints(options);
+  const std::optional<std::array<float, 3>> place = detail::onlyPlace(given);
+  OrientationHints found = place ? detail::withoutPlaces(given) : given;
+  if (!options.orientation.automatic.find_sensors || !detail::lacksSensors(found)) {
     return resolveHints(given, cloud);
   }
-  OrientationHints found = given;
-  report.sensors = detail::addFoundSensors(points, cloud, options.threads, found);
+  if (place) found.suggested.push_back(*place);
+  SensorReport sensors = detail::addFoundSensors(points, cloud, options.threads, found);
+  if (place && !detail::contradictsPlace(points, sensors, *place)) {
+    return resolveHints(given, cloud);
+  }
+  if (place) {
+    KnownSensor refused;
+    for (std::size_t a = 0; a < 3; ++a) refused.position[a] = (*place)[a] / cloud.unit();
+    refused.points = static_cast<std::uint32_t>(cloud.size());
+    refused.used = false;
+    report.known_sensors.push_back(refused);
+  }
+  report.sensors = std::move(sensors);
   return resolveHints(found, cloud);
+}
+
+// Whether places were given, and none of them is believed.
+bool refusesAll(const std::vector<KnownSensor>& sensors) {
+  return !sensors.empty() &&
+         std::none_of(sensors.begin(), sensors.end(), [](const KnownSensor& s) { return s.used; });
 }
 
 // The default method brings its own stages; its normals come out oriented.
@@ -124,6 +150,18 @@ void runAutomatic(const PointView& points, const PipelineOptions& options,
   detail::AutoStages result = detail::runAutoStages(
       work.surface.cloud, options, hints,
       [&clock](const char* stage, double fraction) { clock.begin(stage, fraction); });
+  std::vector<KnownSensor> refused = std::move(report.known_sensors);
+  if (refused.empty() && refusesAll(result.orientation.sensors)) {
+    // As if nothing had been said.
+    PipelineOptions without = options;
+    without.orientation.hints =
+        std::make_shared<OrientationHints>(detail::withoutPlaces(givenHints(options)));
+    refused = std::move(result.orientation.sensors);
+    const PointHints rest = findHints(points, without, work.surface.cloud, report);
+    result = detail::runAutoStages(
+        work.surface.cloud, options, rest,
+        [&clock](const char* stage, double fraction) { clock.begin(stage, fraction); });
+  }
   report.k = result.k;
   report.spacing = result.spacing;
   report.noise = result.noise;
@@ -131,7 +169,9 @@ void runAutomatic(const PointView& points, const PipelineOptions& options,
   report.normals_chosen = sheetChoice(result);
   report.contradictions = std::move(result.orientation.contradictions);
   report.clusters = std::move(result.orientation.clusters);
-  report.known_sensors = std::move(result.orientation.sensors);
+  report.known_sensors = std::move(refused);
+  report.known_sensors.insert(report.known_sensors.end(), result.orientation.sensors.begin(),
+                              result.orientation.sensors.end());
   work.surface.normals = std::move(result.normals);
   work.surface.segmentation = std::move(result.segmentation);
   work.orientation.segments = std::move(result.segments);

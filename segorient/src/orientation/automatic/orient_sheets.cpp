@@ -371,7 +371,8 @@ void Orienter::followHints() {
 // spreads them.
 void Orienter::keepClosedFromSensors(const std::vector<Ballot>& ballots) {
   const bool told_closed = hints_.surface == SurfaceKind::CLOSED;
-  if (!sensors_.common || hints_.surface == SurfaceKind::OPEN) return;
+  if (!sensors_.one_place || !sensors_.scans[0].used) return;
+  if (hints_.surface == SurfaceKind::OPEN) return;
   if (sensors_.scans[0].density < detail::kConfirmed && !told_closed) return;
   std::vector<Ballot> by_component(winding_.size());
   for (std::size_t s = 0; s < signs_.size(); ++s) {

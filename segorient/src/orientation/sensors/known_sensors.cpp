@@ -68,6 +68,8 @@ class Finder {
     out_.common = hints.has_viewpoint && hints.sensors.empty();
     listScans(sensors);
     if (out_.scans.empty()) return {};
+    out_.one_place = out_.scans.size() == 1 && !out_.scans[0].moving;
+    denied_.assign(out_.scans.size(), 0);
     point(sensors);
     for (std::size_t s = 0; s < out_.scans.size(); ++s) look(s);
     if (out_.scans.size() > 1 || !out_.common) compare();
@@ -159,12 +161,13 @@ class Finder {
     };
     report.hidden = share(hidden);
     if (report.density < kConfirmed) return;
-    const bool denied = report.density > kDenied && density.constant > kVaries &&
-                        std::isfinite(report.density) && report.hidden > kFewHidden;
+    const bool denied =
+        report.density > kDenied && density.constant > kVaries && std::isfinite(report.density);
+    denied_[s] = denied ? 1 : 0;
+    if (out_.one_place) out_.even = density.constant < kVaries;
     if (out_.common) {
-      out_.even = density.constant < kVaries;
       if (report.hidden > kMostHidden) keepVisible(rows, scan.hidden(true));
-    } else if (report.hidden > kMostHidden || denied) {
+    } else if (report.hidden > kMostHidden || (denied && report.hidden > kFewHidden)) {
       report.used = false;
     }
   }
@@ -216,7 +219,12 @@ class Finder {
       if (worst == n) break;
       out_.scans[worst].used = false;
     }
+    // Poses that were mixed up are wrong together: where one is refused, others need more than that
+    // nothing contradicts them.
+    const bool mixed_up = std::any_of(out_.scans.begin(), out_.scans.end(),
+                                      [](const KnownSensor& scan) { return !scan.used; });
     for (std::size_t s = 0; s < n; ++s) {
+      if (mixed_up && denied_[s] != 0) out_.scans[s].used = false;
       if (!out_.scans[s].used) out_.drop(s);
     }
   }
@@ -233,6 +241,8 @@ class Finder {
   const Neighborhoods& nb_;
   const float* spacing_;
   int threads_;
+  std::vector<std::uint8_t>
+      denied_;  // by scan: its density is far from what its sensor would leave
   KnownSensors out_;
 };
 

@@ -25,7 +25,9 @@ struct KnownSensors {
   /// The one place for all points, which a closed surface may contradict as a whole; else every
   /// point has been told its own.
   bool common = false;
-  /// Of the common place: points are spread evenly, as no sensor spreads them.
+  /// All points have been told the same place, whether as theirs or as the common one.
+  bool one_place = false;
+  /// Of that place: points are spread evenly, as no sensor spreads them.
   bool even = false;
 
   bool none() const { return toward.empty(); }

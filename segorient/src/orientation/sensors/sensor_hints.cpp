@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstddef>
 #include <limits>
+#include <optional>
 
 #include "orientation/sensors/sensor_search.h"
 
@@ -46,6 +47,57 @@ SensorReport addFoundSensors(const PointView& points, PreparedCloud& cloud, int 
   SensorReport report = sensorsOf(points, cloud, options);
   if (report.sure()) addViewpoints(report, hints);
   return report;
+}
+
+OrientationHints withoutPlaces(const OrientationHints& hints) {
+  OrientationHints out = hints;
+  out.has_viewpoint = false;
+  out.viewpoints.clear();
+  return out;
+}
+
+std::optional<std::array<float, 3>> onlyPlace(const OrientationHints& hints) {
+  if (hints.viewpoints.empty()) {
+    return hints.has_viewpoint ? std::optional(hints.viewpoint) : std::nullopt;
+  }
+  const std::vector<float>& v = hints.viewpoints;
+  for (std::size_t i = 0; i < v.size(); ++i) {
+    if (!std::isfinite(v[i]) || v[i] != v[i % 3]) return std::nullopt;
+  }
+  return v.size() < 3 ? std::nullopt : std::optional(std::array<float, 3>{v[0], v[1], v[2]});
+}
+
+bool contradictsPlace(const PointView& points, const SensorReport& report,
+                      const std::array<float, 3>& place) {
+  constexpr std::size_t kSample = 1000;
+  constexpr double kOtherSide = 0.5;  // cosine: 60 degrees
+  if (!report.sure()) return false;
+  const auto directionTo = [](const float* from, const std::array<float, 3>& to) {
+    std::array<double, 3> d{};
+    double square = 0.0;
+    for (std::size_t a = 0; a < 3; ++a) {
+      d[a] = static_cast<double>(to[a]) - static_cast<double>(from[a]);
+      square += d[a] * d[a];
+    }
+    for (double& v : d) v /= std::sqrt(square);
+    return d;
+  };
+  double sum = 0.0;
+  std::size_t count = 0;
+  const std::size_t step = std::max<std::size_t>(1, points.size / kSample);
+  for (std::size_t i = 0; i < points.size; i += step) {
+    const std::array<double, 3> given = directionTo(points[i], place);
+    double best = -2.0;
+    for (const FoundSensor& s : report.sensors) {
+      const std::array<double, 3> found = directionTo(points[i], s.position);
+      const double cosine = given[0] * found[0] + given[1] * found[1] + given[2] * found[2];
+      if (cosine > best) best = cosine;
+    }
+    if (best < -1.5) continue;  // not a point
+    sum += best;
+    ++count;
+  }
+  return count > 0 && sum < kOtherSide * static_cast<double>(count);
 }
 
 }  // namespace segorient::detail

@@ -6,6 +6,9 @@
 #include <segorient/orientation/orientation_hints.h>
 #include <segorient/orientation/sensors.h>
 
+#include <array>
+#include <optional>
+
 #include "search/prepared_cloud.h"
 
 namespace segorient::detail {
@@ -18,5 +21,16 @@ bool lacksSensors(const OrientationHints& hints);
 /// \param points the rows that `cloud` was prepared from
 SensorReport addFoundSensors(const PointView& points, PreparedCloud& cloud, int threads,
                              OrientationHints& hints);
+
+/// The hints without what they say of places that a sensor had.
+OrientationHints withoutPlaces(const OrientationHints& hints);
+
+/// The place that all points are said to have been seen from, if that is one.
+std::optional<std::array<float, 3>> onlyPlace(const OrientationHints& hints);
+
+/// Whether the sensors that were found for sure are on another side of the points than a place that
+/// somebody gave for all of them.
+bool contradictsPlace(const PointView& points, const SensorReport& report,
+                      const std::array<float, 3>& place);
 
 }  // namespace segorient::detail
