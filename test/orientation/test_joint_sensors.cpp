@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <memory>
 #include <random>
 #include <vector>
 
@@ -67,6 +68,36 @@ TEST(Sensors, AMovingScannerIsFoundAlongItsWay) {
     points += s.points;
   }
   EXPECT_EQ(points, scan.view().size);
+}
+
+// What somebody says of all points gives way to densities that tell the station for sure.
+TEST(Sensors, AWrongPlaceForAllPointsIsReportedAndDoesNoHarm) {
+  const Vector truth{2.0, 1.6, 1.5};
+  Scan scan = scanFrom(truth, 1.8);
+  const std::array<float, 3> wrong{9.F, 6.F, 5.F};
+  for (const bool own : {false, true}) {
+    auto hints = std::make_shared<OrientationHints>();
+    hints->has_viewpoint = !own;
+    hints->viewpoint = wrong;
+    for (std::size_t i = 0; own && i < scan.view().size; ++i) {
+      hints->viewpoints.insert(hints->viewpoints.end(), wrong.begin(), wrong.end());
+    }
+    PipelineOptions options;
+    options.orientation.hints = hints;
+    const OrientedCloud cloud = orientCloud(scan.view(), nullptr, options);
+    ASSERT_FALSE(cloud.report.known_sensors.empty());
+    EXPECT_FALSE(cloud.report.known_sensors[0].used);
+    std::size_t facing = 0;
+    for (std::size_t i = 0; i < scan.view().size; ++i) {
+      double sum = 0.0;
+      for (std::size_t a = 0; a < 3; ++a) {
+        sum += static_cast<double>(cloud.normals[4 * i + a]) *
+               (truth[a] - static_cast<double>(scan.view()[i][a]));
+      }
+      facing += sum > 0.0 ? 1U : 0U;
+    }
+    EXPECT_EQ(facing, scan.view().size);
+  }
 }
 
 // Scanners that tilt turn about a level axis, along x here.
