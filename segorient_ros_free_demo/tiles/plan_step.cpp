@@ -8,6 +8,7 @@
 
 #include "common/bulk_bounds.h"
 #include "io/cloud_stream.h"
+#include "support/command_line.h"
 #include "tiles/plan_inputs.h"
 #include "tiles/plan_sensors.h"
 #include "tiles/planned_input.h"
@@ -234,6 +235,13 @@ double mostPoints(const TileRequest& request, double points_each) {
 }
 
 }  // namespace
+
+void warnOf(const Plan& plan) {
+  if (plan.traits.layers == 0 || plan.has_viewpoints) return;
+  warn(plan.inputs[0].path +
+       ": points face each other, as layers do that do not quite fit; coarser scales, which help "
+       "there, are for clouds that are worked on as a whole, without --memory");
+}
 
 Plan planStep(const TileRequest& request, const std::string& folder, const StepProgress& progress) {
   Plan plan;

@@ -99,14 +99,14 @@ TEST_F(Hints, OneOutputOfSeveralInputsSaysWhichPointIsWhose) {
 
 // What does not fit in memory is worked on tile by tile without being asked for.
 TEST_F(Hints, WhatDoesNotFitIsWorkedOnTileByTile) {
-  const std::string in = writeDoubles(scratch.file("in.ply"), hollowSphere(4000, 0.0, 0.0, 0.0));
+  const std::string in = writeDoubles(scratch.file("in.ply"), hollowSphere(12000, 0.0, 0.0, 0.0));
   const std::string whole = scratch.file("whole.ply");
   ASSERT_EQ(runProgram({"orient", in, whole, "-q"}).status, 0);
-  const Outcome run = runProgram({"orient", in, out, "--available-memory", "900000"});
+  const Outcome run = runProgram({"orient", in, out, "--available-memory", "2000000"});
   ASSERT_EQ(run.status, 0) << run.err;
   EXPECT_NE(run.err.find("tile by tile"), std::string::npos) << run.err;
-  EXPECT_EQ(sameSides(whole, out), 4000U);
-  const Outcome enough = runProgram({"orient", in, out, "--available-memory", "9000000"});
+  EXPECT_EQ(sameSides(whole, out), 12000U);
+  const Outcome enough = runProgram({"orient", in, out, "--available-memory", "90000000"});
   EXPECT_EQ(enough.err.find("tile by tile"), std::string::npos) << enough.err;
 }
 

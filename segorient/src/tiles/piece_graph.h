@@ -6,10 +6,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "tiles/join_tiles.h"
-
 #include "orientation/automatic/border_votes.h"
-#include "tiles/tile_share.h"
+#include "tiles/join_tiles.h"
 
 namespace segorient::detail {
 
@@ -19,12 +17,14 @@ namespace segorient::detail {
 /// Pieces that are the same are not simply put together: where a piece of one tile mixes two sides,
 /// which it may by a leak at the rim of its halo, its ties to both contradict the borders between
 /// these, and no tie may be the last word.
-std::vector<BorderVote> gatherVotes(std::vector<TileVote> votes, const std::vector<PieceTie>& ties);
+SEGORIENT_TILES_EXPORT std::vector<BorderVote> gatherVotes(std::vector<TileVote> votes,
+                                                           const std::vector<PieceTie>& ties);
 
 /// Unites labels that most of what each has in the other's tile ties together; numbered by
 /// descending size, then by the first that had it.
 /// \param pairs of labels \param count those with points \return by label
-std::vector<std::uint32_t> uniteLabels(const std::vector<std::uint32_t>& sizes,
-                                       const std::vector<PieceTie>& pairs, std::size_t& count);
+SEGORIENT_TILES_EXPORT std::vector<std::uint32_t> uniteLabels(
+    const std::vector<std::uint32_t>& sizes, const std::vector<PieceTie>& pairs,
+    std::size_t& count);
 
 }  // namespace segorient::detail

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include "orientation/automatic/sign_energy.h"
 #include "orientation/automatic/stages.h"
 #include "search/prepared_cloud.h"
 
@@ -84,11 +85,13 @@ class Tile {
   void listTies();
   void pieceNormal(std::size_t i, float* out) const;
   std::int32_t followed(std::size_t i) const;
+  void towardSensor(std::size_t i, float* toward) const;
 
   PreparedCloud cloud_;
   const std::vector<TileRole>& roles_;
   std::vector<std::uint8_t> own_;  // by distinct point, as all below
   std::vector<float> whole_;
+  PointHints hints_;
   detail::SheetRecord record_;
   detail::AutoStages stages_;
   std::vector<std::int32_t> patch_of_;  // of its own points
@@ -119,8 +122,25 @@ void Tile::run(const TileOptions& options) {
   set(options.alpha, automatic.alpha, pipeline.segmentation.alpha);
   set(options.beta, automatic.beta, pipeline.segmentation.beta);
   set(options.epsilon, automatic.epsilon, pipeline.segmentation.epsilon);
+  hints_ = resolveHints(options.hints, cloud_);
   stages_ = detail::runAutoStages(
-      cloud_, pipeline, resolveHints(options.hints, cloud_), [](const char*, double) {}, &record_);
+      cloud_, pipeline, hints_, [](const char*, double) {}, &record_);
+}
+
+// Of points of the halo: their own tile knows whether their sensors are to be believed; here it is
+// the surroundings that they are for.
+void Tile::towardSensor(std::size_t i, float* toward) const {
+  const bool own = !hints_.sensors.empty();
+  if (!own && !hints_.has_viewpoint) return;
+  float squares = 0.F;
+  for (std::size_t a = 0; a < 3; ++a) {
+    const float from = own ? hints_.sensors[3 * i + a] : hints_.viewpoint[a];
+    toward[a] = from - cloud_.points()[i][a];
+    squares += toward[a] * toward[a];
+  }
+  const float length = std::sqrt(squares);
+  const bool known = std::isfinite(length) && length > 0.F;
+  for (std::size_t a = 0; a < 3; ++a) toward[a] = known ? toward[a] / length : 0.F;
 }
 
 AutoOrientation Tile::orientAsKnown(const Segmentation& pieces, const TileSigns& signs) const {
@@ -137,6 +157,8 @@ AutoOrientation Tile::orientAsKnown(const Segmentation& pieces, const TileSigns&
     if (patch_of_[i] >= 0 && patch < signs.patches.size()) {
       sign = signs.patches[patch];
       if (!signs.toward.empty()) std::copy_n(&signs.toward[3 * patch], 3, &out.toward[3 * i]);
+    } else if (!signs.toward.empty()) {
+      towardSensor(i, &out.toward[3 * i]);
     }
     out.result.point_signs[i] = static_cast<std::int8_t>(sign * pieces.signs[i]);
     out.result.point_components[i] = 0;
@@ -305,6 +327,11 @@ TileTraits measureTileTraits(const PointView& points, int k, const OrientationHi
   out.cubic_edges = surfaces.cubic_edges ? 1 : 0;
   out.surface_noise = static_cast<float>(surfaces.noise) * cloud.unit();
   out.surface_ratio = static_cast<float>(surfaces.in_spacings);
+  // From there on, all levels are tried.
+  constexpr float kContradictory = 0.001F;
+  const float facing =
+      detail::opposedPairs(cloud.points(), cloud.neighborhoods(), found.normals, threads).facing;
+  out.layers = facing >= kContradictory ? 1 : 0;
   return out;
 }
 

@@ -27,7 +27,8 @@ struct TileTraits {
   std::uint8_t edges = 0;        ///< whether there are sharp edges
   std::uint8_t analytic = 0;     ///< whether the surface is as smooth as one that a formula makes
   std::uint8_t cubic_edges = 0;  ///< whether cubic surfaces fit edges better
-  std::uint8_t unused = 0;
+  /// Whether points face each other as layers do that do not quite fit: see followCoarserLevels().
+  std::uint8_t layers = 0;
   float surface_noise = 0.F;  ///< standard deviation, in the points' unit
   float surface_ratio = 0.F;  ///< the same, in spacings
 };

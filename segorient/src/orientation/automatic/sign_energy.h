@@ -2,6 +2,7 @@
 // Copyright (c) 2026, the segorient authors
 #pragma once
 
+#include <segorient/common/export.h>
 #include <segorient/common/neighborhoods.h>
 #include <segorient/common/point_view.h>
 
@@ -20,8 +21,10 @@ struct OpposedPairs {
 };
 
 /// Of some ten thousand points at most. \param normals 4 floats a point, NaN where none
-OpposedPairs opposedPairs(const PointView& points, const Neighborhoods& neighborhoods,
-                          const std::vector<float>& normals, int threads);
+SEGORIENT_ORIENTATION_EXPORT OpposedPairs opposedPairs(const PointView& points,
+                                                       const Neighborhoods& neighborhoods,
+                                                       const std::vector<float>& normals,
+                                                       int threads);
 
 /// What speaks against a solution for the signs, whatever way and scale it came from.
 struct SignEnergy {
