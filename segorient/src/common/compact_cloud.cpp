@@ -10,6 +10,7 @@
 #include <numeric>
 
 #include "common/bulk_bounds.h"
+#include "common/compiler.h"
 #include "common/threads.h"
 
 namespace segorient {
@@ -162,8 +163,8 @@ CompactCloud compactCloud(const PointView& points, const std::vector<pcl::index_
   for (std::size_t i = 0; i < items.size(); ++i) {
     if (i + kAhead < items.size()) {
       const pcl::index_t next = items[i + kAhead].row;
-      __builtin_prefetch(source.known(next));
-      __builtin_prefetch(&out.row_of[static_cast<std::size_t>(next)], 1);
+      prefetch(source.known(next));
+      prefetchToWrite(&out.row_of[static_cast<std::size_t>(next)]);
     }
     const Keyed& item = items[i];
     const float* p = source.known(item.row);

@@ -6,16 +6,16 @@
 #include <cstdlib>
 #include <cstring>
 
+#include "common/compiler.h"
+
 namespace segorient {
 
 namespace {
 
 InstructionSet best() {
-#if defined(__x86_64__)
-  if (__builtin_cpu_supports("avx2") == 0) return InstructionSet::Sse2;
-  const bool has512 =
-      __builtin_cpu_supports("avx512f") != 0 && __builtin_cpu_supports("avx512vl") != 0;
-  return has512 ? InstructionSet::Avx512 : InstructionSet::Avx2;
+#if SEGORIENT_X86
+  if (hasAvx512()) return InstructionSet::Avx512;
+  return hasAvx2() ? InstructionSet::Avx2 : InstructionSet::Sse2;
 #else
   return InstructionSet::Scalar;
 #endif

@@ -18,6 +18,7 @@ namespace {
 constexpr int kNoiseNeighbors = 8;
 // Median of a standard deviation estimated with as much freedom as they have (3).
 constexpr double kMedianShare = 0.888;
+// A median of fewer is by chance; of so many it is known to some percent.
 constexpr std::size_t kFewestPoints = 16;
 constexpr std::size_t kSamples = 4000;
 // A residual is taken for noise up to this many of its own standard deviations.

@@ -6,16 +6,16 @@
 // instruction set.
 
 /// As many doubles as fill a register, for half of its points.
-typedef double Doubles __attribute__((vector_size(4 * SEGORIENT_LANES)));
-typedef std::int64_t DoublesMask __attribute__((vector_size(4 * SEGORIENT_LANES)));
+using Doubles = SEGORIENT_VECTOR(double, SEGORIENT_LANES / 2);
+using DoublesMask = SEGORIENT_VECTOR(std::int64_t, SEGORIENT_LANES / 2);
 constexpr std::size_t kDoubles = kWidth / 2;
 using Doubles3 = Vector3<Doubles>;
 
 inline Doubles widened(const float* p) {
-  typedef float Part __attribute__((vector_size(2 * SEGORIENT_LANES)));
+  using Part = SEGORIENT_VECTOR(float, SEGORIENT_LANES / 2);
   Part part;
-  __builtin_memcpy(&part, p, sizeof(part));
-  return __builtin_convertvector(part, Doubles);
+  copyBytes(&part, p, sizeof(part));
+  return SEGORIENT_CONVERTED(part, Doubles);
 }
 inline Doubles widened(const Lanes& a, std::size_t part) {
   float values[kWidth];

@@ -8,9 +8,9 @@
 constexpr int kLanes = SEGORIENT_LANES;
 constexpr std::size_t kWidth = SEGORIENT_LANES;
 
-typedef float Lanes __attribute__((vector_size(4 * SEGORIENT_LANES)));
-typedef std::int32_t Mask __attribute__((vector_size(4 * SEGORIENT_LANES)));
-typedef float Quad __attribute__((vector_size(16)));
+using Lanes = SEGORIENT_VECTOR(float, SEGORIENT_LANES);
+using Mask = SEGORIENT_VECTOR(std::int32_t, SEGORIENT_LANES);
+using Quad = SEGORIENT_VECTOR(float, 4);
 
 /// Two registers, computed in turn: while a quotient or root of one is on its way, the other gets
 /// on.
@@ -42,25 +42,25 @@ inline Lanes all(float value) {
   return Lanes{} + value;
 }
 inline Lanes select(Mask condition, Lanes yes, Lanes no) {
-  return condition ? yes : no;
+  return SEGORIENT_CHOSEN(condition, yes, no);
 }
 inline Lanes larger(Lanes a, Lanes b) {
-  return a > b ? a : b;
+  return SEGORIENT_CHOSEN(a > b, a, b);
 }
 inline Lanes smaller(Lanes a, Lanes b) {
-  return a < b ? a : b;
+  return SEGORIENT_CHOSEN(a < b, a, b);
 }
 inline Lanes absolute(Lanes a) {
-  return reinterpret_cast<Lanes>(reinterpret_cast<Mask>(a) & 0x7fffffff);
+  return SEGORIENT_BITS_AS(Lanes, SEGORIENT_BITS_AS(Mask, a) & 0x7fffffff);
 }
 
 inline Lanes squareRoot(Lanes a) {
 #if SEGORIENT_LANES == 16
-  return reinterpret_cast<Lanes>(_mm512_maskz_sqrt_ps(0xffff, reinterpret_cast<__m512>(a)));
+  return SEGORIENT_BITS_AS(Lanes, _mm512_maskz_sqrt_ps(0xffff, reinterpret_cast<__m512>(a)));
 #elif SEGORIENT_LANES == 8
-  return reinterpret_cast<Lanes>(_mm256_sqrt_ps(reinterpret_cast<__m256>(a)));
-#elif defined(__SSE2__)
-  return reinterpret_cast<Lanes>(_mm_sqrt_ps(reinterpret_cast<__m128>(a)));
+  return SEGORIENT_BITS_AS(Lanes, _mm256_sqrt_ps(reinterpret_cast<__m256>(a)));
+#elif SEGORIENT_SSE2
+  return SEGORIENT_BITS_AS(Lanes, _mm_sqrt_ps(reinterpret_cast<__m128>(a)));
 #else
   for (int l = 0; l < kLanes; ++l) a[l] = std::sqrt(a[l]);
   return a;
@@ -121,7 +121,7 @@ inline bool any(Mask m) {
   return _mm512_test_epi32_mask(reinterpret_cast<__m512i>(m), reinterpret_cast<__m512i>(m)) != 0;
 #elif SEGORIENT_LANES == 8
   return _mm256_movemask_ps(reinterpret_cast<__m256>(m)) != 0;
-#elif defined(__SSE2__)
+#elif SEGORIENT_SSE2
   return _mm_movemask_ps(reinterpret_cast<__m128>(m)) != 0;
 #else
   return (m[0] | m[1] | m[2] | m[3]) != 0;
@@ -130,11 +130,11 @@ inline bool any(Mask m) {
 
 inline Lanes load(const float* p) {
   Lanes a;
-  __builtin_memcpy(&a, p, sizeof(a));
+  copyBytes(&a, p, sizeof(a));
   return a;
 }
 inline void store(float* p, Lanes a) {
-  __builtin_memcpy(p, &a, sizeof(a));
+  copyBytes(p, &a, sizeof(a));
 }
 
 inline bool any(const TwiceMask& m) {
@@ -150,17 +150,17 @@ inline void store(float* p, const Twice& a) {
 
 inline Quad loadQuad(const float* p) {
   Quad q;
-  __builtin_memcpy(&q, p, sizeof(q));
+  copyBytes(&q, p, sizeof(q));
   return q;
 }
 inline void storeQuad(float* p, Quad q) {
-  __builtin_memcpy(p, &q, sizeof(q));
+  copyBytes(p, &q, sizeof(q));
 }
 
 /// x, y, z of one point a lane; p[l] points to 4 floats.
 inline Lanes3 loadPoints(const float* const* p) {
 #if SEGORIENT_LANES == 16
-  const auto four = [p](int first) __attribute__((always_inline)) {
+  const auto four = [p](int first) SEGORIENT_INLINED {
     const __m512 one = _mm512_castps128_ps512(_mm_loadu_ps(p[first]));
     const __m512 two = _mm512_maskz_insertf32x4(0xffff, one, _mm_loadu_ps(p[first + 4]), 1);
     const __m512 three = _mm512_maskz_insertf32x4(0xffff, two, _mm_loadu_ps(p[first + 8]), 2);
@@ -174,37 +174,37 @@ inline Lanes3 loadPoints(const float* const* p) {
   const __m512 cd = _mm512_maskz_unpacklo_ps(0xffff, c, d);
   const __m512 ab_z = _mm512_maskz_unpackhi_ps(0xffff, a, b);
   const __m512 cd_z = _mm512_maskz_unpackhi_ps(0xffff, c, d);
-  return {reinterpret_cast<Lanes>(_mm512_maskz_shuffle_ps(0xffff, ab, cd, 0x44)),
-          reinterpret_cast<Lanes>(_mm512_maskz_shuffle_ps(0xffff, ab, cd, 0xee)),
-          reinterpret_cast<Lanes>(_mm512_maskz_shuffle_ps(0xffff, ab_z, cd_z, 0x44))};
+  return {SEGORIENT_BITS_AS(Lanes, _mm512_maskz_shuffle_ps(0xffff, ab, cd, 0x44)),
+          SEGORIENT_BITS_AS(Lanes, _mm512_maskz_shuffle_ps(0xffff, ab, cd, 0xee)),
+          SEGORIENT_BITS_AS(Lanes, _mm512_maskz_shuffle_ps(0xffff, ab_z, cd_z, 0x44))};
 #elif SEGORIENT_LANES == 8
-  typedef float Pair __attribute__((vector_size(32)));
-  const auto pair = [](const float* low, const float* high) __attribute__((always_inline)) {
+  using Pair = SEGORIENT_VECTOR(float, 8);
+  const auto pair = [](const float* low, const float* high) SEGORIENT_INLINED {
     return static_cast<Pair>(
-        __builtin_shufflevector(loadQuad(low), loadQuad(high), 0, 1, 2, 3, 4, 5, 6, 7));
+        SEGORIENT_SHUFFLED(loadQuad(low), loadQuad(high), 0, 1, 2, 3, 4, 5, 6, 7));
   };
   const Pair a = pair(p[0], p[4]);
   const Pair b = pair(p[1], p[5]);
   const Pair c = pair(p[2], p[6]);
   const Pair d = pair(p[3], p[7]);
-  const Pair ab = __builtin_shufflevector(a, b, 0, 8, 1, 9, 4, 12, 5, 13);
-  const Pair cd = __builtin_shufflevector(c, d, 0, 8, 1, 9, 4, 12, 5, 13);
-  const Pair ab_z = __builtin_shufflevector(a, b, 2, 10, 3, 11, 6, 14, 7, 15);
-  const Pair cd_z = __builtin_shufflevector(c, d, 2, 10, 3, 11, 6, 14, 7, 15);
-  return {__builtin_shufflevector(ab, cd, 0, 1, 8, 9, 4, 5, 12, 13),
-          __builtin_shufflevector(ab, cd, 2, 3, 10, 11, 6, 7, 14, 15),
-          __builtin_shufflevector(ab_z, cd_z, 0, 1, 8, 9, 4, 5, 12, 13)};
+  const Pair ab = SEGORIENT_SHUFFLED(a, b, 0, 8, 1, 9, 4, 12, 5, 13);
+  const Pair cd = SEGORIENT_SHUFFLED(c, d, 0, 8, 1, 9, 4, 12, 5, 13);
+  const Pair ab_z = SEGORIENT_SHUFFLED(a, b, 2, 10, 3, 11, 6, 14, 7, 15);
+  const Pair cd_z = SEGORIENT_SHUFFLED(c, d, 2, 10, 3, 11, 6, 14, 7, 15);
+  return {SEGORIENT_SHUFFLED(ab, cd, 0, 1, 8, 9, 4, 5, 12, 13),
+          SEGORIENT_SHUFFLED(ab, cd, 2, 3, 10, 11, 6, 7, 14, 15),
+          SEGORIENT_SHUFFLED(ab_z, cd_z, 0, 1, 8, 9, 4, 5, 12, 13)};
 #else
   const Quad a = loadQuad(p[0]);
   const Quad b = loadQuad(p[1]);
   const Quad c = loadQuad(p[2]);
   const Quad d = loadQuad(p[3]);
-  const Quad ab = __builtin_shufflevector(a, b, 0, 4, 1, 5);
-  const Quad cd = __builtin_shufflevector(c, d, 0, 4, 1, 5);
-  const Quad ab_z = __builtin_shufflevector(a, b, 2, 6, 3, 7);
-  const Quad cd_z = __builtin_shufflevector(c, d, 2, 6, 3, 7);
-  return {__builtin_shufflevector(ab, cd, 0, 1, 4, 5), __builtin_shufflevector(ab, cd, 2, 3, 6, 7),
-          __builtin_shufflevector(ab_z, cd_z, 0, 1, 4, 5)};
+  const Quad ab = SEGORIENT_SHUFFLED(a, b, 0, 4, 1, 5);
+  const Quad cd = SEGORIENT_SHUFFLED(c, d, 0, 4, 1, 5);
+  const Quad ab_z = SEGORIENT_SHUFFLED(a, b, 2, 6, 3, 7);
+  const Quad cd_z = SEGORIENT_SHUFFLED(c, d, 2, 6, 3, 7);
+  return {SEGORIENT_SHUFFLED(ab, cd, 0, 1, 4, 5), SEGORIENT_SHUFFLED(ab, cd, 2, 3, 6, 7),
+          SEGORIENT_SHUFFLED(ab_z, cd_z, 0, 1, 4, 5)};
 #endif
 }
 
@@ -224,11 +224,11 @@ inline void storePoints(float* const* p, const Lanes3& a, Lanes fourth) {
                             _mm512_maskz_shuffle_ps(0xffff, xy_high, zw_high, 0x44),
                             _mm512_maskz_shuffle_ps(0xffff, xy_high, zw_high, 0xee)};
   for (int i = 0; i < 4; ++i) {
-    const auto v = reinterpret_cast<Lanes>(points[i]);
-    storeQuad(p[i], __builtin_shufflevector(v, v, 0, 1, 2, 3));
-    storeQuad(p[4 + i], __builtin_shufflevector(v, v, 4, 5, 6, 7));
-    storeQuad(p[8 + i], __builtin_shufflevector(v, v, 8, 9, 10, 11));
-    storeQuad(p[12 + i], __builtin_shufflevector(v, v, 12, 13, 14, 15));
+    const auto v = SEGORIENT_BITS_AS(Lanes, points[i]);
+    storeQuad(p[i], SEGORIENT_SHUFFLED(v, v, 0, 1, 2, 3));
+    storeQuad(p[4 + i], SEGORIENT_SHUFFLED(v, v, 4, 5, 6, 7));
+    storeQuad(p[8 + i], SEGORIENT_SHUFFLED(v, v, 8, 9, 10, 11));
+    storeQuad(p[12 + i], SEGORIENT_SHUFFLED(v, v, 12, 13, 14, 15));
   }
 #else
   for (std::size_t l = 0; l < kWidth; ++l) {

@@ -2,28 +2,18 @@
 // Copyright (c) 2026, the segorient authors
 #include "features/local_normals.h"
 
-#include "common/instruction_set.h"
-
-#include "common/kernel_macros.h"
-#include "common/threads.h"
-#include "features/local_fit_job.h"
-#include "features/surface_fit.h"
-
-#if defined(__SSE2__)
-#include <immintrin.h>
-#endif
-
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <limits>
 #include <vector>
 
-// Vectors are passed between inlined functions of this file only, so their calling convention is of
-// no consequence.
-#if defined(__GNUC__) && !defined(__clang__)
-#pragma GCC diagnostic ignored "-Wpsabi"
-#endif
+#include "common/compiler.h"
+#include "common/instruction_set.h"
+#include "common/threads.h"
+#include "common/vectors.h"
+#include "features/local_fit_job.h"
+#include "features/surface_fit.h"
 
 namespace segorient {
 namespace detail {
@@ -36,14 +26,8 @@ namespace {
 }  // namespace
 }  // namespace portable
 
-#if defined(__x86_64__)
-#define SEGORIENT_X86_KERNELS
-#if defined(__clang__)
-#pragma clang attribute push(__attribute__((target("avx2"))), apply_to = function)
-#else
-#pragma GCC push_options
-#pragma GCC target("avx2")
-#endif
+#if SEGORIENT_X86
+SEGORIENT_TARGET_BEGIN("avx2")
 namespace avx2 {
 namespace {
 #define SEGORIENT_LANES 8
@@ -51,14 +35,8 @@ namespace {
 #undef SEGORIENT_LANES
 }  // namespace
 }  // namespace avx2
-#if defined(__clang__)
-#pragma clang attribute pop
-#pragma clang attribute push(__attribute__((target("avx512f,avx512vl"))), apply_to = function)
-#else
-#pragma GCC pop_options
-#pragma GCC push_options
-#pragma GCC target("avx512f,avx512vl")
-#endif
+SEGORIENT_TARGET_END
+SEGORIENT_TARGET_BEGIN("avx512f,avx512vl")
 namespace avx512 {
 namespace {
 #define SEGORIENT_LANES 16
@@ -66,11 +44,7 @@ namespace {
 #undef SEGORIENT_LANES
 }  // namespace
 }  // namespace avx512
-#if defined(__clang__)
-#pragma clang attribute pop
-#else
-#pragma GCC pop_options
-#endif
+SEGORIENT_TARGET_END
 #endif
 
 namespace {
@@ -78,7 +52,7 @@ namespace {
 using Kernel = void (*)(const LocalFitJob&, std::size_t, std::size_t);
 
 Kernel chooseKernel(bool portable_only) {
-#if defined(SEGORIENT_X86_KERNELS)
+#if SEGORIENT_X86
   if (!portable_only && instructionSet() >= InstructionSet::Avx512) return &avx512::estimateRows;
   if (!portable_only && instructionSet() >= InstructionSet::Avx2) return &avx2::estimateRows;
 #endif

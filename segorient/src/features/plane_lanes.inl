@@ -110,10 +110,10 @@ inline void prefetchRows(const LocalFitJob& job, std::size_t begin, std::size_t 
     const int count = job.count(row);
     const pcl::index_t* neighbors = job.neighborhoods->indices(row);
     for (int j = count > kFarthest ? count - kFarthest : 0; j < count; ++j) {
-      __builtin_prefetch(job.xyz + 4 * static_cast<std::size_t>(neighbors[j]));
+      prefetch(job.xyz + 4 * static_cast<std::size_t>(neighbors[j]));
     }
     if (i + kTableAhead < end) {
-      __builtin_prefetch(job.neighborhoods->indices(job.row(i + kTableAhead)));
+      prefetch(job.neighborhoods->indices(job.row(i + kTableAhead)));
     }
   }
 }
@@ -276,7 +276,7 @@ inline Flattest<V> flattestDirection(const Scatter<V>& s, V count) {
   Adjugate<V> adj = adjugate<V>(xx - lambda, xy, xz, yy - lambda, yz, zz - lambda);
   result.gap = adj.xx + adj.yy + adj.zz;
   Vector3<V> normal = unit(adj.largestColumn());
-  const auto image = [&](const Vector3<V>& v) __attribute__((always_inline)) {
+  const auto image = [&](const Vector3<V>& v) SEGORIENT_INLINED {
     return Vector3<V>{xx * v.x + xy * v.y + xz * v.z, xy * v.x + yy * v.y + yz * v.z,
                       xz * v.x + yz * v.y + zz * v.z};
   };

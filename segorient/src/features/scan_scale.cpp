@@ -18,8 +18,6 @@ constexpr float kNone = std::numeric_limits<float>::quiet_NaN();
 
 // Neighbours spread in one direction only, as on a ring: their plane is any plane through it.
 constexpr float kOneLine = 0.15F;
-// What a normal may be turned by noise, in radians: 3.5 degrees, as edges then still show.
-constexpr float kMostError = 0.061F;
 // Residuals of a curved surface grow with the square of the number of neighbours, from one scale to
 // the next by 2.2; those of noise do not grow.
 constexpr float kFlat = 1.7F;
@@ -86,7 +84,7 @@ struct Scales {
       if (!(noise2 < 0.5F * w)) continue;
       const float rest = w - noise2;
       const auto n = static_cast<float>(sizes[s] + 1);
-      if (noise2 * w < kMostError * kMostError * n * rest * rest) return s;
+      if (noise2 * w < kMostNormalError * kMostNormalError * n * rest * rest) return s;
     }
     return kCount - 1;
   }
@@ -104,7 +102,9 @@ struct Scales {
 };
 
 constexpr Scales<4> kFew{{8, 12, 18, kSheetNeighbors}};
+// Half as many again each time, up to where planes are nearly free of noise.
 constexpr Scales<6> kMany{{8, 12, 18, 27, 40, 60}};
+// Neighbours that are sought: those of the largest scale, and some to vote beyond them.
 constexpr int kReach = 66;
 // ns a point, see resolveThreads().
 constexpr double kVoteTime = 20000.0;
@@ -113,6 +113,7 @@ constexpr double kFitTime = 2000.0;
 }  // namespace
 
 bool needsScanScales(const PointView& points, const Neighborhoods& nb, int smallest, int threads) {
+  // A share of .15 is known to about .01 then.
   constexpr std::size_t kSamples = 1024;
   // Edges make up to a sixth of the points of even clouds ask, rings and near surfaces a quarter to
   // three quarters of those of scans.

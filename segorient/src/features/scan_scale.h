@@ -11,6 +11,9 @@
 
 namespace segorient::detail {
 
+/// What a normal may be turned by noise, in radians: 3.5 degrees, as edges then still show.
+constexpr float kMostNormalError = 0.061F;
+
 /// Whether a cloud has many points whose noise asks for clearly larger neighbourhoods than the
 /// cloud's median does: scans have, whose spacing falls far below the noise near the sensor, and
 /// whose nearest neighbours are of one ring or one step of depth.

@@ -70,6 +70,7 @@ Covariance covarianceOf(const Moments& m, double mx, double my, double mz) {
 // The smallest root of the characteristic polynomial: from 0, Newton's method climbs to it without
 // passing it, in few steps where it is well below the others, as it is for a plane.
 double smallestEigenvalue(double trace, double minors, double determinant) {
+  // Newton's method doubles the digits each time once it is near.
   constexpr int kSteps = 12;
   double x = 0.0;
   for (int i = 0; i < kSteps; ++i) {
@@ -179,9 +180,11 @@ Offsets gatherOffsets(const PointView& points, const Neighborhoods& nb, std::siz
 }
 
 AdaptivePlane fitAdaptive(const Offsets& o, int smallest) {
+  // Of the share of variance that the larger neighbourhood leaves: chance does less.
   constexpr float kClearlyFlatter = 0.6F;
   constexpr float kFlat = 1e-4F;  // a hundredth of a spacing, squared: nothing is left to gain
   constexpr int kLargest = static_cast<int>(kScales.size()) - 1;
+  // The scale of 18 neighbours, as a plain normal estimation would take.
   constexpr int kCurvature = 2;
   std::array<Moments, kScales.size()> moments;
   Moments m;
@@ -232,6 +235,7 @@ WallSplit splitWalls(const Offsets& o, const Eigen::Vector3f& normal, float most
   std::array<float, kSheetNeighbors + 1> t;
   const auto n = static_cast<std::size_t>(o.n) + 1;
   WallSplit split;
+  // In spacings: nearer than that, offsets of neighbours do not fall into two groups.
   constexpr float kLeastApart = 0.35F;
   if (n < 2 * kLeast) return split;
   t[0] = 0.F;

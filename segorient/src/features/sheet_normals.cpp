@@ -87,7 +87,7 @@ float wallResidual(const Offsets& o, int k) {
 }
 
 // From here on, noise hides what the smallest neighbourhoods could tell.
-constexpr float kNoisy = 0.13F;
+constexpr float kFewTellNothing = 0.13F;
 
 // Noise hides what small neighbourhoods could tell: the first of 8, 12, 18 and 32 that it leaves.
 // In a small neighbourhood a plane tilts by about noise / (2 radius), and these keep that below 15
@@ -95,7 +95,7 @@ constexpr float kNoisy = 0.13F;
 int smallestScale(float noise) {
   if (noise >= 0.31F) return 3;
   if (noise >= 0.24F) return 2;
-  return noise >= kNoisy ? 1 : 0;
+  return noise >= kFewTellNothing ? 1 : 0;
 }
 
 struct PointFit {
@@ -171,6 +171,7 @@ void judgeReliability(const std::vector<float>& lopsided, SheetNormals& out) {
 }  // namespace
 
 NoiseLevel measureNoise(const PointView& points, const Neighborhoods& nb, int threads) {
+  // Medians of so many are known to some percent; the finest scale has a ring and a little more.
   constexpr std::size_t kSamples = 4096;
   constexpr int kFine = 8;
   // Of noise alone, one sample in 200 looks like two walls; of plates of two spacings with noise of
@@ -198,7 +199,7 @@ NoiseLevel measureNoise(const PointView& points, const Neighborhoods& nb, int th
   noise.fine = medianOver([](const Offsets& o) { return residualOver(o, kFine); }, told);
   noise.coarse =
       medianOver([](const Offsets& o) { return residualOver(o, kSheetNeighbors); }, told);
-  if (noise.fine < kNoisy) return noise;
+  if (noise.fine < kFewTellNothing) return noise;
   const float walls = medianOver([](const Offsets& o) { return wallResidual(o, kFine); }, told);
   noise.thin = static_cast<float>(told) >= kThinShare * static_cast<float>(n);
   if (noise.thin) noise.fine = walls;

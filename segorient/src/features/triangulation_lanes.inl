@@ -45,7 +45,7 @@ class SortingNetwork {
 /// bits than a sign.
 inline Mask isNeighbor(const Lanes3& d) {
   const Mask bits =
-      reinterpret_cast<Mask>(d.x) | reinterpret_cast<Mask>(d.y) | reinterpret_cast<Mask>(d.z);
+      SEGORIENT_BITS_AS(Mask, d.x) | SEGORIENT_BITS_AS(Mask, d.y) | SEGORIENT_BITS_AS(Mask, d.z);
   return (bits & 0x7fffffff) != 0;
 }
 
@@ -73,7 +73,7 @@ inline FanOrder fanKeys(const Batch& batch, std::size_t half, int count, const P
   Mask around{};
   for (int j = batch.first; j < batch.count; ++j) around -= isNeighbor(batch.offset(j, half));
   const Lanes3 center =
-      scaled(plane.sum, 1.0F / larger(__builtin_convertvector(around, Lanes), all(1.0F)));
+      scaled(plane.sum, 1.0F / larger(SEGORIENT_CONVERTED(around, Lanes), all(1.0F)));
   const Lanes center_u = dot(center, frame.u);
   const Lanes center_v = dot(center, frame.v);
 
@@ -100,9 +100,9 @@ inline FanOrder fanKeys(const Batch& batch, std::size_t half, int count, const P
     order.counts -= present;
     const Lanes key = select(present, 1.0F + 0.125F * angle, all(1.75F));
     // What is no neighbour goes last and is numbered 0, which every row has: rows may be shorter.
-    const Mask numbered = (reinterpret_cast<Mask>(key) & ~order.number_masks) | (present & j);
+    const Mask numbered = (SEGORIENT_BITS_AS(Mask, key) & ~order.number_masks) | (present & j);
     store(order.keys + static_cast<std::size_t>(j - batch.first) * kBatchRows,
-          reinterpret_cast<Lanes>(numbered));
+          SEGORIENT_BITS_AS(Lanes, numbered));
   }
   return order;
 }
@@ -110,11 +110,11 @@ inline FanOrder fanKeys(const Batch& batch, std::size_t half, int count, const P
 /// \param corner gives the neighbours of given numbers, one a lane
 template <typename Corner>
 inline Lanes3 fanArea(const FanOrder& order, int sorted, const Corner& corner) {
-  const auto cornerAt = [&](int j) __attribute__((always_inline)) {
+  const auto cornerAt = [&](int j) SEGORIENT_INLINED {
     const Lanes key = load(order.keys + static_cast<std::size_t>(j) * kBatchRows);
-    const Mask numbers = reinterpret_cast<Mask>(key) & order.number_masks;
+    const Mask numbers = SEGORIENT_BITS_AS(Mask, key) & order.number_masks;
     std::uint32_t number[kWidth];
-    __builtin_memcpy(number, &numbers, sizeof(number));
+    copyBytes(number, &numbers, sizeof(number));
     return corner(number);
   };
   const Lanes3 start = cornerAt(0);
@@ -147,7 +147,7 @@ SEGORIENT_APART void fanNormals(const LocalFitJob& job, const Batch& batch,
     const Plane& plane = planes[half];
     // Corners come from the points anew: that costs less than offsets that can be had lane by lane.
     const pcl::index_t* const* rows = batch.neighbors + half * kWidth;
-    const auto corner = [&](const std::uint32_t* number) __attribute__((always_inline)) {
+    const auto corner = [&](const std::uint32_t* number) SEGORIENT_INLINED {
       const float* points[kWidth];
       for (std::size_t l = 0; l < kWidth; ++l) {
         points[l] = job.xyz + 4 * static_cast<std::size_t>(rows[l][number[l]]);
@@ -175,7 +175,7 @@ SEGORIENT_APART void starNormals(const Batch& batch, const Plane (&planes)[2], f
   const Twice3 plane_normal = both(planes[0].normal, planes[1].normal);
   const Frame<Twice> frame = frameOf(plane_normal);
   const Twice unit_length = 1.0F / Twice{planes[0].size, planes[1].size};
-  const auto at = [inverted](int j) __attribute__((always_inline)) {
+  const auto at = [inverted](int j) SEGORIENT_INLINED {
     return inverted + 3 * static_cast<std::size_t>(j) * kBatchRows;
   };
   // Inverted x, y in the frame, and the height as it is.
@@ -199,7 +199,7 @@ SEGORIENT_APART void starNormals(const Batch& batch, const Plane (&planes)[2], f
   }
 
   // A corner times the square of its inverted distance, which turns no plane through the point.
-  const auto corner = [](const Twice3& image) __attribute__((always_inline)) {
+  const auto corner = [](const Twice3& image) SEGORIENT_INLINED {
     return Twice3{image.x, image.y, image.z * (image.x * image.x + image.y * image.y)};
   };
   Twice3 total{};

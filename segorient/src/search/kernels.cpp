@@ -8,23 +8,15 @@
 // machines without it.
 #include "search/kernels.h"
 
-#include "common/instruction_set.h"
-
 #include <algorithm>
+#include <cmath>
 #include <cstring>
 #include <limits>
 #include <vector>
 
-#include "common/kernel_macros.h"
-
-#if defined(__x86_64__) && (defined(__GNUC__) || defined(__clang__))
-#define SEGORIENT_X86 1
-#include <immintrin.h>
-#else
-#define SEGORIENT_X86 0
-#endif
-
-#define SEGORIENT_INLINE inline __attribute__((always_inline))
+#include "common/compiler.h"
+#include "common/instruction_set.h"
+#include "common/vectors.h"
 
 namespace segorient::search {
 namespace {
@@ -73,12 +65,7 @@ struct LaneTable {
 };
 constexpr LaneTable kLanes;
 
-#if defined(__clang__)
-#pragma clang attribute push(__attribute__((target("avx2,popcnt"))), apply_to = function)
-#else
-#pragma GCC push_options
-#pragma GCC target("avx2,popcnt")
-#endif
+SEGORIENT_TARGET_BEGIN("avx2,popcnt")
 
 namespace avx2 {
 #include "search/simd_avx2.inl"
@@ -90,15 +77,8 @@ namespace avx2 {
 #include "search/kernels_one.inl"
 }  // namespace avx2
 
-#if defined(__clang__)
-#pragma clang attribute pop
-#pragma clang attribute push(__attribute__((target("avx512f,avx512vl,popcnt"))), \
-                             apply_to = function)
-#else
-#pragma GCC pop_options
-#pragma GCC push_options
-#pragma GCC target("avx512f,avx512vl,popcnt")
-#endif
+SEGORIENT_TARGET_END
+SEGORIENT_TARGET_BEGIN("avx512f,avx512vl,popcnt")
 
 namespace avx512 {
 #include "search/simd_avx512.inl"
@@ -110,11 +90,7 @@ namespace avx512 {
 #include "search/kernels_one.inl"
 }  // namespace avx512
 
-#if defined(__clang__)
-#pragma clang attribute pop
-#else
-#pragma GCC pop_options
-#endif
+SEGORIENT_TARGET_END
 
 #endif  // SEGORIENT_X86
 

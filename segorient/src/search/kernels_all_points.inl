@@ -6,12 +6,12 @@
 // Asks for the memory of a row of the output.
 inline void prefetchRow(const GroupTask& task, std::size_t at, std::size_t count) {
   for (std::size_t j = 0; j < count; j += 64 / sizeof(float)) {
-    __builtin_prefetch(task.indices + at + j, 1);
-    if (task.distances != nullptr) __builtin_prefetch(task.distances + at + j, 1);
+    prefetchToWrite(task.indices + at + j);
+    if (task.distances != nullptr) prefetchToWrite(task.distances + at + j);
   }
   // A row does not begin where a line does.
-  __builtin_prefetch(task.indices + at + count - 1, 1);
-  if (task.distances != nullptr) __builtin_prefetch(task.distances + at + count - 1, 1);
+  prefetchToWrite(task.indices + at + count - 1);
+  if (task.distances != nullptr) prefetchToWrite(task.distances + at + count - 1);
 }
 
 // ---------------------------------------------------------------------------------------------------

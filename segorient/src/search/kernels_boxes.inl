@@ -5,12 +5,12 @@
 
 inline std::uint32_t bitsOf(float v) {
   std::uint32_t bits = 0;
-  __builtin_memcpy(&bits, &v, sizeof(bits));
+  copyBytes(&bits, &v, sizeof(bits));
   return bits;
 }
 inline float floatOf(std::uint32_t bits) {
   float v = 0.0F;
-  __builtin_memcpy(&v, &bits, sizeof(v));
+  copyBytes(&v, &bits, sizeof(v));
   return v;
 }
 
@@ -68,16 +68,16 @@ inline void scanLeaf(const PointLeaf& leaf, BoxSearch& search) {
   unsigned int near = distancesTo(leaf, search.query, search.best.limit, distance);
   if (near == 0) return;
   for (; near != 0; near &= near - 1) {
-    const auto lane = static_cast<std::size_t>(__builtin_ctz(near));
+    const auto lane = std::size_t{lowestBit(near)};
     insert(search.best, distance[lane], leaf.id[lane]);
   }
   tighten(search.best);
 }
 
 inline std::size_t nearestLane(const float* distance, unsigned int lanes) {
-  auto nearest = static_cast<std::size_t>(__builtin_ctz(lanes));
+  auto nearest = std::size_t{lowestBit(lanes)};
   for (lanes &= lanes - 1; lanes != 0; lanes &= lanes - 1) {
-    const auto lane = static_cast<std::size_t>(__builtin_ctz(lanes));
+    const auto lane = std::size_t{lowestBit(lanes)};
     if (distance[lane] < distance[nearest]) nearest = lane;
   }
   return nearest;
@@ -115,7 +115,7 @@ inline std::size_t pushNear(const BoxNode& node, const float* distance, unsigned
                             BoxEntry* stack, std::size_t depth) {
   const std::size_t bottom = depth;
   for (; lanes != 0; lanes &= lanes - 1) {
-    const auto lane = static_cast<std::uint32_t>(__builtin_ctz(lanes));
+    const auto lane = std::uint32_t{lowestBit(lanes)};
     std::size_t at = depth++;
     for (; at > bottom && stack[at - 1].distance < distance[lane]; --at) stack[at] = stack[at - 1];
     stack[at] = {distance[lane], node.first_region + lane,

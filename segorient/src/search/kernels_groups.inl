@@ -213,9 +213,9 @@ inline bool settleLimit(const Block& block, const float* q, float reach, std::si
 template <std::size_t kStep, typename From, typename To>
 inline void copySteps(const From* from, std::size_t count, To* to) {
   for (std::size_t i = 0; i + kStep < count; i += kStep) {
-    __builtin_memcpy(to + i, from + i, kStep * sizeof(To));
+    copyBytes(to + i, from + i, kStep * sizeof(To));
   }
-  __builtin_memcpy(to + count - kStep, from + count - kStep, kStep * sizeof(To));
+  copyBytes(to + count - kStep, from + count - kStep, kStep * sizeof(To));
 }
 
 template <typename From, typename To>

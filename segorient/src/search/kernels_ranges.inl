@@ -132,13 +132,13 @@ constexpr WholeVectors kWholeVectors;
 // Appends up to kAtOnce vectors. \return the new number of vectors
 SEGORIENT_INLINE std::size_t append(VectorList& list, std::size_t at, std::uint32_t begin,
                                     std::uint32_t count) {
-  using Eight = std::uint32_t __attribute__((vector_size(32)));
+  using Eight = SEGORIENT_VECTOR(std::uint32_t, 8);
   const std::uint32_t vectors = (count + kWidth - 1) / kWidth;
   // More than needed, without a branch; the next range overwrites the rest.
   const Eight first = begin + Eight{0,          kWidth,     2 * kWidth, 3 * kWidth,
                                     4 * kWidth, 5 * kWidth, 6 * kWidth, 7 * kWidth};
-  __builtin_memcpy(list.first + at, &first, sizeof(first));
-  __builtin_memcpy(list.lanes + at, kWholeVectors.lanes, sizeof(kWholeVectors.lanes));
+  copyBytes(list.first + at, &first, sizeof(first));
+  copyBytes(list.lanes + at, kWholeVectors.lanes, sizeof(kWholeVectors.lanes));
   at += vectors;
   // Of an empty range, what the next one overwrites.
   list.lanes[at - (count > 0 ? 1 : 0)] = kLastLanes.lanes[count % kWidth];

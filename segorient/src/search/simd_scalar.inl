@@ -33,7 +33,7 @@ inline Vector smallestOf(Vector a, Vector b) {
   return a < b ? a : b;
 }
 inline float squareRoot(float v) {
-  return __builtin_sqrtf(v);
+  return std::sqrt(v);
 }
 inline Vector truncate(Vector v) {
   return static_cast<float>(static_cast<int>(v));
@@ -49,15 +49,15 @@ inline void storeInts(Vector v, int* p) {
   *p = static_cast<int>(v);
 }
 
-using Quad = float __attribute__((vector_size(16)));
+using Quad = SEGORIENT_VECTOR(float, 4);
 
 inline Quad loadQuad(const float* p) {
   Quad q;
-  __builtin_memcpy(&q, p, sizeof(q));
+  copyBytes(&q, p, sizeof(q));
   return q;
 }
 inline void storeQuad(Quad q, float* p) {
-  __builtin_memcpy(p, &q, sizeof(q));
+  copyBytes(p, &q, sizeof(q));
 }
 inline void storeInts(Quad q, int* p) {
   for (int i = 0; i < 4; ++i) p[i] = static_cast<int>(q[i]);
@@ -79,7 +79,7 @@ inline Keys packKeys(const float* distance, const std::uint32_t* id) {
   Keys keys;
   for (std::size_t i = 0; i < 4; ++i) {
     std::uint32_t bits;
-    __builtin_memcpy(&bits, distance + i, 4);
+    copyBytes(&bits, distance + i, 4);
     keys.lane[i] = std::uint64_t{bits} << 32U | id[i];
   }
   return keys;
@@ -87,7 +87,7 @@ inline Keys packKeys(const float* distance, const std::uint32_t* id) {
 inline void unpackKeys(const Keys& keys, float* distance, std::uint32_t* id) {
   for (std::size_t i = 0; i < 4; ++i) {
     const auto bits = static_cast<std::uint32_t>(keys.lane[i] >> 32U);
-    __builtin_memcpy(distance + i, &bits, 4);
+    copyBytes(distance + i, &bits, 4);
     id[i] = static_cast<std::uint32_t>(keys.lane[i]);
   }
 }

@@ -29,8 +29,8 @@ inline void putPairs(std::uint64_t low, std::uint64_t high, unsigned int mask, v
   low >>= 32U * (~mask & 1U);
   high >>= 32U * ((~mask >> 2U) & 1U);
   char* const at = static_cast<char*>(out);
-  __builtin_memcpy(at, &low, sizeof(low));
-  __builtin_memcpy(at + 4 * ((mask & 1U) + ((mask >> 1U) & 1U)), &high, sizeof(high));
+  copyBytes(at, &low, sizeof(low));
+  copyBytes(at + 4 * ((mask & 1U) + ((mask >> 1U) & 1U)), &high, sizeof(high));
 }
 inline std::size_t lanesIn(unsigned int mask) {
   return (0x4332322132212110ULL >> (4 * mask)) & 15U;
@@ -43,7 +43,7 @@ inline void compress(Vector v, unsigned int mask, float* out) {
 }
 inline std::size_t compressIds(const std::uint32_t* ids, unsigned int mask, std::uint32_t* out) {
   std::uint64_t pairs[2];
-  __builtin_memcpy(pairs, ids, sizeof(pairs));
+  copyBytes(pairs, ids, sizeof(pairs));
   putPairs(pairs[0], pairs[1], mask, out);
   return lanesIn(mask);
 }

@@ -4,20 +4,20 @@
 // What vectors of any width have in common. Included where kWidth is known.
 
 // Arithmetic is by the compiler's own operators.
-using Vector = float __attribute__((vector_size(4 * kWidth)));
+using Vector = SEGORIENT_VECTOR(float, kWidth);
 
 inline Vector load(const float* p) {
   Vector v;
-  __builtin_memcpy(&v, p, sizeof(v));
+  copyBytes(&v, p, sizeof(v));
   return v;
 }
 inline void store(Vector v, float* p) {
-  __builtin_memcpy(p, &v, sizeof(v));
+  copyBytes(p, &v, sizeof(v));
 }
 inline Vector broadcast(float v) {
   return Vector{} + v;
 }
-using Quad = float __attribute__((vector_size(16)));
+using Quad = SEGORIENT_VECTOR(float, 4);
 
 inline Quad loadQuad(const float* p) {
   return _mm_loadu_ps(p);

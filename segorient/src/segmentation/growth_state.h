@@ -12,6 +12,7 @@
 #include <limits>
 #include <vector>
 
+#include "common/compiler.h"
 #include "segmentation/region_growing.h"
 #include "segmentation/sheet_edges.h"
 
@@ -144,7 +145,7 @@ struct GrowthState {
     return good >= support && bad <= good;
   }
   /// Asks the memory for a row of the table that is looked at soon.
-  void fetchRow(std::size_t row) const { __builtin_prefetch(neighborhoods->indices(row)); }
+  void fetchRow(std::size_t row) const { prefetch(neighborhoods->indices(row)); }
   int rowSize(std::size_t row) const { return std::min(neighborhoods->count(row), neighbors); }
 };
 

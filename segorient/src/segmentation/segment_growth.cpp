@@ -5,6 +5,7 @@
 #include <limits>
 #include <memory>
 
+#include "common/compiler.h"
 #include "segmentation/growth_state.h"
 
 namespace segorient::segmentation {
@@ -195,18 +196,18 @@ class Grower {
       // the points in the farther half of a row, where growing has not been yet. Not in a function
       // of its own, which compilers leave out as one without effects.
       if (head + kRowsAhead < tail_) {
-        __builtin_prefetch(hood_.indices(static_cast<std::size_t>(queue_[head + kRowsAhead])));
+        prefetch(hood_.indices(static_cast<std::size_t>(queue_[head + kRowsAhead])));
       }
       if (scattered_ && head + kLabelsAhead < tail_) {
         const auto p = static_cast<std::size_t>(queue_[head + kLabelsAhead]);
         const pcl::index_t* row = hood_.indices(p);
-        for (int j = 1, end = rowSize(p); j < end; ++j) __builtin_prefetch(labels_ + row[j]);
+        for (int j = 1, end = rowSize(p); j < end; ++j) prefetch(labels_ + row[j]);
       }
       if (head + kNodesAhead < tail_) {
         const auto p = static_cast<std::size_t>(queue_[head + kNodesAhead]);
         const pcl::index_t* row = hood_.indices(p);
         for (int j = row_size_ / 2, end = rowSize(p); j < end; ++j) {
-          __builtin_prefetch(nodes_ + row[j]);
+          prefetch(nodes_ + row[j]);
         }
       }
       spread(static_cast<std::size_t>(queue_[head]));
@@ -270,7 +271,7 @@ class Grower {
       std::uint32_t open = others & edges_.among(p);
       if (open != others) border = 1;
       for (; open != 0; open &= open - 1) {
-        const auto q = static_cast<std::size_t>(row[first + __builtin_ctz(open)]);
+        const auto q = static_cast<std::size_t>(row[first + static_cast<int>(lowestBit(open))]);
         if (labels_[q] == label_) continue;  // twice in the row
         if (labels_[q] >= 0 || !tryAccept(node, q)) border = 1;
       }

@@ -52,13 +52,13 @@ struct SheetGroup {
   /// Whether one of two finished groups lies above the other and is parallel to it, as the walls of
   /// a plate or the turns of a roll; or as noise within one sheet, whose votes are no better.
   bool isAbove(const SheetGroup& other) const {
-    constexpr float kParallel = 0.9F;  // within 26 degrees
+    constexpr float kSameGroup = 0.9F;  // within 26 degrees
     const Vec3 chord{other.mean[0] - mean[0], other.mean[1] - mean[1], other.mean[2] - mean[2]};
     const float half = 0.5F * dot(chord, chord);  // nearer to the normal than to the surface
     const float along = dot(normal, chord);
     const float other_along = dot(other.normal, chord);
     return along * along > half && other_along * other_along > half &&
-           std::fabs(dot(normal, other.normal)) > kParallel;
+           std::fabs(dot(normal, other.normal)) > kSameGroup;
   }
 };
 

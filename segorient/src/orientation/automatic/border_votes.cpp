@@ -9,6 +9,7 @@
 #include "common/threads.h"
 #include "orientation/automatic/border_groups.h"
 #include "orientation/automatic/wide_votes.h"
+#include "orientation/winding/winding_normals.h"
 
 namespace segorient {
 namespace {
@@ -19,11 +20,7 @@ using detail::Vec3;
 // Borders of so many votes, of which fewer than nine of ten agree, are voted on again; in
 // noise others, too.
 constexpr std::uint32_t kLong = 16;
-constexpr float kAgreed = 0.8F;
-// Median residual, in spacings, above which it is noise: curvature alone leaves some hundredths.
-// Noise makes the planes in the tip of a wedge lie between its faces, where they agree with each
-// other, wrongly.
-constexpr float kNoisy = 0.1F;
+constexpr float kNineOfTen = 0.8F;  // .9 for less .1 against
 // Points on a disc of the radius that wide votes reach (8 spacings): fewer are no face.
 constexpr std::uint32_t kFace = 200;
 
@@ -193,7 +190,7 @@ std::vector<BorderVote> borderVotes(const PointView& points, const Neighborhoods
       v.wall_counts = walls_count;
       v.count = sheet.count;
       v.where = votes[i + (j - i) / 2].point;
-      const bool agreed = v.unanimity() >= kAgreed;
+      const bool agreed = v.unanimity() >= kNineOfTen;
       if (v.count >= kLong && (!agreed || (field.residual > kNoisy && areFaces(segmentation, v)))) {
         border.clear();
         for (std::size_t k = i; k < j; ++k) {
@@ -203,7 +200,7 @@ std::vector<BorderVote> borderVotes(const PointView& points, const Neighborhoods
         }
         const float again = wide.vote(border, v.a, v.b, agreed);
         // Votes that were right stay as they are, walls and all.
-        v.by_planes = std::fabs(again) > kAgreed && !(agreed && again * v.weight > 0.F);
+        v.by_planes = std::fabs(again) > kNineOfTen && !(agreed && again * v.weight > 0.F);
         if (v.by_planes) {
           v.weight = again * v.absolute;
           v.wall = Evidence{};

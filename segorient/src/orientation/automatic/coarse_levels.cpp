@@ -40,6 +40,7 @@ constexpr float kFinest = 1.F;
 constexpr float kWalls = 0.005F;
 // Energies of solutions that are equally good differ by less than a tenth, as other points count.
 constexpr float kClearlyLess = 0.9F;
+// Oriented points of the subset that a point hears: a ring and a little more.
 constexpr int kHeard = 8;
 
 // What the points of a level around a point say about its normal.

@@ -15,7 +15,7 @@ namespace {
 
 // 8 degrees: less than the faces of a narrow wedge differ by, more than curvature turns a normal by
 // over a spacing.
-constexpr float kParallel = 0.99F;
+constexpr float kSameFace = 0.99F;
 // In spacings: less than the walls that can be told apart are thick.
 constexpr float kOffset = 0.3F;
 // First ring, and a little more.
@@ -25,7 +25,7 @@ constexpr std::size_t kMostPoints = 200;
 // Patches are turned that are smaller than this share of what they meet.
 constexpr double kShare = 0.25;
 // Confidence that one neighbour of the other sign among some tens would spoil.
-constexpr float kAgreed = 0.99F;
+constexpr float kUnanimous = 0.99F;
 // In spacings, as above: noise of a tenth leaves normals and offsets well within these limits.
 constexpr float kMostResidual = 0.1F;
 
@@ -82,7 +82,7 @@ class Patches {
     const float* n = normals_.data() + 4 * p;
     const float* m = normals_.data() + 4 * q;
     const float cosine = n[0] * m[0] + n[1] * m[1] + n[2] * m[2];
-    if (!(std::fabs(cosine) > kParallel)) return Agreement::UNKNOWN;
+    if (!(std::fabs(cosine) > kSameFace)) return Agreement::UNKNOWN;
     float along_n = 0.F;
     float along_m = 0.F;
     for (std::size_t a = 0; a < 3; ++a) {
@@ -169,7 +169,7 @@ std::size_t turnContraryPatches(const PointView& points, const Neighborhoods& ne
   std::vector<std::uint8_t> contrary(points.size);
 #pragma omp parallel for num_threads(resolveThreads(threads, points.size, 100.0)) schedule(static)
   for (std::size_t p = 0; p < points.size; ++p) {
-    const bool agreed = filtered.confidences[p] > kAgreed;
+    const bool agreed = filtered.confidences[p] > kUnanimous;
     contrary[p] = !agreed && patches.meetsContrary(p) ? 1 : 0;
   }
   std::size_t turned = 0;

@@ -8,14 +8,13 @@
 
 #include "common/disjoint_sets.h"
 #include "orientation/automatic/cluster_graph.h"
+#include "orientation/winding/winding_components.h"
 
 namespace segorient::detail {
 namespace {
 
 // Parts that three of four votes or more agree with are not loose.
 constexpr float kLoose = 0.5F;
-// Points that the winding number is sampled at, see solveComponents(): fewer say too little.
-constexpr std::uint32_t kLeastPoints = 24;
 
 std::size_t at(std::int32_t i) {
   return static_cast<std::size_t>(i);
@@ -76,7 +75,7 @@ LooseParts findLooseParts(const Segmentation& segmentation, const std::vector<Bo
     const std::int32_t part = part_of[s];
     if (number[at(part)] < 0) {
       // The largest, too: it may be the only one that is turned wrongly.
-      const bool loose = looked_at[at(component[s])] && size[at(part)] >= kLeastPoints &&
+      const bool loose = looked_at[at(component[s])] && size[at(part)] >= kLeastSamples &&
                          agreement[at(part)] < kLoose;
       number[at(part)] = loose ? static_cast<std::int32_t>(out.count++) : component[s];
     }

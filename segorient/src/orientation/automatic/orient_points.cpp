@@ -33,10 +33,9 @@ void dropCutOff(const PointView& points, const Neighborhoods& nb, const std::vec
 
 std::vector<std::uint8_t> lookAround(const SheetNormals& sheets,
                                      const std::vector<float>& agreement) {
-  // Residuals in spacings, the agreement as that of unit normals within some degrees.
+  // Residuals in spacings: what rounding leaves of a plane, and what curvature does.
   constexpr float kExact = 1e-4F;
   constexpr float kWithoutNoise = 0.01F;
-  constexpr float kSettled = 0.999F;
   std::vector<std::uint8_t> out(agreement.size());
   for (std::size_t i = 0; i < out.size(); ++i) {
     const float residual = sheets.normals[4 * i + 3];

@@ -25,6 +25,11 @@ using detail::HintVotes;
 constexpr float kClosedResidual = 0.03F;
 constexpr float kOpenResidual = 0.1F;
 constexpr float kClearly = 0.6F;  // four of five votes
+// Agreement of borders, as votes for less votes against: what is known of single points, and what
+// patches show as a whole, outweighs all that are not as firm as the first, and what could merely
+// have been seen those that are not as sure as the second (three of four).
+constexpr float kFirmBorders = 0.9F;
+constexpr float kSureBorders = 0.5F;
 
 std::size_t at(std::int32_t i) {
   return static_cast<std::size_t>(i);
@@ -32,7 +37,7 @@ std::size_t at(std::int32_t i) {
 
 // The hint that decides a component, if any: three votes of four at least.
 const Ballot* decisive(const HintVotes& hints, bool open) {
-  constexpr float kMost = 0.5F;
+  constexpr float kMost = 0.5F;  // .75 for less .25 against
   for (const Ballot* ballot : {&hints.seeds, &hints.directions}) {
     if (ballot->total > 0.F && std::fabs(ballot->share()) >= kMost) return ballot;
   }
@@ -339,8 +344,6 @@ void Orienter::keepWhatWindsRight(const std::vector<std::int32_t>& part_of,
 }
 
 void Orienter::followHints() {
-  constexpr float kFirmBorders = 0.9F;  // what is known of single points
-  constexpr float kSureBorders = 0.5F;  // what could have been seen
   const std::vector<HintVotes> votes = detail::hintVotes(points_, field_, segmentation_, hints_);
   std::vector<HintVotes> by_cluster(clusters_.size());
   std::vector<std::int32_t> component_of(clusters_.size(), -1);
@@ -433,9 +436,9 @@ void Orienter::believeSensors() {
 // nearly sure, so are single segments. Closed surfaces are never seen from one place, and have the
 // winding number.
 void Orienter::followViewpoint() {
+  // Shares of the largest cluster that face the place: nearly all, but for what noise turns.
   constexpr float kOnePlace = 0.97F;
   constexpr float kNearlySure = 0.98F;
-  constexpr float kSureBorders = 0.5F;  // then the borders know better
   if (winding_.empty() || hints_.has_viewpoint || isClosed(0, kClosedResidual)) return;
   std::vector<std::uint32_t> size(clusters_.size(), 0);
   for (std::size_t s = 0; s < clusters_.size(); ++s) {
@@ -496,7 +499,6 @@ void Orienter::turnSegmentsTo(const ViewpointFit& fit) {
   }
   const std::vector<std::int32_t> group = detail::agreeingGroups(votes_, signs_, turned_away);
   const std::vector<float> agreement = detail::agreementOf(group, votes_, signs_, 0.F);
-  constexpr float kFirmBorders = 0.9F;
   std::vector<std::size_t> against;
   for (std::size_t s = 0; s < signs_.size(); ++s) {
     if (turned_away[s] && agreement[at(group[s])] <= kFirmBorders) against.push_back(s);

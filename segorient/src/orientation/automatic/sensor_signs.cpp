@@ -6,11 +6,13 @@
 #include <cmath>
 #include <map>
 
+#include "features/scan_scale.h"
+
 namespace segorient::detail {
 namespace {
 
 // Errors of a normal's angle have long tails, from edges and stray points.
-constexpr float kClear = 3.F;
+constexpr float kClear = 3.F;  // standard deviations
 
 float cosineTo(const float* normal, const float* toward) {
   return normal[0] * toward[0] + normal[1] * toward[1] + normal[2] * toward[2];
@@ -48,14 +50,13 @@ std::vector<float> facingOf(const SheetField& field, std::size_t points,
   // A plane over k points with a residual of r spacings is off by about r / (sqrt(k) times the
   // neighbourhood's own rms extent); that is .45 r for eight neighbours and less for more. What
   // curvature does beside is some degrees. Where the residual is large, the scale was chosen so
-  // that noise turns the normal by less than 3.5 degrees.
+  // that noise turns the normal by less than kMostNormalError.
   constexpr float kPerResidual = 0.45F;
   constexpr float kBend = 0.03F;
-  constexpr float kMost = 0.061F;
   std::vector<float> out(points, 0.F);
   for (std::size_t i = 0; i < points; ++i) {
     const float* n = field.normals + 4 * i;
-    const float error = kBend + std::min(kPerResidual * n[3], kMost);
+    const float error = kBend + std::min(kPerResidual * n[3], detail::kMostNormalError);
     const float cosine = cosineTo(n, sensors.of(i));
     if (std::isfinite(cosine) && std::isfinite(error)) out[i] = cosine / error;
   }

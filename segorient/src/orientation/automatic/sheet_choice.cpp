@@ -61,8 +61,8 @@ class SheetChoice {
   }
 
  private:
-  static constexpr std::size_t kSheets = 4;  // three meet at a corner
-  static constexpr int kLeastWitnesses = 3;
+  static constexpr std::size_t kSheets = 4;   // three meet at a corner
+  static constexpr int kLeastWitnesses = 3;   // as many as a plane takes
   static constexpr float kSameSheet = 0.94F;  // 20 degrees: curvature over a neighbourhood
   static constexpr float kOpposite = -0.7F;   // a wedge; at other edges a mean is not wrong
   static constexpr float kOnSheet = 0.1F;     // what curvature explains, as in the mean

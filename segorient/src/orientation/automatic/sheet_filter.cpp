@@ -7,8 +7,10 @@
 #include <cmath>
 #include <cstring>
 
+#include "common/compiler.h"
 #include "common/instruction_set.h"
 #include "common/threads.h"
+#include "common/vectors.h"
 #include "orientation/automatic/contrary_patches.h"
 #include "orientation/automatic/sheet_choice.h"
 
@@ -30,7 +32,7 @@ struct Mean {
   }
 };
 
-using Quad = float __attribute__((vector_size(16)));
+using Quad = SEGORIENT_VECTOR(float, 4);
 
 Quad loadQuad(const float* from) {
   Quad q;
@@ -40,14 +42,14 @@ Quad loadQuad(const float* from) {
 
 // Four rows become four columns.
 void transpose(Quad& a, Quad& b, Quad& c, Quad& d) {
-  const Quad low_ab = __builtin_shufflevector(a, b, 0, 4, 1, 5);
-  const Quad low_cd = __builtin_shufflevector(c, d, 0, 4, 1, 5);
-  const Quad high_ab = __builtin_shufflevector(a, b, 2, 6, 3, 7);
-  const Quad high_cd = __builtin_shufflevector(c, d, 2, 6, 3, 7);
-  a = __builtin_shufflevector(low_ab, low_cd, 0, 1, 4, 5);
-  b = __builtin_shufflevector(low_ab, low_cd, 2, 3, 6, 7);
-  c = __builtin_shufflevector(high_ab, high_cd, 0, 1, 4, 5);
-  d = __builtin_shufflevector(high_ab, high_cd, 2, 3, 6, 7);
+  const Quad low_ab = SEGORIENT_SHUFFLED(a, b, 0, 4, 1, 5);
+  const Quad low_cd = SEGORIENT_SHUFFLED(c, d, 0, 4, 1, 5);
+  const Quad high_ab = SEGORIENT_SHUFFLED(a, b, 2, 6, 3, 7);
+  const Quad high_cd = SEGORIENT_SHUFFLED(c, d, 2, 6, 3, 7);
+  a = SEGORIENT_SHUFFLED(low_ab, low_cd, 0, 1, 4, 5);
+  b = SEGORIENT_SHUFFLED(low_ab, low_cd, 2, 3, 6, 7);
+  c = SEGORIENT_SHUFFLED(high_ab, high_cd, 0, 1, 4, 5);
+  d = SEGORIENT_SHUFFLED(high_ab, high_cd, 2, 3, 6, 7);
 }
 
 constexpr std::size_t kLanes = 8;
@@ -116,8 +118,8 @@ struct Sums {
   alignas(32) std::array<float, kLanes> total;
 };
 
-__attribute__((always_inline)) inline void addLanes(const Block& b, std::size_t filled,
-                                                    const Kernel& kernel, Sums& sums) {
+SEGORIENT_INLINE void addLanes(const Block& b, std::size_t filled, const Kernel& kernel,
+                               Sums& sums) {
   for (std::size_t first = 0; first < filled; first += kLanes) {
     for (std::size_t l = 0; l < kLanes; ++l) {
       const std::size_t j = first + l;
@@ -145,15 +147,16 @@ using AddBlock = void (*)(const Block&, std::size_t, const Kernel&, Sums&);
 void addPortably(const Block& b, std::size_t filled, const Kernel& kernel, Sums& sums) {
   addLanes(b, filled, kernel, sums);
 }
-#if defined(__x86_64__)
-__attribute__((target("avx2"))) void addByAvx2(const Block& b, std::size_t filled,
-                                               const Kernel& kernel, Sums& sums) {
+#if SEGORIENT_X86
+SEGORIENT_TARGET_BEGIN("avx2")
+void addByAvx2(const Block& b, std::size_t filled, const Kernel& kernel, Sums& sums) {
   addLanes(b, filled, kernel, sums);
 }
+SEGORIENT_TARGET_END
 #endif
 
 AddBlock chooseAddBlock() {
-#if defined(__x86_64__)
+#if SEGORIENT_X86
   if (instructionSet() >= InstructionSet::Avx2) return &addByAvx2;
 #endif
   return &addPortably;
@@ -206,8 +209,6 @@ FilteredNormals filterOrientedNormals(const PointView& points, const Neighborhoo
   FilteredNormals out;
   out.normals = oriented;
   out.confidences.assign(points.size, 0.F);
-  // Where the normals around agree to some degrees, another round would change nothing.
-  constexpr float kSettled = 0.999F;
   std::vector<float> next;
   const int t = resolveThreads(threads, points.size, 500.0);
   for (int round = 0; round < rounds; ++round) {

@@ -16,9 +16,9 @@
 namespace segorient::detail {
 namespace {
 
-constexpr int kNearest = 8;  // neighbours that make pairs
-constexpr std::size_t kPairRows = 20000;
-constexpr std::size_t kSamples = 2000;  // a share of the surface is known to about .01 then
+constexpr int kNearest = 8;               // neighbours that make pairs
+constexpr std::size_t kPairRows = 20000;  // one pair in 10,000 is then some ten pairs
+constexpr std::size_t kSamples = 2000;    // a share of the surface is known to about .01 then
 // In distances to the sixth neighbour. A cell holds the layers of scans that are a spacing apart.
 constexpr float kCell = 1.5F;
 constexpr float kInFront = 1.5F;
@@ -37,7 +37,7 @@ float distance(const float* a, const float* b) {
 }
 
 float medianSixth(const PointView& points, const Neighborhoods& table) {
-  constexpr int kSixth = 6;
+  constexpr int kSixth = 6;  // the first ring
   std::vector<float> distances;
   for (std::size_t i = 0; i < points.size; i += strideOf(points.size, kPairRows)) {
     if (table.count(i) <= kSixth) continue;

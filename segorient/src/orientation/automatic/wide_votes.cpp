@@ -17,7 +17,7 @@ constexpr float kLeastPoints = 24.F;
 // A sum of unit normals is this much of their number where the surface is hardly bent.
 constexpr float kHardlyBent = 0.9F;
 // Of planes within 18 degrees of each other one may as well lie behind the other.
-constexpr float kParallel = 0.95F;
+constexpr float kOneBehindTheOther = 0.95F;
 // Faces of a wedge meet at 60 degrees or less.
 constexpr float kWedge = 0.5F;
 // In spacings: what is nearer to a plane is on neither side of it.
@@ -35,7 +35,7 @@ bool isBent(const SheetGroup& sum) {
 // says nothing, or if wedges_only and the planes meet in no ridge or valley that is acute
 float compareSides(const SheetGroup& a, const SheetGroup& b, bool wedges_only) {
   const float cosine = dot(a.normal, b.normal);
-  if (std::fabs(cosine) > kParallel) return 0.F;
+  if (std::fabs(cosine) > kOneBehindTheOther) return 0.F;
   const Vec3 chord{b.mean[0] - a.mean[0], b.mean[1] - a.mean[1], b.mean[2] - a.mean[2]};
   const float before_a = dot(a.normal, chord);
   const float before_b = -dot(b.normal, chord);

@@ -180,12 +180,11 @@ class Solver {
   // Enough of each component to see it, and of the large ones in proportion: some thousand in all.
   void takeSamples() {
     constexpr double kAll = 2000.0;
-    constexpr std::size_t kLeast = 24;
     for (std::size_t c = 0; c < rows_.size(); ++c) {
       const auto& rows = rows_[c];
       const auto share = static_cast<std::size_t>(kAll * static_cast<double>(rows.size()) /
                                                   static_cast<double>(points_.size));
-      const std::size_t want = std::min(rows.size(), std::max(kLeast, share));
+      const std::size_t want = std::min(rows.size(), std::max(kLeastSamples, share));
       for (std::size_t k = 0; k < want; ++k) {
         samples_.push_back(rows[k * rows.size() / want]);
         owner_.push_back(static_cast<std::uint32_t>(c));

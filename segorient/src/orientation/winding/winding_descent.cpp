@@ -3,6 +3,7 @@
 #include <array>
 #include <cmath>
 
+#include "common/compiler.h"
 #include "common/instruction_set.h"
 #include "orientation/winding/winding_number.h"
 
@@ -28,9 +29,8 @@ struct Sums {
   alignas(32) std::array<float, kLanes> z;
 };
 
-__attribute__((always_inline)) inline void addDipole(const Dipoles& from, std::size_t i,
-                                                     const float* at, float r2, std::size_t lane,
-                                                     Sums& sums) {
+SEGORIENT_INLINE void addDipole(const Dipoles& from, std::size_t i, const float* at, float r2,
+                                std::size_t lane, Sums& sums) {
   const float dx = from.x[i] - at[0];
   const float dy = from.y[i] - at[1];
   const float dz = from.z[i] - at[2];
@@ -42,8 +42,7 @@ __attribute__((always_inline)) inline void addDipole(const Dipoles& from, std::s
   sums.z[lane] += weight * (from.mz[i] - along * dz);
 }
 
-__attribute__((always_inline)) inline void addLanes(const Dipoles& from, const float* at, float r2,
-                                                    Sums& sums) {
+SEGORIENT_INLINE void addLanes(const Dipoles& from, const float* at, float r2, Sums& sums) {
   std::size_t i = 0;
   for (; i + kLanes <= from.count; i += kLanes) {
     for (std::size_t l = 0; l < kLanes; ++l) addDipole(from, i + l, at, r2, l, sums);
@@ -56,15 +55,16 @@ using AddDipoles = void (*)(const Dipoles&, const float*, float, Sums&);
 void addPortably(const Dipoles& from, const float* at, float r2, Sums& sums) {
   addLanes(from, at, r2, sums);
 }
-#if defined(__x86_64__)
-__attribute__((target("avx2"))) void addByAvx2(const Dipoles& from, const float* at, float r2,
-                                               Sums& sums) {
+#if SEGORIENT_X86
+SEGORIENT_TARGET_BEGIN("avx2")
+void addByAvx2(const Dipoles& from, const float* at, float r2, Sums& sums) {
   addLanes(from, at, r2, sums);
 }
+SEGORIENT_TARGET_END
 #endif
 
 AddDipoles chooseAddDipoles() {
-#if defined(__x86_64__)
+#if SEGORIENT_X86
   if (instructionSet() >= InstructionSet::Avx2) return &addByAvx2;
 #endif
   return &addPortably;
@@ -86,7 +86,6 @@ void DipoleList::add(const float* place, const float* moment) {
 }
 
 void steepestDescent(const DipoleList& dipoles, const float* x, float radius, float* descent) {
-  constexpr float kOneOver4Pi = 0.07957747F;
   const Dipoles from{dipoles.x.data(),  dipoles.y.data(),  dipoles.z.data(), dipoles.mx.data(),
                      dipoles.my.data(), dipoles.mz.data(), dipoles.size()};
   static const AddDipoles addDipoles = chooseAddDipoles();

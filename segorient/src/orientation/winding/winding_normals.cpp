@@ -15,14 +15,14 @@ namespace segorient {
 namespace {
 
 constexpr float kHuge = std::numeric_limits<float>::max();
-constexpr float kNoisy = 0.1F;  // in spacings; below, the planes near an edge are of one face each
-constexpr float kAgreed = 0.97F;  // confidence from which on there is nothing to mend
+constexpr float kNothingToMend = 0.97F;  // confidence from which on there is nothing to mend
 
 std::vector<std::uint32_t> listDoubtful(const std::vector<float>& spacing,
                                         const FilteredNormals& filtered) {
   std::vector<std::uint32_t> rows;
   for (std::size_t p = 0; p < spacing.size(); ++p) {
-    if (filtered.confidences[p] >= kAgreed || !std::isfinite(filtered.normals[4 * p])) continue;
+    if (filtered.confidences[p] >= kNothingToMend || !std::isfinite(filtered.normals[4 * p]))
+      continue;
     if (spacing[p] > 0.F) rows.push_back(static_cast<std::uint32_t>(p));
   }
   return rows;

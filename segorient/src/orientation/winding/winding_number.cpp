@@ -8,11 +8,11 @@
 namespace segorient {
 namespace {
 
+// Dipoles that are summed up one by one: as long as opening one more node takes.
 constexpr std::uint32_t kLeaf = 16;
 // A node counts as one dipole beyond this many of its radii (half diagonals of its box, about):
 // errors of some hundredths of the sum of absolute terms.
 constexpr float kFar = 4.F;
-constexpr float kOneOver4Pi = 0.07957747F;
 
 }  // namespace
 

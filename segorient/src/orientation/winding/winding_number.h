@@ -11,6 +11,9 @@
 
 namespace segorient {
 
+/// The part of all directions that a unit of solid angle is.
+constexpr float kOneOver4Pi = 0.07957747F;
+
 /// Dipoles as separate arrays: places, and area-weighted normals.
 struct DipoleList {
   std::vector<float> x, y, z;
