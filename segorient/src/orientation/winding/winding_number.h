@@ -32,6 +32,13 @@ struct DipoleList {
 /// \param descent 3 floats, 1 / length; 0 without dipoles
 void steepestDescent(const DipoleList& dipoles, const float* x, float radius, float* descent);
 
+/// The winding number of dipoles that are smeared as above, sum m.d / (4 pi s^(3/2)).
+float windingNumberOf(const DipoleList& dipoles, const float* x, float radius);
+
+/// sum mx (x - p) / (4 pi s^(3/2)): what adds to a sum of winding numbers at the dipoles' places,
+/// each times its mx, if a dipole at x grows. \param pull 3 floats
+void windingPull(const DipoleList& dipoles, const float* x, float radius, float* pull);
+
 /// Winding number of oriented points (Barill et al. 2018, "Fast winding numbers for soups and
 /// clouds"): w(x) = sum a n.(p - x) / (4 pi max(|p - x|, r)^3): 1 inside a closed outward cloud, 0
 /// outside, 1/2 on it.

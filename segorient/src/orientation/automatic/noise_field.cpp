@@ -1,0 +1,245 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the segorient authors
+#include "orientation/automatic/noise_field.h"
+
+#include <segorient/search/median_hash_index.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <utility>
+#include <vector>
+
+#include "common/dot.h"
+#include "common/median.h"
+#include "features/sheet_normals.h"
+#include "orientation/automatic/blue_noise.h"
+#include "orientation/winding/dipole_fields.h"
+#include "orientation/winding/field_solver.h"
+
+namespace segorient::detail {
+namespace {
+
+constexpr int kSix = 6;  // neighbours of the spacing
+// In mean distances to the six nearest points. A cell holds about four points, whose mean has half
+// the noise.
+constexpr float kCell = 1.5F;
+constexpr float kSmooth = 2.F;  // noise of a spacing is no more to the field than to its cells
+// Less than that, as cells have averaged some of the noise, and fine parts are lost to a wide one.
+constexpr float kFinal = 1.5F;
+// Area per square of the mean distance to the six nearest of a blue-noise subset, see SignJudge.
+constexpr float kAreaPerSquare = 0.92F;
+
+float meanOfSix(const PointView& points, const Neighborhoods& table, std::size_t i) {
+  const int count = std::min(table.count(i), kSix + 1);
+  float sum = 0.F;
+  for (int j = 1; j < count; ++j) {
+    const float* q = points[static_cast<std::size_t>(table.indices(i)[j])];
+    float squares = 0.F;
+    for (std::size_t a = 0; a < 3; ++a) squares += (q[a] - points[i][a]) * (q[a] - points[i][a]);
+    sum += std::sqrt(squares);
+  }
+  return count > 1 ? sum / static_cast<float>(count - 1) : 0.F;
+}
+
+float medianSpacing(const PointView& points, const Neighborhoods& table) {
+  constexpr std::size_t kRows = 20000;  // a median of so many is known to a hundredth
+  const std::size_t stride = std::max<std::size_t>(1, points.size / kRows);
+  std::vector<float> values;
+  for (std::size_t i = 0; i < points.size; i += stride) {
+    values.push_back(meanOfSix(points, table, i));
+  }
+  return median(std::move(values));
+}
+
+// An even subset, with what its points stand for.
+struct Subset {
+  std::vector<float> places;   // 4 floats: means of the cells
+  std::vector<float> normals;  // 4 floats: means of the oriented normals; 0 where there is none
+  std::vector<float> areas;
+  Neighborhoods around;
+
+  std::size_t size() const { return areas.size(); }
+  PointView points() const { return {places.data(), 4, areas.size()}; }
+};
+
+Subset thinToCells(const PointView& points, const std::vector<float>& normals, float spacing,
+                   int threads) {
+  Subset out;
+  const BlueNoise cells = thinOut(points, kCell * spacing);
+  const std::size_t n = cells.kept.size();
+  if (n == 0) return out;
+  out.places.assign(4 * n, 0.F);
+  out.normals.assign(4 * n, 0.F);
+  std::vector<float> counts(n, 0.F);
+  for (std::size_t i = 0; i < points.size; ++i) {
+    const std::size_t c = cells.cell_of[i];
+    counts[c] += 1.F;
+    for (std::size_t a = 0; a < 3; ++a) out.places[4 * c + a] += points[i][a];
+    if (!isFinite(&normals[4 * i])) continue;
+    for (std::size_t a = 0; a < 3; ++a) out.normals[4 * c + a] += normals[4 * i + a];
+  }
+  for (std::size_t c = 0; c < n; ++c) {
+    float* m = &out.normals[4 * c];
+    const float length = std::sqrt(dot(m, m));
+    for (std::size_t a = 0; a < 3; ++a) {
+      out.places[4 * c + a] /= counts[c];
+      m[a] = length > 0.F ? m[a] / length : 0.F;
+    }
+  }
+  search::MedianHashIndex index;
+  search::MedianHashIndex::Options options;
+  options.threads = threads;
+  index.build({out.places.data(), 4, n}, nullptr, options);
+  constexpr int kAround = 9;  // the point itself and eight neighbours
+  index.nearestKAll(kAround, out.around, false);
+  out.areas.resize(n);
+  for (std::size_t c = 0; c < n; ++c) {
+    const float h = meanOfSix(out.points(), out.around, c);
+    out.areas[c] = kAreaPerSquare * h * h;
+  }
+  return out;
+}
+
+struct Solution {
+  std::vector<float> normals;  // of the subset
+  FieldEnergy energy;
+};
+
+// Whether patches of another solution were taken for good: of an open sheet in noise the field
+// makes a plate, whose sides are opposed, or what is in front of it.
+bool isAllowed(const FieldEnergy& e, const FieldEnergy& own) {
+  // Of a closed cloud .002 to .009 more (borders of the patches), of folded sheets .016 and more.
+  constexpr float kOpposed = 0.012F;
+  return e.outside <= own.outside && e.opposed <= own.opposed + kOpposed;
+}
+
+// Patches of neighbours where two solutions have opposed normals, by descending size.
+std::vector<std::vector<std::uint32_t>> patchesOfDissent(const Subset& subset,
+                                                         const std::vector<float>& a,
+                                                         const std::vector<float>& b) {
+  constexpr std::size_t kLeast = 6;  // fewer are noise
+  std::vector<std::vector<std::uint32_t>> out;
+  std::vector<std::uint8_t> open(subset.size());
+  for (std::size_t i = 0; i < open.size(); ++i) open[i] = dot(&a[4 * i], &b[4 * i]) < 0.F ? 1 : 0;
+  for (std::size_t i = 0; i < open.size(); ++i) {
+    if (open[i] == 0) continue;
+    std::vector<std::uint32_t> patch{static_cast<std::uint32_t>(i)};
+    open[i] = 0;
+    for (std::size_t k = 0; k < patch.size(); ++k) {
+      const std::size_t p = patch[k];
+      for (int j = 1; j < subset.around.count(p); ++j) {
+        const auto q = static_cast<std::size_t>(subset.around.indices(p)[j]);
+        if (open[q] == 0 || !(dot(&a[4 * p], &a[4 * q]) > 0.F)) continue;
+        open[q] = 0;
+        patch.push_back(static_cast<std::uint32_t>(q));
+      }
+    }
+    if (patch.size() < kLeast) continue;
+    std::sort(patch.begin(), patch.end());
+    out.push_back(std::move(patch));
+  }
+  std::stable_sort(out.begin(), out.end(),
+                   [](const auto& x, const auto& y) { return x.size() > y.size(); });
+  return out;
+}
+
+// Takes over those patches of another solution that lower the spread.
+void merge(const Subset& subset, const FieldSolver& solver, const std::vector<float>& other,
+           Solution& best) {
+  // What each of its points gains in the mean. One on the wrong side has w = 0 or 1, which costs
+  // 1/4, and so do its neighbours. Measured: up to .05 where it made things worse, or nothing at
+  // all gained, .07 to .5 where it helped.
+  constexpr float kGain = 0.06F;
+  constexpr std::size_t kMost = 40;  // each costs a sum over its points for all others
+  const std::vector<std::vector<std::uint32_t>> patches =
+      patchesOfDissent(subset, best.normals, other);
+  if (patches.empty()) return;
+  std::vector<float> winding = solver.windingOf(best.normals);
+  float spread = solver.spreadOf(winding);
+  std::vector<float> difference(4 * subset.size(), 0.F);
+  std::vector<float> changed(winding.size());
+  for (std::size_t p = 0; p < std::min(kMost, patches.size()); ++p) {
+    for (const std::uint32_t i : patches[p]) {
+      for (std::size_t a = 4 * std::size_t{i}; a < 4 * std::size_t{i} + 3; ++a) {
+        difference[a] = other[a] - best.normals[a];
+      }
+    }
+    const std::vector<float> change = solver.windingOf(difference, &patches[p]);
+    for (std::size_t i = 0; i < changed.size(); ++i) changed[i] = winding[i] + change[i];
+    const float with = solver.spreadOf(changed);
+    const auto share = static_cast<float>(patches[p].size()) / static_cast<float>(subset.size());
+    if (spread - with < kGain * share) {
+      for (const std::uint32_t i : patches[p]) std::fill_n(&difference[4 * std::size_t{i}], 3, 0.F);
+      continue;
+    }
+    spread = with;
+    winding = changed;
+    for (const std::uint32_t i : patches[p]) {
+      std::copy_n(&other[4 * std::size_t{i}], 3, &best.normals[4 * std::size_t{i}]);
+      std::fill_n(&difference[4 * std::size_t{i}], 3, 0.F);
+    }
+  }
+}
+
+// The field where each point was measured tells its side, and has a say in its direction.
+void takeDirections(const PointView& points, const Subset& subset, const FieldSolver& solver,
+                    const std::vector<float>& normals, float radius, int threads,
+                    AutoNormals& found) {
+  const std::vector<float> dipoles = solver.dipolesOf(normals);
+  const std::vector<float> field =
+      steepestDescents(points, {subset.points(), dipoles}, radius, threads);
+  for (std::size_t i = 0; i < points.size; ++i) {
+    float* n = &found.normals[4 * i];
+    const float* g = &field[4 * i];
+    const float length = std::sqrt(dot(g, g));
+    if (!isFinite(n) || !(length > 0.F) || !std::isfinite(length)) continue;
+    const float sign = dot(n, g) < 0.F ? -1.F : 1.F;
+    float sum[3];
+    for (std::size_t a = 0; a < 3; ++a) sum[a] = sign * n[a] + g[a] / length;
+    const float total = std::sqrt(dot(sum, sum));
+    for (std::size_t a = 0; a < 3; ++a) n[a] = sum[a] / total;
+  }
+}
+
+}  // namespace
+
+void followField(const PointView& points, const Neighborhoods& neighborhoods, int threads,
+                 AutoNormals& found) {
+  // Spread: noise of a spacing alone makes so much, and with less no patch was wrong.
+  constexpr float kSure = 0.03F;
+  // Rounds: 12 and 5 gave the same.
+  constexpr int kFromNothing = 8;
+  constexpr int kFromBest = 3;
+  constexpr float kLess = 0.97F;  // so that solutions that are equally good stay as they are
+  const float spacing = medianSpacing(points, neighborhoods);
+  const Subset subset = thinToCells(points, found.normals, spacing, threads);
+  if (subset.size() == 0) return;
+  const FieldSolver solver(subset.points(), subset.around, subset.areas, kSmooth * spacing,
+                           threads);
+  const auto solution = [&](std::vector<float> normals) {
+    const FieldEnergy energy = solver.energy(normals);
+    return Solution{std::move(normals), energy};
+  };
+  const Solution own = solution(subset.normals);
+  Solution best = own;
+  if (own.energy.spread > kSure) {
+    const std::vector<float> fresh =
+        solver.relax(std::vector<float>(4 * subset.size(), 0.F), kFromNothing);
+    Solution merged = own;
+    merge(subset, solver, fresh, merged);
+    merged.energy = solver.energy(merged.normals);
+    if (merged.energy.spread < own.energy.spread && isAllowed(merged.energy, own.energy)) {
+      best = std::move(merged);
+    }
+    Solution relaxed = solution(solver.relax(best.normals, kFromBest));
+    if (relaxed.energy.spread < kLess * best.energy.spread &&
+        isAllowed(relaxed.energy, own.energy)) {
+      best = std::move(relaxed);
+    }
+  }
+  takeDirections(points, subset, solver, best.normals, kFinal * spacing, threads, found);
+}
+
+}  // namespace segorient::detail

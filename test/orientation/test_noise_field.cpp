@@ -1,0 +1,277 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the segorient authors
+//
+// Fields of oriented points at many places, solutions that agree with them, and what they are for:
+// noise that is as large as parts are thick.
+#include <gtest/gtest.h>
+#include <segorient/orientation/pipeline.h>
+#include <segorient/search/median_hash_index.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <random>
+#include <vector>
+
+#include "common/compact_cloud.h"
+#include "orientation/winding/dipole_fields.h"
+#include "orientation/winding/field_solver.h"
+#include "sheet_fixture.h"
+
+namespace segorient::test {
+namespace {
+
+using Vector = Eigen::Vector3d;
+
+Vector at(const PointView& points, std::size_t i) {
+  return Eigen::Map<const Eigen::Vector3f>(points[i]).cast<double>();
+}
+
+// A bracket with area 1 a point, in an order that keeps near points together.
+struct Bracket {
+  CompactCloud cloud;
+  std::vector<float> dipoles;
+  float radius = 0.F;
+
+  explicit Bracket(std::size_t n) {
+    const LabelledCloud labelled = sample("bracket", bracket(), n, 5);
+    cloud = compactCloud(viewOf(labelled.xyz));
+    dipoles.assign(4 * cloud.size(), 1.F);
+    for (std::size_t i = 0; i < cloud.size(); ++i) {
+      std::copy_n(&labelled.normals[4 * static_cast<std::size_t>(cloud.source[i])], 3,
+                  &dipoles[4 * i]);
+    }
+    radius = 2.F * static_cast<float>(labelled.spacing / static_cast<double>(cloud.unit));
+  }
+};
+
+TEST(DipoleFields, AreTheSumsOverAllPoints) {
+  const Bracket b(3000);
+  const PointView points = b.cloud.view();
+  const DipoleCloud from{points, b.dipoles};
+  const std::vector<float> numbers = windingNumbers(points, from, b.radius, 1);
+  const std::vector<float> descents = steepestDescents(points, from, b.radius, 1);
+  const std::vector<float> pulls = windingPulls(points, from, b.radius, 1);
+  const double r2 = std::pow(static_cast<double>(b.radius), 2);
+  for (std::size_t i = 0; i < points.size; i += 50) {
+    double number = 0.0;
+    double most = 0.0;  // of any that are in line
+    Vector descent = Vector::Zero();
+    Vector pull = Vector::Zero();
+    for (std::size_t j = 0; j < points.size; ++j) {
+      const Vector d = at(points, j) - at(points, i);
+      const Vector m = Eigen::Map<const Eigen::Vector3f>(&b.dipoles[4 * j]).cast<double>();
+      const double s = d.squaredNorm() + r2;
+      const double weight = 1.0 / (4 * M_PI * std::pow(s, 1.5));
+      number += weight * m.dot(d);
+      most += weight * d.norm();
+      descent += weight * (m - 3 * m.dot(d) / s * d);
+      pull -= weight * m.x() * d;
+    }
+    EXPECT_NEAR(static_cast<double>(numbers[i]), number, 0.05 * most) << i;
+    const Vector descends = Eigen::Map<const Eigen::Vector3f>(&descents[4 * i]).cast<double>();
+    EXPECT_LT((descends - descent).norm(), 0.05 * descent.norm()) << i;
+    const Vector pulled = Eigen::Map<const Eigen::Vector3f>(&pulls[4 * i]).cast<double>();
+    EXPECT_LT((pulled - pull).norm(), 0.05 * most) << i;
+  }
+}
+
+TEST(DipoleFields, DoNotDependOnThreadsAndKeepToTheirRows) {
+  const Bracket b(3000);
+  const PointView points = b.cloud.view();
+  EXPECT_EQ(windingNumbers(points, {points, b.dipoles}, b.radius, 1),
+            windingNumbers(points, {points, b.dipoles}, b.radius, 4));
+  std::vector<float> few(b.dipoles.size(), 0.F);
+  std::vector<std::uint32_t> rows;
+  for (std::uint32_t i = 100; i < 200; ++i) {
+    rows.push_back(i);
+    std::copy_n(&b.dipoles[4 * std::size_t{i}], 4, &few[4 * std::size_t{i}]);
+  }
+  const std::vector<float> of_rows =
+      windingNumbers(points, {points, b.dipoles, &rows}, b.radius, 1);
+  const std::vector<float> of_few = windingNumbers(points, {points, few}, b.radius, 1);
+  const float most = *std::max_element(of_few.begin(), of_few.end());
+  for (std::size_t i = 0; i < points.size; ++i) EXPECT_NEAR(of_rows[i], of_few[i], 0.05F * most);
+}
+
+// A sphere, a hollow one whose inner wall faces the cavity, or a piece of a plane.
+struct Samples {
+  std::vector<float> places;
+  std::vector<float> normals;
+  std::vector<float> areas;
+  Neighborhoods table;
+
+  void add(const Vector& p, const Vector& n) {
+    for (std::size_t a = 0; a < 4; ++a) {
+      places.push_back(a < 3 ? static_cast<float>(p[static_cast<Eigen::Index>(a)]) : 0.F);
+      normals.push_back(a < 3 ? static_cast<float>(n[static_cast<Eigen::Index>(a)]) : 0.F);
+    }
+  }
+  PointView view() const { return {places.data(), 4, places.size() / 4}; }
+  // Near points side by side, and neighbours.
+  void finish(float area) {
+    const CompactCloud sorted = compactCloud(view());
+    std::vector<float> in_order;
+    std::vector<float> normals_in_order;
+    for (const auto source : sorted.source) {
+      const auto i = static_cast<std::ptrdiff_t>(4 * source);
+      in_order.insert(in_order.end(), places.begin() + i, places.begin() + i + 4);
+      normals_in_order.insert(normals_in_order.end(), normals.begin() + i, normals.begin() + i + 4);
+    }
+    places = in_order;
+    normals = normals_in_order;
+    areas.assign(places.size() / 4, area);
+    search::MedianHashIndex index;
+    index.build(view(), nullptr, {});
+    index.nearestKAll(9, table, false);
+  }
+};
+
+Samples sphere(std::size_t n, unsigned seed) {
+  std::mt19937 rng(seed);
+  std::normal_distribution<double> normal;
+  Samples out;
+  for (std::size_t i = 0; i < n; ++i) {
+    const Vector d = Vector(normal(rng), normal(rng), normal(rng)).normalized();
+    out.add(d, d);
+  }
+  out.finish(static_cast<float>(4 * M_PI / static_cast<double>(n)));
+  return out;
+}
+
+constexpr float kWide = 0.2F;  // some three spacings
+
+TEST(FieldSolver, FindsTheOutsideFromNothing) {
+  const Samples s = sphere(2000, 1);
+  const FieldSolver solver(s.view(), s.table, s.areas, kWide, 1);
+  const std::vector<float> found = solver.relax(std::vector<float>(4 * s.areas.size(), 0.F), 5);
+  for (std::size_t i = 0; i < s.areas.size(); ++i) {
+    EXPECT_GT(at(s.view(), i).dot(Eigen::Map<const Eigen::Vector3f>(&found[4 * i]).cast<double>()),
+              0.9);
+  }
+}
+
+TEST(FieldSolver, EnergyIsLeastForTheTruthWhateverTheAreas) {
+  Samples s = sphere(2000, 2);
+  std::vector<float> turned = s.normals;  // one half the wrong way
+  for (std::size_t i = 0; i < s.areas.size(); ++i) {
+    if (s.places[4 * i] < 0.F) continue;
+    for (std::size_t a = 0; a < 3; ++a) turned[4 * i + a] = -turned[4 * i + a];
+  }
+  for (const float factor : {1.F, 3.F}) {
+    for (float& a : s.areas) a *= factor;
+    const FieldSolver solver(s.view(), s.table, s.areas, kWide, 1);
+    const FieldEnergy truth = solver.energy(s.normals);
+    const FieldEnergy wrong = solver.energy(turned);
+    EXPECT_LT(truth.spread, 0.005F);
+    EXPECT_GT(wrong.spread, 0.02F);
+    EXPECT_LT(truth.outside, 0.1F);
+    EXPECT_EQ(truth.opposed, 0.F);
+    EXPECT_GT(wrong.opposed, 0.F);
+  }
+}
+
+TEST(FieldSolver, PlaneSaysNothing) {
+  std::mt19937 rng(3);
+  std::uniform_real_distribution<double> side(-1.0, 1.0);
+  Samples s;
+  for (int i = 0; i < 2000; ++i) s.add({side(rng), side(rng), 0.0}, Vector::UnitZ());
+  s.finish(0.002F);
+  const FieldSolver solver(s.view(), s.table, s.areas, kWide, 1);
+  EXPECT_GT(solver.energy(s.normals).spread, 0.24F);
+}
+
+// A body with a thin wing, as an aircraft has it; noise in spacings.
+struct Noisy {
+  std::vector<float> xyz;
+  std::vector<float> normals;
+};
+
+Noisy winged(std::size_t n, double noise, unsigned seed) {
+  std::mt19937 rng(seed);
+  std::normal_distribution<double> normal;
+  std::uniform_real_distribution<double> unit(0.0, 1.0);
+  const Vector axes[2] = {{1.0, 0.25, 0.25}, {0.3, 1.4, 0.05}};
+  const double area = 1.9 + 2 * M_PI * axes[1][0] * axes[1][1];
+  const double spacing = std::sqrt(area / static_cast<double>(n));
+  Noisy out;
+  while (out.xyz.size() < 4 * n) {
+    const bool wing = unit(rng) < 0.58;
+    const Vector& a = axes[wing ? 1 : 0];
+    const Vector& b = axes[wing ? 0 : 1];
+    const Vector d = Vector(normal(rng), normal(rng), normal(rng)).normalized();
+    const Vector p = d.cwiseProduct(a);
+    Vector m = d.cwiseQuotient(a);
+    if (unit(rng) > m.norm() * a.minCoeff()) continue;  // even over the surface
+    if (p.cwiseQuotient(b).squaredNorm() < 1.0) continue;
+    m.normalize();
+    for (Eigen::Index k = 0; k < 3; ++k) {
+      out.xyz.push_back(static_cast<float>(p[k] + noise * spacing * normal(rng)));
+      out.normals.push_back(static_cast<float>(m[k]));
+    }
+    out.xyz.push_back(0.F);
+    out.normals.push_back(0.F);
+  }
+  return out;
+}
+
+double right(const Noisy& cloud, bool noise_field, int threads = 1) {
+  PipelineOptions options;
+  options.threads = threads;
+  options.orientation.automatic.noise_field = noise_field;
+  return shareOutward(orientCloud(viewOf(cloud.xyz), nullptr, options).normals, cloud.normals);
+}
+
+TEST(NoiseField, ThinPartsAreToldApart) {
+  double with = 0.0;
+  double without = 0.0;
+  for (unsigned seed = 1; seed <= 2; ++seed) {
+    const Noisy cloud = winged(8000, 0.6, seed);
+    with += 0.5 * right(cloud, true);
+    without += 0.5 * right(cloud, false);
+  }
+  EXPECT_GT(with, without + 0.015) << without;
+}
+
+TEST(NoiseField, CleanCloudsAreNotTouched) {
+  const Noisy cloud = winged(6000, 0.0, 4);
+  PipelineOptions options;
+  const OrientedCloud with = orientCloud(viewOf(cloud.xyz), nullptr, options);
+  options.orientation.automatic.noise_field = false;
+  const OrientedCloud without = orientCloud(viewOf(cloud.xyz), nullptr, options);
+  EXPECT_EQ(with.normals, without.normals);
+}
+
+TEST(NoiseField, DoesNotDependOnThreads) {
+  const Noisy cloud = winged(6000, 1.0, 5);
+  PipelineOptions options;
+  options.threads = 1;
+  const OrientedCloud one = orientCloud(viewOf(cloud.xyz), nullptr, options);
+  options.threads = 4;
+  EXPECT_EQ(one.normals, orientCloud(viewOf(cloud.xyz), nullptr, options).normals);
+}
+
+TEST(NoiseField, OpenSheetStaysOneSheet) {
+  std::mt19937 rng(6);
+  std::normal_distribution<double> normal;
+  std::uniform_real_distribution<double> side(-1.0, 1.0);
+  Noisy cloud;
+  constexpr std::size_t kPoints = 6000;
+  const double spacing = std::sqrt(4.0 / static_cast<double>(kPoints));
+  for (std::size_t i = 0; i < kPoints; ++i) {
+    const double x = side(rng);
+    const Vector p(x, side(rng), 0.2 * std::sin(3 * x));
+    const Vector n = Vector(-0.6 * std::cos(3 * x), 0.0, 1.0).normalized();
+    for (Eigen::Index k = 0; k < 3; ++k) {
+      cloud.xyz.push_back(static_cast<float>(p[k] + spacing * normal(rng)));
+      cloud.normals.push_back(static_cast<float>(n[k]));
+    }
+    cloud.xyz.push_back(0.F);
+    cloud.normals.push_back(0.F);
+  }
+  const double share = right(cloud, true);
+  EXPECT_GT(std::max(share, 1 - share), 0.99);
+}
+
+}  // namespace
+}  // namespace segorient::test
