@@ -90,8 +90,6 @@ inline std::vector<Column> withoutSteps() {
               [](PipelineOptions& o) { o.orientation.automatic.infer_viewpoint = false; }),
       without("coarse levels",
               [](PipelineOptions& o) { o.orientation.automatic.coarse_levels = false; }),
-      without("noise field",
-              [](PipelineOptions& o) { o.orientation.automatic.noise_field = false; }),
       without("winding normals",
               [](PipelineOptions& o) { o.orientation.automatic.winding_normals = false; }),
       without("wedges", [](PipelineOptions& o) { o.orientation.automatic.filter_wedges = false; }),

@@ -215,10 +215,10 @@ Noisy winged(std::size_t n, double noise, unsigned seed) {
   return out;
 }
 
-double right(const Noisy& cloud, bool noise_field, int threads = 1) {
+double right(const Noisy& cloud, bool winding_normals, int threads = 1) {
   PipelineOptions options;
   options.threads = threads;
-  options.orientation.automatic.noise_field = noise_field;
+  options.orientation.automatic.winding_normals = winding_normals;
   return shareOutward(orientCloud(viewOf(cloud.xyz), nullptr, options).normals, cloud.normals);
 }
 
@@ -237,7 +237,7 @@ TEST(NoiseField, CleanCloudsAreNotTouched) {
   const Noisy cloud = winged(6000, 0.0, 4);
   PipelineOptions options;
   const OrientedCloud with = orientCloud(viewOf(cloud.xyz), nullptr, options);
-  options.orientation.automatic.noise_field = false;
+  options.orientation.automatic.winding_normals = false;
   const OrientedCloud without = orientCloud(viewOf(cloud.xyz), nullptr, options);
   EXPECT_EQ(with.normals, without.normals);
 }

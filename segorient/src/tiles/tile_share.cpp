@@ -313,7 +313,6 @@ TileTraits measureTileTraits(const PointView& points, int k, const OrientationHi
   if (cloud.size() == 0) return out;
   PipelineOptions pipeline = pipelineOptions(k, threads);
   pipeline.orientation.automatic.coarse_levels = false;
-  pipeline.orientation.automatic.noise_field = false;
   const detail::AutoStages found = detail::runAutoStages(
       cloud, pipeline, resolveHints(hints, cloud), [](const char*, double) {});
   out.noise = found.sheets.noise.fine;

@@ -71,9 +71,6 @@ struct AutomaticOptions {
   /// oriented as well, and their signs taken where they explain the cloud better. Not where points
   /// have sensors of their own, which decide.
   bool coarse_levels = true;
-  /// In noise of a third of a spacing and more, normals that agree with the field of all points
-  /// take over where they explain it much better. Only where nothing is known of sensors or sides.
-  bool noise_field = true;
 
   /// Where no sensor is known, look for some, see findSensors(): those that are sure count as if
   /// they were given. orientCloud() does it; what takes segments from elsewhere does not.

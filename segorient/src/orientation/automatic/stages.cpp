@@ -10,6 +10,7 @@
 #include "features/sheet_denoise.h"
 #include "features/sheet_normals.h"
 #include "orientation/automatic/final_normals.h"
+#include "orientation/automatic/noise_field.h"
 #include "orientation/automatic/sensor_normals.h"
 #include "segmentation/segmentation_rows.h"
 
@@ -18,6 +19,8 @@ namespace {
 
 // Enough for a plane through a slab of one or two spacings of noise.
 constexpr int kDenoisingNeighbors = 48;
+// In spacings, as NoiseLevel::fine measures it. With less, borders tell enough.
+constexpr float kFieldNoise = 0.2F;
 
 // Finds the neighbours, of smoothed positions where the noise asks for that.
 // \param smoothed stays empty where it does not
@@ -39,6 +42,11 @@ void findNeighbors(PreparedCloud& cloud, const PipelineOptions& options, const S
     index.nearestKAll(out.k + 1, of_smoothed, false);
   }
   cloud.dropIndex();
+}
+
+bool knowsNothing(const PointHints& hints) {
+  return hints.surface != SurfaceKind::OPEN && !hints.has_viewpoint && hints.sensors.empty() &&
+         hints.directions.empty() && hints.seeds.empty() && hints.toward.empty();
 }
 
 // Points that have no plane of their own, but a normal from those around them, are of the segment
@@ -111,6 +119,11 @@ AutoStages runAutoStages(PreparedCloud& cloud, const PipelineOptions& options,
   AutoNormals oriented =
       orientPoints(points, table, settings, hints, options.threads, begin, record, &finished);
   out.segmentation = std::move(finished.segmentation);
+  // What sensors or the user know is better than what the field tells.
+  if (settings.winding_normals && record == nullptr && out.noise >= kFieldNoise &&
+      knowsNothing(hints)) {
+    followField(cloud.points(), cloud.neighborhoods(), options.threads, oriented);
+  }
   labelTheRest(table, oriented.normals, out.segmentation);
   if (settings.fit_normals && !out.denoised && !oriented.scan_scales) {
     begin("recomputation", 0.88);

@@ -42,7 +42,7 @@ class Box {
   }
 
  private:
-  static constexpr float kHuge = std::numeric_limits<float>::max();
+  static constexpr float kHuge = std::numeric_limits<float>::max();  // of an empty box
   std::array<float, 3> low_{kHuge, kHuge, kHuge};
   std::array<float, 3> high_{-kHuge, -kHuge, -kHuge};
 };

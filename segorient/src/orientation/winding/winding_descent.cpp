@@ -22,8 +22,6 @@ struct Dipoles {
   std::size_t count;
 };
 
-constexpr float kOneOver4Pi = 0.07957747F;
-
 // Sums by lane, so that compilers can use vectors without changing the order of any sum.
 struct Sums {
   alignas(32) std::array<float, kLanes> x;
