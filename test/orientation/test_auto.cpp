@@ -240,8 +240,9 @@ TEST(Auto, FacesOfANarrowWedgeFaceApartInNoise) {
 TEST(Auto, FilterIsWorthItsTime) {
   const LabelledCloud cloud = sample("cube", cube(), 6000, 50, 0.7);
   PipelineOptions filtered;
-  filtered.orientation.automatic.infer_viewpoint =
-      false;  // which mends the same points by other means
+  // Which mend the same points by other means.
+  filtered.orientation.automatic.infer_viewpoint = false;
+  filtered.orientation.automatic.winding_normals = false;
   PipelineOptions unfiltered = filtered;
   unfiltered.orientation.automatic.filter_rounds = 0;
   EXPECT_GT(shareOutward(orient(cloud.xyz, filtered).normals, cloud.normals),
@@ -268,9 +269,11 @@ TEST(Auto, DenoisingIsWorthItsTime) {
     xyz.push_back(0.F);
     truth.push_back(0.F);
   }
-  PipelineOptions rough;
+  PipelineOptions smoothed;
+  smoothed.orientation.automatic.winding_normals = false;  // mends the same points by other means
+  PipelineOptions rough = smoothed;
   rough.orientation.automatic.denoise = false;
-  const OrientedCloud smooth = orient(xyz);
+  const OrientedCloud smooth = orient(xyz, smoothed);
   EXPECT_TRUE(smooth.report.denoised);
   const double share = shareOutward(smooth.normals, truth);
   EXPECT_GT(share, 0.98);

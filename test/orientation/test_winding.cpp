@@ -274,8 +274,12 @@ TEST(LooseParts, AreFoundByTheirBorders) {
   const std::vector<float> wall(n, std::numeric_limits<float>::max());
   const std::vector<float> below(n, -std::numeric_limits<float>::max());
   const std::vector<std::uint8_t> reliable(n, 1);
-  const SheetField field{bands.ball.normals.data(), bands.ball.spacing.data(), below.data(),
-                         wall.data(), reliable.data()};
+  const SheetField field{bands.ball.normals.data(),
+                         nullptr,
+                         bands.ball.spacing.data(),
+                         below.data(),
+                         wall.data(),
+                         reliable.data()};
   const Neighborhoods table = neighborsOf(bands.ball.xyz);
   segmentation.segments.resize(4);  // the last one has no points
   for (const bool by_winding : {false, true}) {
@@ -314,8 +318,8 @@ TEST(LooseParts, MayBeTheLargest) {
   const std::vector<float> above(n, std::numeric_limits<float>::max());
   const std::vector<float> below(n, -std::numeric_limits<float>::max());
   const std::vector<std::uint8_t> reliable(n, 1);
-  const SheetField field{ball.normals.data(), ball.spacing.data(), below.data(), above.data(),
-                         reliable.data()};
+  const SheetField field{ball.normals.data(), nullptr,      ball.spacing.data(),
+                         below.data(),        above.data(), reliable.data()};
   const Neighborhoods table = neighborsOf(ball.xyz);
   for (const bool by_winding : {false, true}) {
     AutomaticOptions options;
@@ -350,8 +354,8 @@ struct Scene {
     const std::vector<float> spacing(n, step);
     const std::vector<float> above(n, std::numeric_limits<float>::max());
     const std::vector<float> below(n, -std::numeric_limits<float>::max());
-    const SheetField field{normals.data(), spacing.data(), below.data(), above.data(),
-                           reliable.data()};
+    const SheetField field{normals.data(), nullptr,      spacing.data(),
+                           below.data(),   above.data(), reliable.data()};
     return orientSheets(viewOf(xyz), neighborsOf(xyz), field, segmentation, options);
   }
 };
