@@ -343,8 +343,8 @@ TileShare workOnTile(const PointView& points, const std::vector<TileRole>& roles
 bool needsFinishing(const TileShare& share, const TileSigns& signs) {
   // Of sensors, the whole knows which are to be believed.
   if (!signs.toward.empty()) return true;
-  // A point of a border has about eight neighbours across it: one of 100,000 points.
-  constexpr double kMost = 8e-5;
+  // A point of a border has about eight neighbours across it: four of 100,000 points.
+  constexpr double kMost = 3e-4;
   std::uint64_t points = 0;
   std::uint64_t wrong = 0;
   for (const std::uint32_t size : share.piece_sizes) points += size;
