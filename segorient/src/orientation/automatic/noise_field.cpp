@@ -13,6 +13,7 @@
 
 #include "common/dot.h"
 #include "common/median.h"
+#include "features/sheet_fit.h"
 #include "features/sheet_normals.h"
 #include "orientation/automatic/blue_noise.h"
 #include "orientation/winding/dipole_fields.h"
@@ -31,24 +32,12 @@ constexpr float kFinal = 1.5F;
 // Area per square of the mean distance to the six nearest of a blue-noise subset, see SignJudge.
 constexpr float kAreaPerSquare = 0.92F;
 
-float meanOfSix(const PointView& points, const Neighborhoods& table, std::size_t i) {
-  const int count = std::min(table.count(i), kSix + 1);
-  float sum = 0.F;
-  for (int j = 1; j < count; ++j) {
-    const float* q = points[static_cast<std::size_t>(table.indices(i)[j])];
-    float squares = 0.F;
-    for (std::size_t a = 0; a < 3; ++a) squares += (q[a] - points[i][a]) * (q[a] - points[i][a]);
-    sum += std::sqrt(squares);
-  }
-  return count > 1 ? sum / static_cast<float>(count - 1) : 0.F;
-}
-
 float medianSpacing(const PointView& points, const Neighborhoods& table) {
   constexpr std::size_t kRows = 20000;  // a median of so many is known to a hundredth
   const std::size_t stride = std::max<std::size_t>(1, points.size / kRows);
   std::vector<float> values;
   for (std::size_t i = 0; i < points.size; i += stride) {
-    values.push_back(meanOfSix(points, table, i));
+    values.push_back(meanDistance(points, table, i, kSix));
   }
   return median(std::move(values));
 }
@@ -96,7 +85,7 @@ Subset thinToCells(const PointView& points, const std::vector<float>& normals, f
   index.nearestKAll(kAround, out.around, false);
   out.areas.resize(n);
   for (std::size_t c = 0; c < n; ++c) {
-    const float h = meanOfSix(out.points(), out.around, c);
+    const float h = meanDistance(out.points(), out.around, c, kSix);
     out.areas[c] = kAreaPerSquare * h * h;
   }
   return out;
