@@ -10,6 +10,7 @@
 #include "io/output_file.h"
 #include "io/readers.h"
 #include "support/command_line.h"
+#include "support/component_report.h"
 #include "support/hint_options.h"
 #include "support/json.h"
 #include "support/memory.h"
@@ -145,18 +146,7 @@ std::string reportText(const OrientedCloud& cloud, const StageMemory& memory,
   json.endObject();
   json.field("peak_memory_bytes", memory.most());
   addTo(json, memory);
-  json.beginArray("components");
-  for (const ComponentOrientationResult& c : report.components) {
-    json.beginItem();
-    json.field("points", c.points);
-    json.field("oriented_by", toString(c.by));
-    json.field("sign", static_cast<int>(c.sign));
-    json.field("evidence", c.evidence);
-    json.field("confidence", c.confidence);
-    json.field("contradiction", c.contradiction);
-    json.endObject();
-  }
-  json.endArray();
+  addTo(json, report.components);
   json.beginArray("clusters");
   for (const ClusterOrientationResult& c : report.clusters) {
     json.beginItem();

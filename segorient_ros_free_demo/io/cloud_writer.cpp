@@ -7,6 +7,7 @@
 #include <sstream>
 
 #include "io/file_endings.h"
+#include "io/las_writer.h"
 
 namespace segorient::program {
 namespace {
@@ -285,17 +286,39 @@ void writeCloud(const OutputCloud& cloud, OutputFile& file) {
   writePcd(cloud, file);
 }
 
+CloudWriter::CloudWriter(OutputFile& file, const Bounds& bulk)
+    : file_(file), kind_(Kind::PCD), summary_(bulk) {
+  const std::string ending = fileEnding(file.path());
+  if (ending == ".ply") kind_ = Kind::PLY;
+  if (ending == ".las") kind_ = Kind::LAS;
+}
+
+CloudWriter::~CloudWriter() = default;
+
+void CloudWriter::sumUp(const OutputCloud& block) {
+  summary_.add(block);
+}
+
+void CloudWriter::begin(const OutputCloud& block, std::uint64_t size) {
+  begun_ = true;
+  OutputCloud all = block;
+  all.size = all.width = static_cast<std::size_t>(size);
+  if (kind_ == Kind::PLY) writePlyHeader(all, file_);
+  if (kind_ == Kind::PCD) writePcdHeader(all, file_);
+  if (kind_ == Kind::LAS) las_ = std::make_unique<LasWriter>(block, summary_, file_);
+}
+
 void CloudWriter::add(const OutputCloud& block, std::uint64_t size) {
-  const bool ply = fileEnding(file_.path()) == ".ply";
   const ConstantViewpoint viewpoint(block);
-  OutputCloud cloud = ply ? viewpoint.addedTo(block) : block;
-  if (!begun_) {
-    cloud.size = cloud.width = static_cast<std::size_t>(size);
-    ply ? writePlyHeader(cloud, file_) : writePcdHeader(cloud, file_);
-    begun_ = true;
-  }
-  cloud.size = block.size;
-  ply ? writePlyRows(cloud, file_) : writePcdRows(cloud, file_);
+  const OutputCloud cloud = kind_ == Kind::PCD ? block : viewpoint.addedTo(block);
+  if (!begun_) begin(cloud, size);
+  if (kind_ == Kind::PLY) writePlyRows(cloud, file_);
+  if (kind_ == Kind::PCD) writePcdRows(cloud, file_);
+  if (kind_ == Kind::LAS) las_->add(cloud);
+}
+
+void CloudWriter::end() {
+  if (las_) las_->end();
 }
 
 }  // namespace segorient::program

@@ -3,9 +3,11 @@
 #pragma once
 
 #include "io/cloud_table.h"
+#include "io/las_summary.h"
 #include "io/output_file.h"
 
 #include <array>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -18,6 +20,12 @@ struct Column {
   const std::uint8_t* data = nullptr;  ///< first row's value
   std::size_t stride = 0;              ///< bytes from one row to the next
 };
+
+/// A number of a column.
+inline double numberOf(const Column& c, std::size_t row, std::uint32_t element = 0) {
+  return loadNumber(c.data + row * c.stride + std::size_t{element} * c.field.size, c.field.type,
+                    c.field.size);
+}
 
 /// A cloud to be written: columns, in the order they shall have in the file.
 struct OutputCloud {
@@ -65,16 +73,35 @@ void writeLas(const OutputCloud& cloud, OutputFile& file);
 /// VIEWPOINT becomes fields vp_x, vp_y, vp_z in PLY and LAS.
 void writeCloud(const OutputCloud& cloud, OutputFile& file);
 
-/// A PCD or PLY that is written block by block; does not commit.
+class LasWriter;
+
+/// A PCD, PLY or LAS that is written block by block; does not commit. All blocks have the same
+/// columns.
 class CloudWriter {
  public:
-  explicit CloudWriter(OutputFile& file) : file_(file) {}
-  /// The next points. All blocks have the same columns. \param size of the whole cloud
+  /// \param bulk where the points are but for strays; only LAS asks for it
+  CloudWriter(OutputFile& file, const Bounds& bulk);
+  ~CloudWriter();
+  CloudWriter(const CloudWriter&) = delete;
+  CloudWriter& operator=(const CloudWriter&) = delete;
+
+  /// Whether all blocks have to be summed up before the first is added.
+  bool needsSummary() const { return kind_ == Kind::LAS; }
+  void sumUp(const OutputCloud& block);
+  /// The next points. \param size of the whole cloud
   void add(const OutputCloud& block, std::uint64_t size);
+  /// After the last one.
+  void end();
 
  private:
+  enum class Kind { PCD, PLY, LAS };
+  void begin(const OutputCloud& block, std::uint64_t size);
+
   OutputFile& file_;
+  Kind kind_;
   bool begun_ = false;
+  LasSummary summary_;
+  std::unique_ptr<LasWriter> las_;
 };
 
 }  // namespace segorient::program

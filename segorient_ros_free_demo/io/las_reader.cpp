@@ -358,6 +358,12 @@ CloudTable readLas(InputFile& file) {
 std::optional<RowFormat> lasRows(InputFile& file) {
   Header header = readHeader(file);
   readRecords(file, header, header.points_begin - header.header_bytes);
+  const std::uint64_t points_end = header.points_begin + header.points * header.record_bytes;
+  if (header.extended_records > 0 && points_end - header.points_begin <= file.remaining()) {
+    file.seek(points_end);
+    readExtendedRecords(file, header, points_end);
+    file.seek(header.points_begin);
+  }
   RowFormat rows;
   const std::vector<LasItem> items = lasItems(header.origin.point_format);
   std::vector<Extra> extras = readExtras(file, header, rows.layout);

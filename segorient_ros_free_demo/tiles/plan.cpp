@@ -17,6 +17,7 @@ void forEachNumber(P& p, const Visit& visit) {
   visit(p.rows);
   visit(p.finite);
   visit(p.origin);
+  visit(p.bulk);
   visit(p.traits);
   visit(p.k);
   visit(p.patch_points);

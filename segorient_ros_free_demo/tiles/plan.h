@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "common/bulk_bounds.h"
 #include "tiles/tile_share.h"
 #include "tiles/tile_tree.h"
 
@@ -71,6 +72,7 @@ struct Plan {
   std::uint64_t finite = 0;
   std::uint64_t memory = 0;  ///< as it was asked for
   std::array<double, 3> origin{0, 0, 0};
+  Bounds bulk;  ///< where the points are but for strays, as a sample tells
   TileTree tree;
   std::vector<std::array<double, 3>> tile_origins;
   std::vector<std::uint64_t> tile_points;  ///< own ones

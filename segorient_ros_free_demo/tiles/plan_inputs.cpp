@@ -26,14 +26,15 @@ bool isCloud(const std::string& name) {
 }
 
 bool isWritable(const std::string& name) {
-  return fileEnding(name) == ".ply" || fileEnding(name) == ".pcd";
+  const std::string ending = fileEnding(name);
+  return ending == ".ply" || ending == ".pcd" || ending == ".las";
 }
 
 void addOutputs(const std::string& output, Plan& plan) {
   if (!fs::is_directory(output)) {
     require(isWritable(output), output +
-                                    ": tile by tile, an output file must end in .pcd or .ply; "
-                                    "or name a folder that is there");
+                                    ": tile by tile, an output file must end in .pcd, .ply or "
+                                    ".las; or name a folder that is there");
     plan.outputs.push_back({fs::absolute(output).lexically_normal().string(), 0,
                             static_cast<std::uint32_t>(plan.inputs.size())});
     return;

@@ -282,8 +282,8 @@ Plan planStep(const TileRequest& request, const std::string& folder, const StepP
   const std::vector<Place>& places = sample.places();
   const double points_each =
       static_cast<double>(plan.rows) / std::max(1.0, static_cast<double>(sample.places().size()));
-  const Bounds bulk = bulkBounds(places.size(), [&](std::size_t i) { return places[i]; });
-  if (bulk.isFar()) plan.origin = bulk.middle();
+  plan.bulk = bulkBounds(places.size(), [&](std::size_t i) { return places[i]; });
+  if (plan.bulk.isFar()) plan.origin = plan.bulk.middle();
   plan.tree = TileTree(places, points_each, mostPoints(request, points_each));
   const TileTree& tree = plan.tree;
   std::vector<Bounds> bounds(tree.tiles());

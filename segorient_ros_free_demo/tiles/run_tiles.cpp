@@ -2,16 +2,16 @@
 // Copyright (c) 2026, the segorient authors
 #include "tiles/run_tiles.h"
 
-#include <sys/resource.h>
-
 #include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
 
+#include "common/peak_memory.h"
 #include "io/output_file.h"
 #include "support/command_line.h"
+#include "support/component_report.h"
 #include "support/json.h"
 #include "support/progress_bar.h"
 #include "tiles/input_state.h"
@@ -45,20 +45,8 @@ std::string reportText(const Plan& plan, const JoinSummary& joined, std::uint64_
   json.beginObject("seconds");
   json.field("total", seconds);
   json.endObject();
-  rusage usage{};
-  getrusage(RUSAGE_SELF, &usage);
-  json.field("peak_memory_bytes", std::int64_t{1024} * usage.ru_maxrss);
-  json.beginArray("components");
-  for (const ComponentOrientationResult& c : joined.components) {
-    json.beginItem();
-    json.field("points", c.points);
-    json.field("oriented_by", toString(c.by));
-    json.field("sign", static_cast<int>(c.sign));
-    json.field("evidence", c.evidence);
-    json.field("confidence", c.confidence);
-    json.endObject();
-  }
-  json.endArray();
+  json.field("peak_memory_bytes", peakMemory());
+  addTo(json, joined.components);
   return json.finish();
 }
 

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "io/cloud_writer.h"
+#include "io/file_endings.h"
 #include "support/colors.h"
 #include "tiles/planned_input.h"
 #include "tiles/row_file.h"
@@ -71,7 +72,22 @@ class Results {
   std::priority_queue<Next, std::vector<Next>, std::greater<>> next_;  // row and tile
 };
 
-void addBlock(const CloudTable& block, const Results& results, std::uint64_t size,
+// Calls visit(columns, block's first row) for each block of the points of an output.
+template <typename Visit>
+void forEachBlock(const Plan& plan, const PlanOutput& output, const Visit& visit) {
+  const Trajectory trajectory = trajectoryOf(plan);
+  for (std::size_t i = output.first_input; i < output.first_input + output.inputs; ++i) {
+    PlannedInput stream(plan, plan.inputs[i], trajectory);
+    CloudTable block;
+    std::uint64_t row = plan.inputs[i].first_row;
+    while (stream.next(block)) {
+      visit(block, row);
+      row += block.size;
+    }
+  }
+}
+
+void addBlock(const CloudTable& block, const Results& results, bool colors, std::uint64_t size,
               CloudWriter& writer) {
   OutputCloud out(block);
   const float* n = results.normals.data();
@@ -79,11 +95,11 @@ void addBlock(const CloudTable& block, const Results& results, std::uint64_t siz
   out.add("normal_y", n + 1, 4);
   out.add("normal_z", n + 2, 4);
   out.add("curvature", n + 3, 4);
-  std::vector<std::uint32_t> colors;
-  if (block.find("rgb") == nullptr) {
-    for (const std::uint32_t label : results.labels) colors.push_back(segmentColor(label));
+  std::vector<std::uint32_t> rgb;
+  if (colors && block.find("rgb") == nullptr) {
+    for (const std::uint32_t label : results.labels) rgb.push_back(segmentColor(label));
     out.columns.push_back(
-        {{"rgb", 'F', 4, 1, 0}, reinterpret_cast<const std::uint8_t*>(colors.data()), 4});
+        {{"rgb", 'F', 4, 1, 0}, reinterpret_cast<const std::uint8_t*>(rgb.data()), 4});
   }
   out.add("label", results.labels.data());
   out.addRest(block);
@@ -99,25 +115,28 @@ void writeStep(const Plan& plan, const std::string& folder, std::size_t output, 
   labelStep(plan, folder);
   const PlanOutput& to = plan.outputs[output];
   OutputFile file(to.path);
-  CloudWriter writer(file);
+  CloudWriter writer(file, plan.bulk);
   std::uint64_t size = 0;
   for (std::size_t i = to.first_input; i < to.first_input + to.inputs; ++i) {
     size += plan.inputs[i].rows;
   }
   const std::uint64_t first_row = plan.inputs[to.first_input].first_row;
-  Results results(plan, folder, first_row);
-  const Trajectory trajectory = trajectoryOf(plan);
-  for (std::size_t i = to.first_input; i < to.first_input + to.inputs; ++i) {
-    PlannedInput stream(plan, plan.inputs[i], trajectory);
-    CloudTable block;
-    std::uint64_t row = plan.inputs[i].first_row;
-    while (stream.next(block)) {
-      results.take(row, block.size);
-      addBlock(block, results, size, writer);
-      row += block.size;
-      if (progress) progress(static_cast<double>(row - first_row) / static_cast<double>(size));
-    }
+  if (writer.needsSummary()) {
+    forEachBlock(plan, to, [&](const CloudTable& block, std::uint64_t) {
+      OutputCloud columns(block);
+      columns.addRest(block);
+      writer.sumUp(columns);
+    });
   }
+  // As of a cloud in memory: LAS has room for a camera's colours only in some of its formats.
+  const bool colors = fileEnding(to.path) != ".las";
+  Results results(plan, folder, first_row);
+  forEachBlock(plan, to, [&](const CloudTable& block, std::uint64_t row) {
+    results.take(row, block.size);
+    addBlock(block, results, colors, size, writer);
+    if (progress) progress(static_cast<double>(row - first_row) / static_cast<double>(size));
+  });
+  writer.end();
   file.commit();
 }
 

@@ -148,7 +148,7 @@ TEST(Tiles, WhatDoesNotGoWithTilesIsWrongUsage) {
     EXPECT_EQ(run.status, 2) << run.err;
     EXPECT_TRUE(isOneLine(run.err)) << run.err;
   }
-  EXPECT_EQ(runProgram({"orient", fandisk(), scratch.file("out.las"), "--memory", "1G"}).status, 2);
+  EXPECT_EQ(runProgram({"orient", fandisk(), scratch.file("out.obj"), "--memory", "1G"}).status, 2);
   EXPECT_EQ(scratch.entries(), 0U);
 }
 

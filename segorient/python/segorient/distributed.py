@@ -75,7 +75,7 @@ def orient(
 
     Args:
         inputs: a file, a folder of clouds, or a sequence of either.
-        output: a file (.ply or .pcd), or a folder that is there: one output for each input.
+        output: a file (.ply, .pcd or .las), or a folder that is there: one output for each input.
         client: a ``dask.distributed.Client``.
         memory: what one task may take, as in "4G": no more than a worker has for each of its
             threads.
