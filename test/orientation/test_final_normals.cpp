@@ -59,6 +59,43 @@ TEST(FinalNormals, AreOfOneFaceAtSharpEdges) {
   }
 }
 
+// Hills of many widths, down to five spacings, with slopes of 40 degrees and more.
+LabelledCloud hills(std::size_t count, unsigned seed) {
+  std::mt19937 rng(seed);
+  std::uniform_real_distribution<double> uniform(0, 1);
+  constexpr int kWaves = 40;
+  Eigen::Array<double, kWaves, 4> waves;  // two components of the wave vector, phase, height
+  for (int w = 0; w < kWaves; ++w) {
+    const double k = 2 * M_PI / (5 * std::pow(8.0, uniform(rng)));
+    const double angle = 2 * M_PI * uniform(rng);
+    waves.row(w) << k * std::cos(angle), k * std::sin(angle), 2 * M_PI * uniform(rng),
+        0.9 * std::sqrt(2.0 / kWaves) / k;
+  }
+  const double side = std::sqrt(static_cast<double>(count));
+  const Face face{side * side, [=](std::mt19937& g, Eigen::Vector3d& p, Eigen::Vector3d& n) {
+                    std::uniform_real_distribution<double> place(0, side);
+                    p = {place(g), place(g), 0};
+                    n = Eigen::Vector3d::UnitZ();
+                    for (int w = 0; w < kWaves; ++w) {
+                      const auto wave = waves.row(w);
+                      const double at = wave(0) * p.x() + wave(1) * p.y() + wave(2);
+                      p.z() += wave(3) * std::sin(at);
+                      n.head<2>() -= wave(3) * std::cos(at) * wave.head<2>().matrix().transpose();
+                    }
+                    n.normalize();
+                  }};
+  return sample("hills", {face}, count, seed, 0);
+}
+
+TEST(FinalNormals, SeeNoEdgesWhereASurfaceBendsEverywhere) {
+  for (const unsigned seed : {1U, 2U, 3U}) {
+    const LabelledCloud cloud = hills(5000, seed);
+    std::vector<float> fitted(cloud.normals.size());
+    estimateNormalsAutomatically(viewOf(cloud.xyz), neighborsOf(cloud.xyz), 0, fitted.data());
+    EXPECT_LE(rms(orient(cloud).normals, cloud.normals), 1.02 * rms(fitted, cloud.normals)) << seed;
+  }
+}
+
 TEST(FinalNormals, NoiseLeavesThemBetterThanEitherAndTurnsNone) {
   // Up to a quarter of a spacing edges are seen.
   for (const double sigma : {0.1, 0.25}) {

@@ -32,8 +32,10 @@ constexpr int kEdgeNeighbors = 12;
 constexpr int kRounds = 3;
 // 143 degrees: normals of two walls, or of both sides of a blade.
 constexpr float kOtherWall = -0.8F;
-// 45 degrees: beyond, the fit and the surroundings speak of different faces, and signs are guesses.
+// 45 degrees: beyond, near edges, the fit and the surroundings speak of different faces.
 constexpr float kSameFace = 0.7F;
+// 70 degrees: beyond, which side of the fit the surroundings are on is a guess.
+constexpr float kSureSide = 0.35F;
 
 /// How the fit at a point came about.
 enum class Fit : std::uint8_t { EXPLAINED, UNEXPLAINED, ONE_SIDED, ON_EDGE };
@@ -129,6 +131,7 @@ class FinalNormals {
       const RecomputationScene scene{points_, table_, regular, labels, fitted_, entries, threads_};
       for (const Recomputed& r : applyOneSidedRule(scene, {}, OneSidedNormal::EXPECTED)) {
         if (r.on_edge) fits_[r.point] = Fit::ON_EDGE;
+        edges_sampled_ = edges_sampled_ || r.on_edge;
         if (!r.accepted || !isFinite(r.normal)) continue;
         has_edges_ = true;
         labels[r.point] = r.label;
@@ -169,7 +172,8 @@ class FinalNormals {
   }
 
   void takeFit(std::size_t i, const float* f, float* result) const {
-    if (fits_[i] == Fit::UNEXPLAINED) {
+    // Points on the edges themselves keep the faces apart, and triangulations do not reach over.
+    if (fits_[i] == Fit::UNEXPLAINED && !edges_sampled_) {
       if (has(i, ON_A_FACE)) return;
       if (has_edges_) {
         takeMean(f, result);
@@ -179,7 +183,8 @@ class FinalNormals {
     const float along = dot(f, result);
     // Nothing that a sensor saw turns its back to it.
     if (!toward_.empty() && along * dot(f, &toward_[3 * i]) < 0.F) return;
-    if (along > kSameFace || (fits_[i] == Fit::ONE_SIDED && along > 0.F)) {
+    const float sure = fits_[i] == Fit::ONE_SIDED ? 0.F : has_edges_ ? kSameFace : kSureSide;
+    if (along > sure) {
       std::copy_n(f, 3, result);
     } else if (fits_[i] != Fit::ONE_SIDED) {
       addUnit(f, along, result);
@@ -211,8 +216,9 @@ class FinalNormals {
   std::vector<float> fitted_;
   std::vector<Fit> fits_;
   float noise_ = 0.F;
-  int most_ = kFewest;      ///< neighbours of the largest surfaces
-  bool has_edges_ = false;  ///< sharp ones
+  int most_ = kFewest;          ///< neighbours of the largest surfaces
+  bool has_edges_ = false;      ///< sharp ones
+  bool edges_sampled_ = false;  ///< and points on them, as vertices of meshes are
 };
 
 }  // namespace
