@@ -58,7 +58,6 @@ int runPlan(const std::vector<std::string>& words) {
   const WorkFolder work(folder, true);
   work.removeUnfinished();
   const Plan plan = planStep(request, folder);
-  if (!common.quiet) warnOf(plan);
   std::printf("tiles %zu\noutputs %zu\n", plan.tiles(), plan.outputs.size());
   return 0;
 }

@@ -92,7 +92,7 @@ JoinSummary joinStep(const Plan& plan, const std::string& folder, int threads) {
   JoinSummary summary;
   for (std::size_t t = 0; t < plan.tiles(); ++t) {
     SignsFile file;
-    file.again = needsFinishing(found[t], joined.tiles[t]);
+    file.again = needsFinishing(plan.traits, found[t], joined.tiles[t]);
     file.signs = std::move(joined.tiles[t]);
     summary.again += file.again ? 1 : 0;
     saveSigns(file, tilePath(folder, t, "signs"), plan.run, static_cast<std::uint32_t>(t));

@@ -236,13 +236,6 @@ double mostPoints(const TileRequest& request, double points_each) {
 
 }  // namespace
 
-void warnOf(const Plan& plan) {
-  if (plan.traits.layers == 0 || plan.has_viewpoints) return;
-  warn(plan.inputs[0].path +
-       ": points face each other, as layers do that do not quite fit; coarser scales, which help "
-       "there, are for clouds that are worked on as a whole, without --memory");
-}
-
 Plan planStep(const TileRequest& request, const std::string& folder, const StepProgress& progress) {
   Plan plan;
   planFiles(request, plan);
@@ -301,6 +294,8 @@ Plan planStep(const TileRequest& request, const std::string& folder, const StepP
   OrientationHints hints = hintsOf(plan, plan.origin);
   hints.viewpoints = probe.viewpoints();
   plan.traits = measureTileTraits(probe.points(), plan.k, hints, request.threads);
+  // Its points are so much farther apart, and see as many of them.
+  if (plan.traits.level > 1.F) plan.tree.widen(static_cast<double>(plan.traits.level));
   requireUnchanged(plan);
   savePlan(plan, folder);
   return plan;

@@ -119,7 +119,6 @@ void runAllSteps(const TileRequest& request, const std::string& folder_asked_for
                 report("write", from, from + (1.0 - kFinished) / outputs));
     }
   }
-  if (!quiet) warnOf(plan);
   const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - begin;
   if (!report_path.empty()) {
     OutputFile file(report_path);

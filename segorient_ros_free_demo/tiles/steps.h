@@ -21,9 +21,6 @@ namespace segorient::program {
 Plan planStep(const TileRequest& request, const std::string& folder,
               const StepProgress& progress = {});
 
-/// Says on standard error what a plan knows the result will suffer from.
-void warnOf(const Plan& plan);
-
 /// Normals, pieces, votes and segments of one tile.
 void tileStep(const Plan& plan, const std::string& folder, std::size_t tile, int threads);
 

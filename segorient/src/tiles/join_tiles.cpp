@@ -187,7 +187,8 @@ JoinedTiles TileJoiner::join(const JoinOptions& options) {
   field.normals = patches.normals.data();
   field.spacing = patches.spacing.data();
   field.reliable = patches.reliable.data();
-  field.residual = options.traits.residual;
+  field.residual =
+      options.traits.level > 0.F ? options.traits.level_residual : options.traits.residual;
   std::vector<BorderVote> votes = detail::gatherVotes(std::move(i.votes), std::move(i.piece_ties));
   // A border is near any point of one of its pieces.
   std::vector<pcl::index_t> some_point(i.piece_sizes.size(), 0);

@@ -6,9 +6,10 @@
 #include <cmath>
 #include <limits>
 
-#include "orientation/automatic/sign_energy.h"
+#include "orientation/automatic/coarse_levels.h"
 #include "orientation/automatic/stages.h"
 #include "search/prepared_cloud.h"
+#include "tiles/tile_scale.h"
 
 namespace segorient {
 namespace {
@@ -19,54 +20,37 @@ std::size_t at(std::int32_t i) {
   return static_cast<std::size_t>(i);
 }
 
-PipelineOptions pipelineOptions(int k, int threads) {
-  PipelineOptions options;
-  options.k = k;
-  options.threads = threads;
-  options.orientation.automatic.find_sensors = false;
-  return options;
-}
-
-void copyEvidence(const Evidence& from, float* to) {
-  to[0] = from.weight;
-  to[1] = from.absolute;
-  to[2] = from.reliable;
-}
-
 class Tile {
  public:
   Tile(const PointView& points, const std::vector<TileRole>& roles, const std::vector<float>& whole,
-       int threads)
-      : cloud_(points, nullptr, threads),
-        roles_(roles),
-        own_(cloud_.size()),
-        whole_(cloud_.size()) {
-    for (std::size_t i = 0; i < own_.size(); ++i) {
-      own_[i] = isOwn(roles[cloud_.rowOf(i)]) ? 1 : 0;
+       const TileOptions& options)
+      : options_(options), cloud_(points, nullptr, options.threads), roles_(roles) {
+    fine_.points = cloud_.points();
+    fine_.unit = cloud_.unit();
+    for (std::size_t i = 0; i < cloud_.size(); ++i) {
+      const std::size_t row = cloud_.rowOf(i);
+      fine_.rows.push_back(static_cast<std::uint32_t>(row));
+      fine_.own.push_back(isOwn(roles[row]) ? 1 : 0);
       // Of its own points there is none better to say anything.
-      whole_[i] = own_[i] != 0 ? std::numeric_limits<float>::infinity()
-                               : whole[cloud_.rowOf(i)] / cloud_.unit();
+      fine_.whole.push_back(isOwn(roles[row]) ? std::numeric_limits<float>::infinity()
+                                              : whole[row] / cloud_.unit());
     }
   }
 
-  TileShare work(const TileOptions& options) {
-    run(options);
-    listVotes();
-    cutPatches(record_.segments, options.patch_points);
-    makePatches();
+  TileShare work() {
+    run();
+    joined().list(options_.patch_points, out_);
     listSigns();
-    followPieces();
+    followed_.assign(cloud_.size(), -1);
+    if (!hasLevel()) followPieces();
     scatter();
     listTies();
     return std::move(out_);
   }
 
-  TileShare finish(const TileOptions& options, const TileSigns& signs) {
-    record_.known = [&](const Segmentation& pieces) {
-      cutPatches(pieces, options.patch_points);
-      return orientAsKnown(pieces, signs);
-    };
-    run(options);
+  TileShare finish(const TileSigns& signs) {
+    signs_ = &signs;
+    run();
     followed_.assign(cloud_.size(), -1);
     scatter();
     listTies();
@@ -74,167 +58,106 @@ class Tile {
   }
 
  private:
-  void run(const TileOptions& options);
-  AutoOrientation orientAsKnown(const Segmentation& pieces, const TileSigns& signs) const;
-  void listVotes();
-  void cutPatches(const Segmentation& pieces, std::uint32_t most);
-  void makePatches();
+  bool hasLevel() const { return options_.traits.level > 0.F; }
+  // The scale that the join knows.
+  detail::TileScale& joined() { return hasLevel() ? coarse_ : fine_; }
+  PipelineOptions pipelineOptions() const;
+  void run();
+  void goByLevel(const PointView& points, const AutomaticOptions& settings,
+                 detail::AutoNormals& fine);
   void listSigns();
   void followPieces();
   void scatter();
   void listTies();
-  void pieceNormal(std::size_t i, float* out) const;
   std::int32_t followed(std::size_t i) const;
-  void towardSensor(std::size_t i, float* toward) const;
 
+  const TileOptions& options_;
   PreparedCloud cloud_;
   const std::vector<TileRole>& roles_;
-  std::vector<std::uint8_t> own_;  // by distinct point, as all below
-  std::vector<float> whole_;
+  const TileSigns* signs_ = nullptr;  // of the whole, where they are known
   PointHints hints_;
-  detail::SheetRecord record_;
+  detail::TileScale fine_;
+  detail::CoarseLevel level_;
+  detail::TileScale coarse_;  // of the level's points
+  PointHints level_hints_;
   detail::AutoStages stages_;
-  std::vector<std::int32_t> patch_of_;  // of its own points
   std::vector<std::int32_t> followed_;  // see TileShare
   TileShare out_;
 };
 
-void Tile::run(const TileOptions& options) {
-  const TileTraits& traits = options.traits;
-  record_.traits.noise = {traits.noise, traits.wide_noise, traits.thin != 0};
-  record_.traits.residual = traits.residual;
-  record_.traits.scan_scales = traits.scan != 0;
-  record_.final_traits.surfaces.noise = static_cast<double>(traits.surface_noise / cloud_.unit());
-  record_.final_traits.surfaces.in_spacings = static_cast<double>(traits.surface_ratio);
-  record_.final_traits.surfaces.analytic = traits.analytic != 0;
-  record_.final_traits.surfaces.cubic_edges = traits.cubic_edges != 0;
-  record_.final_traits.edges = traits.edges != 0;
-  record_.denoise = traits.denoise != 0;
-  record_.voters = &own_;
-  record_.whole = &whole_;
-  PipelineOptions pipeline = pipelineOptions(options.k, options.threads);
+PipelineOptions Tile::pipelineOptions() const {
+  PipelineOptions pipeline;
+  pipeline.k = options_.k;
+  pipeline.threads = options_.threads;
+  AutomaticOptions& automatic = pipeline.orientation.automatic;
+  automatic.find_sensors = false;
   // All that is seen of a tile alone may well be what one place could see.
-  pipeline.orientation.automatic.infer_viewpoint = std::all_of(roles_.begin(), roles_.end(), isOwn);
+  automatic.infer_viewpoint = std::all_of(roles_.begin(), roles_.end(), isOwn);
   const auto set = [](float value, float& a, float& b) {
     if (value > 0.F) a = b = value;
   };
-  AutomaticOptions& automatic = pipeline.orientation.automatic;
-  set(options.alpha, automatic.alpha, pipeline.segmentation.alpha);
-  set(options.beta, automatic.beta, pipeline.segmentation.beta);
-  set(options.epsilon, automatic.epsilon, pipeline.segmentation.epsilon);
-  hints_ = resolveHints(options.hints, cloud_);
+  set(options_.alpha, automatic.alpha, pipeline.segmentation.alpha);
+  set(options_.beta, automatic.beta, pipeline.segmentation.beta);
+  set(options_.epsilon, automatic.epsilon, pipeline.segmentation.epsilon);
+  return pipeline;
+}
+
+void Tile::run() {
+  const TileTraits& traits = options_.traits;
+  detail::SheetRecord& record = fine_.record;
+  record.traits.noise = {traits.noise, traits.wide_noise, traits.thin != 0};
+  record.traits.residual = traits.residual;
+  record.traits.scan_scales = traits.scan != 0;
+  record.final_traits.surfaces.noise = static_cast<double>(traits.surface_noise / cloud_.unit());
+  record.final_traits.surfaces.in_spacings = static_cast<double>(traits.surface_ratio);
+  record.final_traits.surfaces.analytic = traits.analytic != 0;
+  record.final_traits.surfaces.cubic_edges = traits.cubic_edges != 0;
+  record.final_traits.edges = traits.edges != 0;
+  record.denoise = traits.denoise != 0;
+  hints_ = resolveHints(options_.hints, cloud_);
+  const PipelineOptions pipeline = pipelineOptions();
+  if (signs_ != nullptr && !hasLevel()) {
+    fine_.prepareRecord(*signs_, options_.patch_points, hints_);
+  } else {
+    fine_.prepareRecord();
+  }
+  if (hasLevel()) {
+    record.coarser = [&](const PointView& points, detail::AutoNormals& fine) {
+      goByLevel(points, pipeline.orientation.automatic, fine);
+    };
+  }
   stages_ = detail::runAutoStages(
-      cloud_, pipeline, hints_, [](const char*, double) {}, &record_);
+      cloud_, pipeline, hints_, [](const char*, double) {}, &record);
 }
 
-// Of points of the halo: their own tile knows whether their sensors are to be believed; here it is
-// the surroundings that they are for.
-void Tile::towardSensor(std::size_t i, float* toward) const {
-  const bool own = !hints_.sensors.empty();
-  if (!own && !hints_.has_viewpoint) return;
-  float squares = 0.F;
-  for (std::size_t a = 0; a < 3; ++a) {
-    const float from = own ? hints_.sensors[3 * i + a] : hints_.viewpoint[a];
-    toward[a] = from - cloud_.points()[i][a];
-    squares += toward[a] * toward[a];
+// As followCoarserLevels() does, at the radius that the whole cloud asks for.
+void Tile::goByLevel(const PointView& points, const AutomaticOptions& settings,
+                     detail::AutoNormals& fine) {
+  const TileTraits& traits = options_.traits;
+  const float radius = traits.level_radius / cloud_.unit();
+  level_ = detail::makeLevel(points, radius, options_.threads);
+  if (level_.cloud.size() == 0) return;
+  const float unit = level_.cloud.unit();
+  coarse_.points = level_.cloud.points();
+  coarse_.unit = unit * cloud_.unit();
+  for (const std::uint32_t i : level_.point) {
+    coarse_.rows.push_back(fine_.rows[i]);
+    coarse_.own.push_back(fine_.own[i]);
+    coarse_.whole.push_back(fine_.whole[i] / unit);
   }
-  const float length = std::sqrt(squares);
-  const bool known = std::isfinite(length) && length > 0.F;
-  for (std::size_t a = 0; a < 3; ++a) toward[a] = known ? toward[a] / length : 0.F;
-}
-
-AutoOrientation Tile::orientAsKnown(const Segmentation& pieces, const TileSigns& signs) const {
-  AutoOrientation out;
-  out.result.point_signs.assign(cloud_.size(), 0);
-  out.result.point_confidences.assign(cloud_.size(), 0.F);
-  out.result.point_components.assign(cloud_.size(), -1);
-  if (!signs.toward.empty()) out.toward.assign(3 * cloud_.size(), 0.F);
-  for (std::size_t i = 0; i < cloud_.size(); ++i) {
-    const std::int32_t piece = pieces.labels[i];
-    if (piece < 0 || at(piece) >= signs.pieces.size()) continue;
-    std::int8_t sign = signs.pieces[at(piece)];
-    const std::size_t patch = at(patch_of_[i]);
-    if (patch_of_[i] >= 0 && patch < signs.patches.size()) {
-      sign = signs.patches[patch];
-      if (!signs.toward.empty()) std::copy_n(&signs.toward[3 * patch], 3, &out.toward[3 * i]);
-    } else if (!signs.toward.empty()) {
-      towardSensor(i, &out.toward[3 * i]);
-    }
-    out.result.point_signs[i] = static_cast<std::int8_t>(sign * pieces.signs[i]);
-    out.result.point_components[i] = 0;
+  level_hints_.has_viewpoint = hints_.has_viewpoint;
+  for (std::size_t a = 0; a < 3; ++a) level_hints_.viewpoint[a] = hints_.viewpoint[a] / unit;
+  coarse_.record.traits.noise = {traits.level_noise, traits.level_wide_noise,
+                                 traits.level_thin != 0};
+  coarse_.record.traits.residual = traits.level_residual;
+  if (signs_ != nullptr) {
+    coarse_.prepareRecord(*signs_, options_.patch_points, level_hints_);
+  } else {
+    coarse_.prepareRecord();
   }
-  return out;
-}
-
-void Tile::listVotes() {
-  out_.votes.reserve(record_.votes.size());
-  for (const BorderVote& v : record_.votes) {
-    TileVote vote;
-    vote.a = v.a;
-    vote.b = v.b;
-    copyEvidence(v.sheet(), vote.sheet);
-    copyEvidence(v.wall, vote.wall);
-    vote.count = v.count;
-    out_.votes.push_back(vote);
-  }
-}
-
-void Tile::pieceNormal(std::size_t i, float* out) const {
-  const auto sign = static_cast<float>(record_.segments.signs[i]);
-  for (std::size_t a = 0; a < 3; ++a) out[a] = sign * record_.sheets.normals[4 * i + a];
-}
-
-// Points come in an order in which those near each other are side by side.
-void Tile::cutPatches(const Segmentation& pieces, std::uint32_t most) {
-  std::vector<std::int32_t> open(pieces.segments.size(), -1);
-  std::vector<std::uint32_t> filled(pieces.segments.size(), 0);
-  std::int32_t count = 0;
-  patch_of_.assign(cloud_.size(), -1);
-  for (std::size_t i = 0; i < cloud_.size(); ++i) {
-    const std::int32_t piece = pieces.labels[i];
-    if (piece < 0 || own_[i] == 0) continue;
-    if (open[at(piece)] < 0 || filled[at(piece)] >= most) {
-      open[at(piece)] = count++;
-      filled[at(piece)] = 0;
-    }
-    ++filled[at(piece)];
-    patch_of_[i] = open[at(piece)];
-  }
-}
-
-void Tile::makePatches() {
-  out_.piece_sizes.assign(record_.segments.segments.size(), 0);
-  for (std::size_t i = 0; i < cloud_.size(); ++i) {
-    if (patch_of_[i] < 0) continue;
-    const std::int32_t piece = record_.segments.labels[i];
-    ++out_.piece_sizes[at(piece)];
-    if (at(patch_of_[i]) == out_.patch_list.size()) {
-      out_.patch_list.emplace_back();
-      out_.patch_list.back().piece = piece;
-      out_.patch_list.back().row = static_cast<std::uint32_t>(cloud_.rowOf(i));
-    }
-    TilePatch& patch = out_.patch_list[at(patch_of_[i])];
-    float normal[3];
-    pieceNormal(i, normal);
-    // Means as they grow: a single point stays exactly what it is.
-    const float share = 1.F / static_cast<float>(++patch.points);
-    const float* place = record_.smoothed.empty() ? cloud_.points()[i] : &record_.smoothed[4 * i];
-    for (std::size_t a = 0; a < 3; ++a) {
-      patch.position[a] += share * (place[a] * cloud_.unit() - patch.position[a]);
-      patch.normal[a] += share * (normal[a] - patch.normal[a]);
-    }
-    const float h = record_.sheets.spacing[i] * cloud_.unit();
-    patch.spacing = patch.points == 1 ? h : std::sqrt(patch.spacing * patch.spacing + h * h);
-    patch.residual += share * (record_.sheets.normals[4 * i + 3] - patch.residual);
-    patch.reliable += record_.sheets.reliable[i];
-  }
-  for (TilePatch& patch : out_.patch_list) {
-    if (patch.points == 1) continue;
-    float length = 0.F;
-    for (const float n : patch.normal) length += n * n;
-    length = std::sqrt(length);
-    for (float& n : patch.normal) n = length > 0.F ? n / length : 0.F;
-  }
+  level_.found = detail::orientPoints(coarse_.points, level_.cloud.neighborhoods(), settings,
+                                      PointHints(), options_.threads, {}, &coarse_.record);
+  detail::followLevel(points, level_, radius, options_.threads, fine);
 }
 
 // The signs of pieces, as most of their points have them.
@@ -250,7 +173,7 @@ void Tile::listSigns() {
 std::int32_t Tile::followed(std::size_t i) const {
   const float* n = &stages_.normals[4 * i];
   const auto agrees = [&](std::size_t j) {
-    const float* m = &record_.sheets.normals[4 * j];
+    const float* m = &fine_.record.sheets.normals[4 * j];
     const auto sign = static_cast<float>(stages_.orientation.result.point_signs[j]);
     return sign * (n[0] * m[0] + n[1] * m[1] + n[2] * m[2]) > 0.F;
   };
@@ -258,18 +181,17 @@ std::int32_t Tile::followed(std::size_t i) const {
   for (int j = 0; j < nb.count(i); ++j) {  // itself first
     if (agrees(static_cast<std::size_t>(nb.indices(i)[j]))) return nb.indices(i)[j];
   }
-  return record_.segments.labels[i] >= 0 ? static_cast<std::int32_t>(i) : -1;
+  return fine_.record.segments.labels[i] >= 0 ? static_cast<std::int32_t>(i) : -1;
 }
 
 // The tile's own signs are taken back, so that each normal is turned as its piece is.
 void Tile::followPieces() {
-  followed_.assign(cloud_.size(), -1);
   for (std::size_t i = 0; i < cloud_.size(); ++i) {
-    if (own_[i] == 0 || !std::isfinite(stages_.normals[4 * i])) continue;
+    if (fine_.own[i] == 0 || !std::isfinite(stages_.normals[4 * i])) continue;
     const std::int32_t point = followed(i);
     if (point < 0) continue;
-    followed_[i] = record_.segments.labels[at(point)];
-    const auto sign = static_cast<float>(record_.segments.signs[at(point)] *
+    followed_[i] = fine_.record.segments.labels[at(point)];
+    const auto sign = static_cast<float>(fine_.record.segments.signs[at(point)] *
                                          stages_.orientation.result.point_signs[at(point)]);
     for (std::size_t a = 0; a < 3; ++a) stages_.normals[4 * i + a] *= sign;
   }
@@ -290,79 +212,34 @@ void Tile::scatter() {
 }
 
 void Tile::listTies() {
+  const detail::TileScale& scale = joined();
   for (std::size_t row = 0; row < roles_.size(); ++row) {
     if (roles_[row] == TileRole::OWN || cloud_.pointOf(row) < 0) continue;
     const auto i = static_cast<std::size_t>(cloud_.pointOf(row));
     if (cloud_.rowOf(i) != row) continue;  // repeats another one
     TileTie tie;
     tie.row = static_cast<std::uint32_t>(row);
-    tie.piece = record_.segments.labels[i];
-    if (tie.piece < 0 && own_[i] == 0) continue;
+    // Of a level's points both tiles have others: what a point's nearest one is of stands for it.
+    const std::size_t of = hasLevel() && !level_.nearest.empty() ? level_.nearest[i] : i;
+    if (of < scale.record.segments.labels.size()) tie.piece = scale.record.segments.labels[of];
+    if (tie.piece < 0 && fine_.own[i] == 0) continue;
     tie.label = stages_.segmentation.labels[i];
-    if (tie.piece >= 0) pieceNormal(i, tie.normal);
+    if (tie.piece >= 0) scale.pieceNormal(of, tie.normal);
     out_.ties.push_back(tie);
   }
 }
 
 }  // namespace
 
-TileTraits measureTileTraits(const PointView& points, int k, const OrientationHints& hints,
-                             int threads) {
-  PreparedCloud cloud(points, nullptr, threads);
-  TileTraits out;
-  if (cloud.size() == 0) return out;
-  PipelineOptions pipeline = pipelineOptions(k, threads);
-  pipeline.orientation.automatic.coarse_levels = false;
-  const detail::AutoStages found = detail::runAutoStages(
-      cloud, pipeline, resolveHints(hints, cloud), [](const char*, double) {});
-  out.noise = found.sheets.noise.fine;
-  out.wide_noise = found.sheets.noise.coarse;
-  out.thin = found.sheets.noise.thin ? 1 : 0;
-  out.residual = found.sheets.residual;
-  out.scan = found.sheets.scan_scales ? 1 : 0;
-  out.denoise = found.denoised ? 1 : 0;
-  const AutomaticNormalTraits& surfaces = found.final_traits.surfaces;
-  out.edges = found.final_traits.edges ? 1 : 0;
-  out.analytic = surfaces.analytic ? 1 : 0;
-  out.cubic_edges = surfaces.cubic_edges ? 1 : 0;
-  out.surface_noise = static_cast<float>(surfaces.noise) * cloud.unit();
-  out.surface_ratio = static_cast<float>(surfaces.in_spacings);
-  // From there on, all levels are tried.
-  constexpr float kContradictory = 0.001F;
-  const float facing =
-      detail::opposedPairs(cloud.points(), cloud.neighborhoods(), found.normals, threads).facing;
-  out.layers = facing >= kContradictory ? 1 : 0;
-  return out;
-}
-
 TileShare workOnTile(const PointView& points, const std::vector<TileRole>& roles,
                      const std::vector<float>& whole, const TileOptions& options) {
-  return Tile(points, roles, whole, options.threads).work(options);
-}
-
-bool needsFinishing(const TileShare& share, const TileSigns& signs) {
-  // Of sensors, the whole knows which are to be believed.
-  if (!signs.toward.empty()) return true;
-  // A point of a border has about eight neighbours across it: four of 100,000 points.
-  constexpr double kMost = 3e-4;
-  std::uint64_t points = 0;
-  std::uint64_t wrong = 0;
-  for (const std::uint32_t size : share.piece_sizes) points += size;
-  const auto right = [&](std::int32_t piece) {
-    const std::size_t p = at(piece);
-    return p >= signs.pieces.size() || p >= share.piece_signs.size() ||
-           signs.pieces[p] == share.piece_signs[p];
-  };
-  for (const TileVote& v : share.votes) {
-    if (right(v.a) != right(v.b)) wrong += v.count;
-  }
-  return static_cast<double>(wrong) > kMost * static_cast<double>(points);
+  return Tile(points, roles, whole, options).work();
 }
 
 TileShare finishTile(const PointView& points, const std::vector<TileRole>& roles,
                      const std::vector<float>& whole, const TileOptions& options,
                      const TileSigns& signs) {
-  return Tile(points, roles, whole, options.threads).finish(options, signs);
+  return Tile(points, roles, whole, options).finish(signs);
 }
 
 }  // namespace segorient

@@ -27,10 +27,17 @@ struct TileTraits {
   std::uint8_t edges = 0;        ///< whether there are sharp edges
   std::uint8_t analytic = 0;     ///< whether the surface is as smooth as one that a formula makes
   std::uint8_t cubic_edges = 0;  ///< whether cubic surfaces fit edges better
-  /// Whether points face each other as layers do that do not quite fit: see followCoarserLevels().
-  std::uint8_t layers = 0;
-  float surface_noise = 0.F;  ///< standard deviation, in the points' unit
-  float surface_ratio = 0.F;  ///< the same, in spacings
+  std::uint8_t level_thin = 0;   ///< `thin` of the level
+  std::uint8_t unused = 0;       ///< no hidden bytes: they are stored as they are
+  float surface_noise = 0.F;     ///< standard deviation, in the points' unit
+  float surface_ratio = 0.F;     ///< the same, in spacings
+
+  // Of the coarser level whose signs the cloud takes, see followCoarserLevels().
+  float level = 0.F;         ///< its radius in spacings, 0 = none
+  float level_radius = 0.F;  ///< in the points' unit
+  float level_noise = 0.F;   ///< as above, of the level's points
+  float level_wide_noise = 0.F;
+  float level_residual = 0.F;
 };
 
 /// Orients the points by the default method, and takes what it measured on the way.
@@ -92,7 +99,7 @@ struct TileShare {
 
   std::vector<std::uint32_t> piece_sizes;    ///< own distinct points
   std::vector<std::uint32_t> segment_sizes;  ///< own rows
-  std::vector<TileVote> votes;               ///< of own points
+  std::vector<TileVote> votes;               ///< of own points, or those of a level, as patches are
   std::vector<TilePatch> patch_list;         ///< of own points
   std::vector<std::int8_t> piece_signs;      ///< that the tile alone found, and followed
   std::vector<TileTie> ties;                 ///< of HALO and SHARED rows, ascending by row
@@ -118,7 +125,8 @@ struct TileOptions {
   OrientationHints hints;
 };
 
-/// Neighbours, normals, pieces, votes and segments of a tile: all but the signs.
+/// Neighbours, normals, pieces, votes and segments of a tile: all but the signs. Where the cloud
+/// takes the signs of a coarser level, pieces, votes and patches are those of the level's points.
 ///
 /// \param points of the tile and of the halo around it
 /// \param roles one a point
@@ -131,9 +139,11 @@ SEGORIENT_TILES_EXPORT TileShare workOnTile(const PointView& points,
                                             const TileOptions& options);
 
 /// Whether signs that the tile took for right, and made final normals from, are wrong in so many
-/// places that these have to be made again.
+/// places that these have to be made again; always where signs come from a coarser level or from
+/// sensors.
 /// \param share what workOnTile() found: votes, sizes and signs of pieces
-SEGORIENT_TILES_EXPORT bool needsFinishing(const TileShare& share, const TileSigns& signs);
+SEGORIENT_TILES_EXPORT bool needsFinishing(const TileTraits& traits, const TileShare& share,
+                                           const TileSigns& signs);
 
 /// The same work with the signs of the whole cloud: final normals and segments as they are in it.
 /// All else as for workOnTile(); there are no votes and patches.

@@ -44,6 +44,11 @@ class SEGORIENT_TILES_EXPORT TileTree {
   const std::vector<Node>& nodes() const { return nodes_; }
   std::size_t tiles() const { return tiles_; }
 
+  /// Makes halos so many times as wide.
+  void widen(double factor) {
+    for (Node& n : nodes_) n.reach *= factor;
+  }
+
   /// The tile that a place belongs to, and how far from it other tiles take it along.
   std::uint32_t owner(const Place& p, double& reach) const;
   /// The cell that a place is in: its number in the list of nodes.

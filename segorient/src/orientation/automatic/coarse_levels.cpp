@@ -80,11 +80,6 @@ class Heard {
   float weights_ = 0.F;
 };
 
-struct Level {
-  PreparedCloud cloud;
-  AutoNormals found;
-};
-
 // What a level says about all points.
 struct Handed {
   AutoNormals found;          // their own lines, with the level's signs
@@ -94,52 +89,33 @@ struct Handed {
 // What is known of single points, for the points of a subset. Whether sensors are to be believed
 // shows in how densely they see, which an even subset does not: that is taken from the cloud.
 PointHints hintsOfSubset(const PointHints& hints, const std::vector<float>& toward,
-                         const BlueNoise& even, const PreparedCloud& subset) {
+                         const CoarseLevel& level) {
   PointHints out;
+  const std::size_t size = level.cloud.size();
   out.surface = hints.surface;
   out.has_viewpoint = hints.has_viewpoint;
-  for (std::size_t a = 0; a < 3; ++a) out.viewpoint[a] = hints.viewpoint[a] / subset.unit();
-  const auto pointOf = [&](std::size_t cell) {
-    return static_cast<std::size_t>(subset.pointOf(cell));
-  };
+  for (std::size_t a = 0; a < 3; ++a) out.viewpoint[a] = hints.viewpoint[a] / level.cloud.unit();
   if (!hints.directions.empty()) {
-    out.directions.assign(3 * subset.size(), 0.F);
-    for (std::size_t i = 0; i < even.cell_of.size(); ++i) {
-      float* sum = &out.directions[3 * pointOf(even.cell_of[i])];
+    out.directions.assign(3 * size, 0.F);
+    for (std::size_t i = 0; i < level.nearest.size(); ++i) {
+      float* sum = &out.directions[std::size_t{3} * level.nearest[i]];
       for (std::size_t a = 0; a < 3; ++a) sum[a] += hints.directions[3 * i + a];
     }
   }
   if (!toward.empty()) {
-    out.toward.resize(3 * subset.size());
-    for (std::size_t c = 0; c < even.kept.size(); ++c) {
-      std::copy_n(&toward[3 * std::size_t{even.kept[c]}], 3, &out.toward[3 * pointOf(c)]);
+    out.toward.resize(3 * size);
+    for (std::size_t i = 0; i < size; ++i) {
+      std::copy_n(&toward[std::size_t{3} * level.point[i]], 3, &out.toward[3 * i]);
     }
   }
   for (PointHints::Seed seed : hints.seeds) {
-    seed.point = pointOf(even.cell_of[seed.point]);
+    seed.point = level.nearest[seed.point];
     out.seeds.push_back(seed);
   }
   return out;
 }
 
-Level orientSubset(const PointView& points, const PointHints& hints, const AutoNormals& fine,
-                   float radius, const OrientOneScale& orient, int threads) {
-  Level level;
-  const BlueNoise even = thinOut(points, radius);
-  std::vector<float> places;
-  for (const std::uint32_t i : even.kept) {
-    places.insert(places.end(), points[i], points[i] + 3);
-    places.push_back(0.F);
-  }
-  level.cloud = PreparedCloud({places.data(), 4, places.size() / 4}, nullptr, threads);
-  if (level.cloud.size() == 0) return level;
-  level.cloud.findNeighbors(kSheetNeighbors, false);
-  level.found = orient(level.cloud.points(), level.cloud.neighborhoods(),
-                       hintsOfSubset(hints, fine.orientation.toward, even, level.cloud));
-  return level;
-}
-
-void listen(const PointView& points, Level& level, float radius, int threads, Handed& out) {
+void listen(const PointView& points, CoarseLevel& level, float radius, int threads, Handed& out) {
   const search::MedianHashIndex& index = level.cloud.index();
   const float unit = level.cloud.unit();
   const float softening = (radius / unit) * (radius / unit);
@@ -174,7 +150,7 @@ void listen(const PointView& points, Level& level, float radius, int threads, Ha
 }
 
 // What the level knows of its own points, in the cloud's unit and by all its points.
-AutoOrientation inTermsOfTheCloud(Level& level, const std::vector<std::int32_t>& components,
+AutoOrientation inTermsOfTheCloud(CoarseLevel& level, const std::vector<std::int32_t>& components,
                                   const AutoOrientation& fine) {
   AutoOrientation out = std::move(level.found.orientation);
   out.sensors = fine.sensors;
@@ -189,7 +165,7 @@ AutoOrientation inTermsOfTheCloud(Level& level, const std::vector<std::int32_t>&
   return out;
 }
 
-Handed handDown(const PointView& points, Level& level, float radius, int threads,
+Handed handDown(const PointView& points, CoarseLevel& level, float radius, int threads,
                 const AutoNormals& fine) {
   Handed out;
   out.found.spacing = fine.spacing;
@@ -234,8 +210,11 @@ class Choice {
   // \param f radius in mean distances to the six nearest
   void tryLevel(float f) {
     const float radius = f * fine_.spacing;
-    Level level = orientSubset(points_, hints_, fine_, radius, orient_, threads_);
+    CoarseLevel level = makeLevel(points_, radius, threads_);
     if (level.cloud.size() == 0) return;
+    level.found = orient_(level.cloud.points(), level.cloud.neighborhoods(),
+                          hintsOfSubset(hints_, fine_.orientation.toward, level));
+    const SheetTraits sheets = level.found.sheets;
     Handed coarse = handDown(points_, level, radius, threads_, fine_);
     const SignEnergy energy = judge_.judge(coarse.found.normals);
     if (energy.total() >= least_) return;
@@ -245,6 +224,7 @@ class Choice {
     least_ = energy.total();
     chosen_ = f;
     best_ = std::move(coarse);
+    best_.found.sheets = sheets;
   }
 
   bool made() const { return chosen_ > 0.F; }
@@ -277,6 +257,35 @@ class Choice {
 };
 
 }  // namespace
+
+CoarseLevel makeLevel(const PointView& points, float radius, int threads) {
+  CoarseLevel level;
+  const BlueNoise even = thinOut(points, radius);
+  std::vector<float> places;
+  for (const std::uint32_t i : even.kept) {
+    places.insert(places.end(), points[i], points[i] + 3);
+    places.push_back(0.F);
+  }
+  level.cloud = PreparedCloud({places.data(), 4, places.size() / 4}, nullptr, threads);
+  if (level.cloud.size() == 0) return level;
+  level.cloud.findNeighbors(kSheetNeighbors, false);
+  level.nearest.resize(points.size);
+  for (std::size_t i = 0; i < points.size; ++i) {
+    level.nearest[i] = static_cast<std::uint32_t>(level.cloud.pointOf(even.cell_of[i]));
+  }
+  level.point.resize(level.cloud.size());
+  for (std::size_t s = 0; s < level.point.size(); ++s) {
+    level.point[s] = even.kept[level.cloud.rowOf(s)];
+  }
+  return level;
+}
+
+void followLevel(const PointView& points, CoarseLevel& level, float radius, int threads,
+                 AutoNormals& fine) {
+  Handed coarse = handDown(points, level, radius, threads, fine);
+  mendLines(coarse.around, coarse.found.normals);
+  fine = std::move(coarse.found);
+}
 
 float followCoarserLevels(const PointView& points, const Neighborhoods& neighborhoods,
                           const PointHints& hints, const OrientOneScale& orient, int threads,

@@ -2,18 +2,39 @@
 // Copyright (c) 2026, the segorient authors
 #pragma once
 
+#include <segorient/common/export.h>
 #include <segorient/common/neighborhoods.h>
 #include <segorient/common/point_view.h>
 
+#include <cstdint>
 #include <functional>
+#include <vector>
 
 #include "orientation/automatic/orient_points.h"
+#include "search/prepared_cloud.h"
 
 namespace segorient::detail {
 
 /// Orients a cloud whose neighbours are known, at its own scale.
 using OrientOneScale =
     std::function<AutoNormals(const PointView&, const Neighborhoods&, const PointHints&)>;
+
+/// An even subset of a cloud, prepared for being oriented.
+struct CoarseLevel {
+  PreparedCloud cloud;                 ///< with neighbours
+  std::vector<std::uint32_t> point;    ///< by point of it: which of the cloud's it is
+  std::vector<std::uint32_t> nearest;  ///< by point of the cloud: the nearest of the subset
+  AutoNormals found;                   ///< its orientation, by whoever makes that
+};
+
+/// \param radius no two points of the subset are nearer; in the unit of the points
+/// \return without points where there is nothing to thin out
+SEGORIENT_ORIENTATION_EXPORT CoarseLevel makeLevel(const PointView& points, float radius,
+                                                   int threads);
+
+/// Gives a cloud's own normals the signs that a level found.
+SEGORIENT_ORIENTATION_EXPORT void followLevel(const PointView& points, CoarseLevel& level,
+                                              float radius, int threads, AutoNormals& fine);
 
 /// Takes the signs of a coarser scale where a cloud's own points contradict each other: scans that
 /// lie half a spacing to a spacing apart are two surfaces at the scale of the points, which cross,

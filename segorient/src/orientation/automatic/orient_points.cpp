@@ -140,7 +140,8 @@ AutoNormals orientPoints(const PointView& points, const Neighborhoods& neighborh
       orientAtOneScale(points, neighborhoods, settings, hints, threads, begin, record, finished);
   // Whether a coarser scale is better is for the whole cloud to tell.
   // Where points have sensors of their own, those decide.
-  if (record != nullptr || !settings.coarse_levels || !hints.sensors.empty()) return out;
+  const bool part = record != nullptr;
+  if (part ? !record->coarser : !settings.coarse_levels || !hints.sensors.empty()) return out;
   const auto orient = [&](const PointView& subset, const Neighborhoods& table,
                           const PointHints& of_subset) {
     return orientAtOneScale(subset, table, settings, of_subset, threads, {}, nullptr, nullptr);
@@ -148,7 +149,12 @@ AutoNormals orientPoints(const PointView& points, const Neighborhoods& neighborh
   // A coarser level knows nothing of what is around each point.
   const std::vector<std::uint8_t> around = out.around;
   const SheetTraits traits = out.sheets;
-  out.level = followCoarserLevels(points, neighborhoods, hints, orient, threads, out);
+  if (part) {
+    record->coarser(points, out);
+  } else {
+    out.level = followCoarserLevels(points, neighborhoods, hints, orient, threads, out);
+  }
+  if (out.level > 0.F) out.level_sheets = out.sheets;
   out.around = around;
   out.sheets = traits;
   return out;

@@ -2,6 +2,7 @@
 // Copyright (c) 2026, the segorient authors
 #pragma once
 
+#include <segorient/common/export.h>
 #include <segorient/common/neighborhoods.h>
 #include <segorient/common/point_view.h>
 #include <segorient/orientation/orientation_options.h>
@@ -34,9 +35,10 @@ struct AutoNormals {
   AutoOrientation orientation;           ///< of the sheets' segments
   /// Whether a point's sensor decided its side; empty where no sensor is known.
   std::vector<std::uint8_t> by_sensor;
-  float spacing = 0.F;  ///< median
-  float level = 0.F;    ///< see followCoarserLevels()
-  SheetTraits sheets;   ///< of the cloud
+  float spacing = 0.F;       ///< median
+  float level = 0.F;         ///< see followCoarserLevels()
+  SheetTraits sheets;        ///< of the cloud
+  SheetTraits level_sheets;  ///< of the level's subset, where there is one
 };
 
 /// What fitFinalNormals() measures of a whole cloud; for a part of one it is told.
@@ -58,6 +60,8 @@ struct SheetRecord {
   /// The orientation of the part's sheet segments as it was found for the whole; none where the
   /// part has to do with signs of its own.
   std::function<AutoOrientation(const Segmentation&)> known;
+  /// Called with the part's oriented normals, where the whole asks for a coarser scale.
+  std::function<void(const PointView&, AutoNormals&)> coarser;
 
   SheetNormals sheets;  ///< found: normals not oriented
   Segmentation segments;
@@ -72,9 +76,10 @@ struct SheetRecord {
 /// \param record null unless the cloud is part of a larger one
 /// \param finished where not null: the sheets' segments as a user wants to see them, their signs
 ///        those of the sheets' normals, which are not known any more; see segmentSheets()
-AutoNormals orientPoints(const PointView& points, const Neighborhoods& neighborhoods,
-                         const AutomaticOptions& settings, const PointHints& hints, int threads,
-                         const std::function<void(const char*, double)>& begin = {},
-                         SheetRecord* record = nullptr, FinishedSegments* finished = nullptr);
+SEGORIENT_ORIENTATION_EXPORT AutoNormals
+orientPoints(const PointView& points, const Neighborhoods& neighborhoods,
+             const AutomaticOptions& settings, const PointHints& hints, int threads,
+             const std::function<void(const char*, double)>& begin = {},
+             SheetRecord* record = nullptr, FinishedSegments* finished = nullptr);
 
 }  // namespace segorient::detail

@@ -142,6 +142,7 @@ AutoStages runAutoStages(PreparedCloud& cloud, const PipelineOptions& options,
   out.spacing = oriented.spacing;
   out.level = oriented.level;
   out.sheets = oriented.sheets;
+  out.level_sheets = oriented.level_sheets;
   if (record != nullptr) record->smoothed = std::move(smoothed);
   return out;
 }

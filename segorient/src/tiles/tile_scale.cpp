@@ -1,0 +1,150 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the segorient authors
+#include "tiles/tile_scale.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace segorient::detail {
+namespace {
+
+std::size_t at(std::int32_t i) {
+  return static_cast<std::size_t>(i);
+}
+
+void copyEvidence(const Evidence& from, float* to) {
+  to[0] = from.weight;
+  to[1] = from.absolute;
+  to[2] = from.reliable;
+}
+
+// Of points of the halo: their own tile knows whether their sensors are to be believed; here it is
+// the surroundings that they are for.
+void towardSensor(const float* point, std::size_t i, const PointHints& hints, float* toward) {
+  const bool own = !hints.sensors.empty();
+  if (!own && !hints.has_viewpoint) return;
+  float squares = 0.F;
+  for (std::size_t a = 0; a < 3; ++a) {
+    const float from = own ? hints.sensors[3 * i + a] : hints.viewpoint[a];
+    toward[a] = from - point[a];
+    squares += toward[a] * toward[a];
+  }
+  const float length = std::sqrt(squares);
+  const bool known = std::isfinite(length) && length > 0.F;
+  for (std::size_t a = 0; a < 3; ++a) toward[a] = known ? toward[a] / length : 0.F;
+}
+
+}  // namespace
+
+void TileScale::prepareRecord(const TileSigns& signs, std::uint32_t patch_points,
+                              const PointHints& hints) {
+  prepareRecord();
+  record.known = [this, &signs, &hints, patch_points](const Segmentation& pieces) {
+    cutPatches(pieces, patch_points);
+    return orientAsKnown(pieces, signs, hints);
+  };
+}
+
+void TileScale::list(std::uint32_t patch_points, TileShare& out) {
+  listVotes(out);
+  cutPatches(record.segments, patch_points);
+  makePatches(out);
+}
+
+AutoOrientation TileScale::orientAsKnown(const Segmentation& pieces, const TileSigns& signs,
+                                         const PointHints& hints) const {
+  AutoOrientation out;
+  out.result.components.resize(1);
+  out.result.point_signs.assign(points.size, 0);
+  out.result.point_confidences.assign(points.size, 0.F);
+  out.result.point_components.assign(points.size, -1);
+  if (!signs.toward.empty()) out.toward.assign(3 * points.size, 0.F);
+  for (std::size_t i = 0; i < points.size; ++i) {
+    const std::int32_t piece = pieces.labels[i];
+    if (piece < 0 || at(piece) >= signs.pieces.size()) continue;
+    std::int8_t sign = signs.pieces[at(piece)];
+    const std::size_t patch = at(patch_of[i]);
+    if (patch_of[i] >= 0 && patch < signs.patches.size()) {
+      sign = signs.patches[patch];
+      if (!signs.toward.empty()) std::copy_n(&signs.toward[3 * patch], 3, &out.toward[3 * i]);
+    } else if (!signs.toward.empty()) {
+      towardSensor(points[i], i, hints, &out.toward[3 * i]);
+    }
+    out.result.point_signs[i] = static_cast<std::int8_t>(sign * pieces.signs[i]);
+    out.result.point_components[i] = 0;
+  }
+  return out;
+}
+
+void TileScale::listVotes(TileShare& out) const {
+  out.votes.reserve(record.votes.size());
+  for (const BorderVote& v : record.votes) {
+    TileVote vote;
+    vote.a = v.a;
+    vote.b = v.b;
+    copyEvidence(v.sheet(), vote.sheet);
+    copyEvidence(v.wall, vote.wall);
+    vote.count = v.count;
+    out.votes.push_back(vote);
+  }
+}
+
+void TileScale::pieceNormal(std::size_t i, float* out) const {
+  const auto sign = static_cast<float>(record.segments.signs[i]);
+  for (std::size_t a = 0; a < 3; ++a) out[a] = sign * record.sheets.normals[4 * i + a];
+}
+
+// Points come in an order in which those near each other are side by side.
+void TileScale::cutPatches(const Segmentation& pieces, std::uint32_t most) {
+  std::vector<std::int32_t> open(pieces.segments.size(), -1);
+  std::vector<std::uint32_t> filled(pieces.segments.size(), 0);
+  std::int32_t count = 0;
+  patch_of.assign(points.size, -1);
+  for (std::size_t i = 0; i < points.size; ++i) {
+    const std::int32_t piece = pieces.labels[i];
+    if (piece < 0 || own[i] == 0) continue;
+    if (open[at(piece)] < 0 || filled[at(piece)] >= most) {
+      open[at(piece)] = count++;
+      filled[at(piece)] = 0;
+    }
+    ++filled[at(piece)];
+    patch_of[i] = open[at(piece)];
+  }
+}
+
+void TileScale::makePatches(TileShare& out) const {
+  out.piece_sizes.assign(record.segments.segments.size(), 0);
+  for (std::size_t i = 0; i < points.size; ++i) {
+    if (patch_of[i] < 0) continue;
+    const std::int32_t piece = record.segments.labels[i];
+    ++out.piece_sizes[at(piece)];
+    if (at(patch_of[i]) == out.patch_list.size()) {
+      out.patch_list.emplace_back();
+      out.patch_list.back().piece = piece;
+      out.patch_list.back().row = rows[i];
+    }
+    TilePatch& patch = out.patch_list[at(patch_of[i])];
+    float normal[3];
+    pieceNormal(i, normal);
+    // Means as they grow: a single point stays exactly what it is.
+    const float share = 1.F / static_cast<float>(++patch.points);
+    const float* place = record.smoothed.empty() ? points[i] : &record.smoothed[4 * i];
+    for (std::size_t a = 0; a < 3; ++a) {
+      patch.position[a] += share * (place[a] * unit - patch.position[a]);
+      patch.normal[a] += share * (normal[a] - patch.normal[a]);
+    }
+    const float h = record.sheets.spacing[i] * unit;
+    patch.spacing = patch.points == 1 ? h : std::sqrt(patch.spacing * patch.spacing + h * h);
+    patch.residual += share * (record.sheets.normals[4 * i + 3] - patch.residual);
+    patch.reliable += record.sheets.reliable[i];
+  }
+  for (TilePatch& patch : out.patch_list) {
+    if (patch.points == 1) continue;
+    float length = 0.F;
+    for (const float n : patch.normal) length += n * n;
+    length = std::sqrt(length);
+    for (float& n : patch.normal) n = length > 0.F ? n / length : 0.F;
+  }
+}
+
+}  // namespace segorient::detail
