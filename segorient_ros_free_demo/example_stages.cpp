@@ -43,7 +43,7 @@ int main(int argc, char** argv) {
   orientation.setInputCloud(cloud);
   orientation.setInputNormals(normals);
   orientation.setSegmentation(
-      std::make_shared<const segorient::Segmentation>(segmentation.getSegmentation()));
+      std::make_shared<const segorient::Segmentation>(segmentation.getPlanarSegmentation()));
   pcl::PointCloud<pcl::Normal> oriented;
   orientation.compute(oriented);
 

@@ -73,12 +73,12 @@ py::tuple normalArrays(std::vector<float> normals) {
 }
 
 constexpr std::array<std::pair<const char*, NormalEstimator>, 6> kEstimators{
-    {{"auto", NormalEstimator::Automatic},
-     {"plane", NormalEstimator::Plane},
+    {{"auto", NormalEstimator::AUTO},
+     {"plane", NormalEstimator::PLANE},
      {"lct", NormalEstimator::LCT},
      {"ldt", NormalEstimator::LDT},
-     {"awas", NormalEstimator::AwASQuadratic},
-     {"awas3", NormalEstimator::AwASCubic}}};
+     {"awas", NormalEstimator::AWAS_QUADRATIC},
+     {"awas3", NormalEstimator::AWAS_CUBIC}}};
 
 NormalEstimator estimatorNamed(const std::string& name) {
   for (const auto& [known, estimator] : kEstimators) {
@@ -117,7 +117,7 @@ PipelineOptions optionsFrom(const py::dict& given) {
   setAngle(given, "gamma", options.orientation.gamma);
   setAngle(given, "delta", options.recomputation.delta);
   if (given.contains("delta")) {
-    options.recomputation.rule = RecomputationRule::ModifiedNeighborhoods;
+    options.recomputation.rule = RecomputationRule::MODIFIED_NEIGHBORHOODS;
   }
   return options;
 }
@@ -209,8 +209,8 @@ py::list sensorList(const SensorReport& report) {
   py::list out;
   for (const FoundSensor& s : report.sensors) {
     py::dict sensor;
-    sensor["kind"] = sensorKindName(s.kind);
-    sensor["evidence"] = sensorEvidenceName(s.evidence);
+    sensor["kind"] = toString(s.kind);
+    sensor["evidence"] = toString(s.evidence);
     static constexpr std::array<const char*, 3> kPosition{"x", "y", "z"};
     static constexpr std::array<const char*, 3> kAxis{"axis_x", "axis_y", "axis_z"};
     for (std::size_t a = 0; a < 3; ++a) sensor[kPosition[a]] = s.position[a];
@@ -257,6 +257,7 @@ py::dict reportOf(const OrientedCloud& cloud) {
     component["oriented_by"] = toString(c.by);
     component["sign"] = static_cast<int>(c.sign);
     component["evidence"] = c.evidence;
+    component["votes"] = c.votes;
     component["confidence"] = c.confidence;
     component["contradiction"] = c.contradiction;
     components.append(component);

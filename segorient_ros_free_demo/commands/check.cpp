@@ -174,6 +174,7 @@ int runCheck(const std::vector<std::string>& words) {
   common.add(line, "all places that contradict");
   if (!line.parse(words)) return 0;
   common.check();
+  warnOfSharedOptions(line, common);
   require(!line.given("keep-orientation") || !line.get<bool>("keep-orientation"),
           "check does not take --keep-orientation: it would believe the normals that it judges");
   PipelineOptions options;

@@ -236,7 +236,7 @@ int runCompare(const std::vector<std::string>& words) {
   std::string poisson_prefix;
   int depth = 0;
   line.arguments({"IN"});
-  stages.add(line, true);
+  stages.add(line, LastStage::ORIENTATION);
   hints.add(line);
   line.options()("picture", po::value(&picture_path), "PNG: PCL left, ours right")(
       "azimuth", po::value(&view.azimuth)->default_value(view.azimuth), "of the picture, degrees")(

@@ -171,6 +171,7 @@ int runEvaluate(const std::vector<std::string>& words) {
   common.add(line);
   if (!line.parse(words)) return 0;
   common.check();
+  warnOfSharedOptions(line, common);
 
   std::optional<OutputFile> report_file;
   if (!report_path.empty()) report_file.emplace(report_path);

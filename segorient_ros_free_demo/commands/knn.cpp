@@ -126,6 +126,7 @@ int runKnn(const std::vector<std::string>& words) {
   common.add(line);
   if (!line.parse(words)) return 0;
   common.check();
+  warnOfSharedOptions(line, common, false);
   require(k > 0 && k <= 1000, "-k must be 1 to 1000");
   const std::string out = line.argument("OUT.csv");
   std::optional<OutputFile> file;

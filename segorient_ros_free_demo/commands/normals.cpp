@@ -37,7 +37,7 @@ int runNormals(const std::vector<std::string>& words) {
   CommonOptions common;
   StageOptions stage_options;
   line.arguments({"IN", "OUT"});
-  stage_options.add(line, false);
+  stage_options.add(line, LastStage::NORMALS);
   common.add(line);
   if (!line.parse(words)) return 0;
   common.check();

@@ -106,6 +106,7 @@ int runRender(const std::vector<std::string>& words) {
   require(view.width >= 2 && view.width <= 16384 && view.height >= 1 && view.height <= 16384,
           "--width and --height must be 2 to 16384");
   common.check();
+  warnOfSharedOptions(line, common);
   require(most >= 1, "--points must be at least 1");
   requireEnding(line.argument("OUT"), {".png", ".html"});
 

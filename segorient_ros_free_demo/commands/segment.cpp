@@ -33,7 +33,7 @@ void printSummary(const OrientedCloud& cloud, std::size_t without_normal, const 
               cloud.segmentation.labels.size(), cloud.report.non_finite, cloud.report.duplicates,
               without_normal);
   for (const SegmentKind kind :
-       {SegmentKind::Regular, SegmentKind::Connected, SegmentKind::Isolated}) {
+       {SegmentKind::REGULAR, SegmentKind::CONNECTED, SegmentKind::ISOLATED}) {
     std::printf("%-10s %zu segments of %zu points\n", kindName(kind),
                 count[static_cast<std::size_t>(kind)], points[static_cast<std::size_t>(kind)]);
   }
@@ -104,7 +104,7 @@ int runSegment(const std::vector<std::string>& words) {
   bool split = false;
   std::string report_path;
   line.arguments({"IN", "OUT"});
-  stage_options.add(line, false, "32, with --normals or --recompute 12");
+  stage_options.add(line, LastStage::SEGMENTS, "32, with --normals or --recompute 12");
   hints.add(line);
   line.options()("faces", po::bool_switch(&faces),
                  "unite segments whose common border is smooth: a cylinder is one face then")(

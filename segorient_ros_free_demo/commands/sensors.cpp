@@ -106,6 +106,7 @@ int runSensors(const std::vector<std::string>& words) {
   common.add(line, "a line for every sensor");
   if (!line.parse(words)) return 0;
   common.check();
+  warnOfSharedOptions(line, common);
   const std::string out = line.argument("OUT.json");
   std::optional<OutputFile> file;
   if (!out.empty()) {

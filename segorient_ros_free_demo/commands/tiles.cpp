@@ -42,7 +42,7 @@ int runPlan(const std::vector<std::string>& words) {
   TileFlags tiles;
   line.argumentsMany("IN", "OUT");
   tiles.add(line);
-  stages.add(line, true);
+  stages.add(line, LastStage::ORIENTATION);
   hints.add(line);
   common.add(line);
   if (!line.parse(words)) return 0;

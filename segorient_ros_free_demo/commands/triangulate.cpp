@@ -44,7 +44,7 @@ int runTriangulate(const std::vector<std::string>& words) {
   TriangulationOptions triangulation;
   bool all = false;
   line.arguments({"IN", "OUT"});
-  stages.add(line, true);
+  stages.add(line, LastStage::ORIENTATION);
   hints.add(line);
   line.options()("kappa1",
                  po::value(&triangulation.kappa1)->default_value(triangulation.kappa1, "0.1"),

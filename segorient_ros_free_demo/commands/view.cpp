@@ -86,6 +86,7 @@ int runView(const std::vector<std::string>& words) {
   common.take(line);
   if (!line.parse(words)) return 0;
   common.check();
+  warnOfSharedOptions(line, common);
   require(every >= 0, "--every must not be negative");
 
   const std::string path = line.argument("IN");

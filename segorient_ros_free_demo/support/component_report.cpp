@@ -12,6 +12,7 @@ void addTo(JsonWriter& json, const std::vector<ComponentOrientationResult>& comp
     json.field("oriented_by", toString(c.by));
     json.field("sign", static_cast<int>(c.sign));
     json.field("evidence", c.evidence);
+    json.field("votes", c.votes);
     json.field("confidence", c.confidence);
     json.field("contradiction", c.contradiction);
     json.endObject();

@@ -24,7 +24,7 @@ struct SegmentColumns {
     for (const std::int32_t label : segmentation.labels) {
       labels.push_back(label < 0 ? kNoSegment : static_cast<std::uint32_t>(label));
       colors.push_back(segmentColor(labels.back()));
-      const auto kind = label < 0 ? SegmentKind::Isolated
+      const auto kind = label < 0 ? SegmentKind::ISOLATED
                                   : segmentation.segments[static_cast<std::size_t>(label)].kind;
       kinds.push_back(static_cast<std::uint8_t>(kind));
     }

@@ -10,7 +10,7 @@ std::string describeSensor(const FoundSensor& sensor, const std::array<double, 3
   char text[200];
   std::snprintf(text, sizeof(text),
                 "%s at (%.4g, %.4g, %.4g)%s for %zu points: %.0f %% of the deviation left, %s",
-                sensorKindName(sensor.kind), origin[0] + static_cast<double>(sensor.position[0]),
+                toString(sensor.kind), origin[0] + static_cast<double>(sensor.position[0]),
                 origin[1] + static_cast<double>(sensor.position[1]),
                 origin[2] + static_cast<double>(sensor.position[2]),
                 sensor.suggested ? ", as suggested," : "", sensor.points,
@@ -22,8 +22,8 @@ void addTo(JsonWriter& json, const SensorReport& report, const std::array<double
   json.beginArray("sensors");
   for (const FoundSensor& s : report.sensors) {
     json.beginItem();
-    json.field("kind", sensorKindName(s.kind));
-    json.field("evidence", sensorEvidenceName(s.evidence));
+    json.field("kind", toString(s.kind));
+    json.field("evidence", toString(s.evidence));
     json.field("x", origin[0] + static_cast<double>(s.position[0]));
     json.field("y", origin[1] + static_cast<double>(s.position[1]));
     json.field("z", origin[2] + static_cast<double>(s.position[2]));

@@ -15,12 +15,14 @@ struct EstimatorName {
   const char* name;
   NormalEstimator estimator;
 };
-constexpr std::array kEstimators{EstimatorName{"auto", NormalEstimator::Automatic},
-                                 EstimatorName{"plane", NormalEstimator::Plane},
+constexpr std::array kEstimators{EstimatorName{"auto", NormalEstimator::AUTO},
+                                 EstimatorName{"plane", NormalEstimator::PLANE},
                                  EstimatorName{"lct", NormalEstimator::LCT},
                                  EstimatorName{"ldt", NormalEstimator::LDT},
-                                 EstimatorName{"awas", NormalEstimator::AwASQuadratic},
-                                 EstimatorName{"awas3", NormalEstimator::AwASCubic}};
+                                 EstimatorName{"awas", NormalEstimator::AWAS_QUADRATIC},
+                                 EstimatorName{"awas3", NormalEstimator::AWAS_CUBIC}};
+
+constexpr std::array kSharedAngles{"alpha", "beta", "gamma", "delta", "epsilon"};
 
 void setAngle(const CommandLine& line, const std::string& name, double value, float& out) {
   if (!line.given(name)) return;
@@ -39,11 +41,11 @@ const char* estimatorName(NormalEstimator estimator) {
 
 const char* kindName(SegmentKind kind) {
   switch (kind) {
-    case SegmentKind::Regular:
+    case SegmentKind::REGULAR:
       return "regular";
-    case SegmentKind::Connected:
+    case SegmentKind::CONNECTED:
       return "connected";
-    case SegmentKind::Isolated:
+    case SegmentKind::ISOLATED:
       return "isolated";
   }
   return "regular";
@@ -59,14 +61,15 @@ void StageOptions::addMethod(CommandLine& line, bool orients) {
       "extremal)");
 }
 
-void StageOptions::add(CommandLine& line, bool orients, const std::string& usual_k) {
+void StageOptions::add(CommandLine& line, LastStage last, const std::string& usual_k) {
+  const bool orients = last == LastStage::ORIENTATION;
   const std::string k = !usual_k.empty() ? usual_k
                         : orients ? "32 for method auto, else 12, 18 or 30 by the cloud's noise"
                                   : "12, and more for --normals auto where there is noise";
   const std::string normals =
       orients ? "; method auto has its own way and does not look at this" : "";
   const std::string recompute = orients ? "; method auto does so in its own way" : "";
-  orients_ = orients;
+  ends_with_ = last;
   line.options()("neighbors,k", po::value(&k_), ("neighbours of a point; left out: " + k).c_str());
   addMethod(line, orients);
   line.options()(
@@ -110,7 +113,7 @@ void StageOptions::apply(const CommandLine& line, const CommonOptions& common,
   setAngle(line, "gamma", gamma_, options.orientation.gamma);
   setAngle(line, "delta", delta_, options.recomputation.delta);
   if (line.given("delta")) {
-    options.recomputation.rule = RecomputationRule::ModifiedNeighborhoods;
+    options.recomputation.rule = RecomputationRule::MODIFIED_NEIGHBORHOODS;
   }
   require(fromString(method_, options.orientation.method),
           "--method is one of auto propagation boundary combined extremal hoppe");
@@ -119,23 +122,53 @@ void StageOptions::apply(const CommandLine& line, const CommonOptions& common,
 void StageOptions::warnOfUnused(const CommandLine& line, const CommonOptions& common,
                                 const PipelineOptions& options) const {
   if (common.quiet) return;
-  if (orients_ && options.orientation.method == OrientationMethod::AUTO) {
-    for (const char* name : {"normals", "gamma", "delta", "recompute"}) {
-      if (!line.given(name)) continue;
-      warn("--" + std::string(name) +
-           " changes nothing with method auto; the others (--method combined) look at it");
+  const auto name = [&line](const std::vector<const char*>& names, const std::string& reason) {
+    for (const char* option : names) {
+      if (line.given(option)) warn("--" + std::string(option) + " changes nothing " + reason);
     }
-  } else if (line.given("delta") && options.recomputations == 0) {
-    warn("--delta changes nothing without --recompute");
+  };
+  const bool automatic = options.orientation.method == OrientationMethod::AUTO;
+  const bool recomputes = options.recomputations > 0;
+  switch (ends_with_) {
+    case LastStage::NORMALS:
+      name({"method", "gamma"}, "of normals that are not oriented; see segorient orient");
+      if (!recomputes) name({"alpha", "beta", "epsilon", "delta"}, "without --recompute");
+      return;
+    case LastStage::SEGMENTS: {
+      const bool own =
+          automatic && (options.normals.estimator != NormalEstimator::AUTO || recomputes);
+      if (automatic) name({"gamma"}, "with method auto; the others (--method combined) look at it");
+      if (!recomputes) name({"delta"}, "without --recompute");
+      if (own) {
+        name({"viewpoint", "trajectory", "up", "closed", "open", "seeds", "keep-orientation",
+              "no-sensors"},
+             "of segments that are made by --normals or --recompute alone");
+      }
+      if (!automatic) name({"faces"}, "without method auto: the others' segments are not united");
+      return;
+    }
+    case LastStage::ORIENTATION:
+      if (automatic) {
+        name({"normals", "gamma", "delta", "recompute"},
+             "with method auto; the others (--method combined) look at it");
+      } else if (!recomputes) {
+        name({"delta"}, "without --recompute");
+      }
   }
 }
 
 void takeSharedOptions(CommandLine& line, bool with_k) {
-  for (const char* name : {"alpha", "beta", "gamma", "delta", "epsilon"}) {
-    line.unlisted()(name, po::value<double>());
-  }
+  for (const char* name : kSharedAngles) line.unlisted()(name, po::value<double>());
   line.unlisted()("seed", po::value<unsigned>());
   if (with_k) line.unlisted()("neighbors,k", po::value<int>());
+}
+
+void warnOfSharedOptions(const CommandLine& line, const CommonOptions& common, bool with_k) {
+  if (common.quiet) return;
+  for (const char* name : kSharedAngles) {
+    if (line.given(name)) warn("--" + std::string(name) + " changes nothing of this command");
+  }
+  if (with_k && line.given("neighbors")) warn("-k changes nothing of this command");
 }
 
 std::string timesText(const std::vector<StageTime>& times) {

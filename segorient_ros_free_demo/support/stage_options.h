@@ -11,14 +11,16 @@
 
 namespace segorient::program {
 
+/// How far a command goes.
+enum class LastStage { NORMALS, SEGMENTS, ORIENTATION };
+
 /// Parameters of the stages, as options with angles in degrees. All commands that run stages take
 /// all of them, whether or not they come to the stage that an option is for.
 class StageOptions {
  public:
-  /// \param orients whether the command comes to the orientation: otherwise what only that looks at
-  /// is taken but not listed
+  /// \param last what only the stages after this one look at is taken but not listed
   /// \param k what -k is if it is left out, where that is not as usual
-  void add(CommandLine& line, bool orients, const std::string& k = {});
+  void add(CommandLine& line, LastStage last, const std::string& k = {});
 
   /// Checks the values and sets those that were given; the others keep the library's defaults.
   void apply(const CommandLine& line, const CommonOptions& common, PipelineOptions& options);
@@ -30,7 +32,7 @@ class StageOptions {
  private:
   void addMethod(CommandLine& line, bool orients);
 
-  bool orients_ = true;
+  LastStage ends_with_ = LastStage::ORIENTATION;
   int k_ = 0;
   int recomputations_ = 0;
   std::string normals_;
@@ -47,6 +49,9 @@ class StageOptions {
 /// not tell commands apart, and does nothing with them.
 /// \param with_k whether -k is among them
 void takeSharedOptions(CommandLine& line, bool with_k = true);
+/// Names those of them that were given. The seed is not named: its page says that nothing is
+/// random.
+void warnOfSharedOptions(const CommandLine& line, const CommonOptions& common, bool with_k = true);
 
 /// auto, plane, lct, ldt, awas, awas3.
 const char* estimatorName(NormalEstimator estimator);

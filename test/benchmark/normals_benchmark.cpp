@@ -184,7 +184,7 @@ std::vector<float> estimated(const Truth& truth, const Neighborhoods& table,
 std::vector<std::uint8_t> regularOf(const Segmentation& segmentation) {
   std::vector<std::uint8_t> regular;
   for (const Segment& s : segmentation.segments) {
-    regular.push_back(s.kind == SegmentKind::Regular);
+    regular.push_back(s.kind == SegmentKind::REGULAR);
   }
   return regular;
 }
@@ -252,14 +252,14 @@ void accuracy(const std::string& name, const Truth& raw) {
     const char* name;
     NormalEstimator estimator;
     int k;
-  } estimators[] = {{"plane k=10", NormalEstimator::Plane, 10},
-                    {"plane k=30", NormalEstimator::Plane, 30},
+  } estimators[] = {{"plane k=10", NormalEstimator::PLANE, 10},
+                    {"plane k=30", NormalEstimator::PLANE, 30},
                     {"LCT k=10", NormalEstimator::LCT, 10},
                     {"LDT k=10", NormalEstimator::LDT, 10},
-                    {"AwAS quadratic k=10", NormalEstimator::AwASQuadratic, 10},
-                    {"AwAS quadratic k=30", NormalEstimator::AwASQuadratic, 30},
-                    {"AwAS cubic k=10", NormalEstimator::AwASCubic, 10},
-                    {"AwAS cubic k=30", NormalEstimator::AwASCubic, 30}};
+                    {"AwAS quadratic k=10", NormalEstimator::AWAS_QUADRATIC, 10},
+                    {"AwAS quadratic k=30", NormalEstimator::AWAS_QUADRATIC, 30},
+                    {"AwAS cubic k=10", NormalEstimator::AWAS_CUBIC, 10},
+                    {"AwAS cubic k=30", NormalEstimator::AWAS_CUBIC, 30}};
   for (const auto& e : estimators) {
     printRow(e.name, truth, near, estimated(truth, table, e.estimator, e.k));
   }
@@ -267,13 +267,13 @@ void accuracy(const std::string& name, const Truth& raw) {
   const AutomaticNormalReport report =
       estimateNormalsAutomatically(truth.view(), table, 0, normals.data());
   printRow("automatic", truth, near, normals);
-  const std::vector<float> planes = estimated(truth, table, NormalEstimator::Plane, 10);
+  const std::vector<float> planes = estimated(truth, table, NormalEstimator::PLANE, 10);
   printRow("plane, one-sided", truth, near,
-           recomputed(truth, table, planes, RecomputationRule::OneSided));
+           recomputed(truth, table, planes, RecomputationRule::ONE_SIDED));
   printRow("plane, paper's rule", truth, near,
-           recomputed(truth, table, planes, RecomputationRule::ModifiedNeighborhoods));
+           recomputed(truth, table, planes, RecomputationRule::MODIFIED_NEIGHBORHOODS));
   printRow("automatic, one-sided", truth, near,
-           recomputed(truth, table, normals, RecomputationRule::OneSided));
+           recomputed(truth, table, normals, RecomputationRule::ONE_SIDED));
   printRow("PCL plane k=11", truth, near, pclNormals(truth, 11));
   printRow("PCL plane k=30", truth, near, pclNormals(truth, 30));
   // The radius that holds thirty neighbours on average.
@@ -298,7 +298,7 @@ class Recomputation {
   Recomputation(const Truth& truth, int k) : truth_(truth), k_(k) {
     build(truth.view(), 1, index_);
     search();
-    first_normals_ = estimated(truth, table_, NormalEstimator::Plane, 10);
+    first_normals_ = estimated(truth, table_, NormalEstimator::PLANE, 10);
     const Segmentation segments = segmentByNormals(
         truth.view(), {first_normals_.data(), 4, truth.size()}, table_, SegmentationOptions());
     regular_ = regularOf(segments);
@@ -362,11 +362,11 @@ void timing(std::size_t count) {
     const char* name;
     std::function<void()> run;
   } steps[] = {{"own search, k = 10", [&] { index.nearestKAll(kNeighbors + 1, table); }},
-               {"plane", [&] { estimate(NormalEstimator::Plane); }},
+               {"plane", [&] { estimate(NormalEstimator::PLANE); }},
                {"LCT", [&] { estimate(NormalEstimator::LCT); }},
                {"LDT", [&] { estimate(NormalEstimator::LDT); }},
-               {"AwAS quadratic", [&] { estimate(NormalEstimator::AwASQuadratic); }},
-               {"AwAS cubic", [&] { estimate(NormalEstimator::AwASCubic); }},
+               {"AwAS quadratic", [&] { estimate(NormalEstimator::AWAS_QUADRATIC); }},
+               {"AwAS cubic", [&] { estimate(NormalEstimator::AWAS_CUBIC); }},
                {"PCL's plane step", pclStep},
                {"own search, cube", [&] { few.search(); }},
                {"recomputation, one round", [&] { few.run(); }},

@@ -124,7 +124,7 @@ void timeStage(const std::string& name, const Cloud& cloud, int threads) {
       segorient::segmentByNormals(compact.view(), normal_view, neighborhoods, {});
   std::size_t regular = 0;
   for (const segorient::Segment& s : segmentation.segments) {
-    regular += s.kind == segorient::SegmentKind::Regular ? 1 : 0;
+    regular += s.kind == segorient::SegmentKind::REGULAR ? 1 : 0;
   }
 
   const std::vector<Method> all = methods();

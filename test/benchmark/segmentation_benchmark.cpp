@@ -154,7 +154,7 @@ std::vector<std::int32_t> regionGrowing(const PclClouds& clouds, int k, double d
 std::vector<std::int32_t> regularLabels(const Segmentation& s) {
   std::vector<std::int32_t> labels = s.labels;
   for (auto& label : labels) {
-    if (label >= 0 && s.segments[static_cast<std::size_t>(label)].kind != SegmentKind::Regular)
+    if (label >= 0 && s.segments[static_cast<std::size_t>(label)].kind != SegmentKind::REGULAR)
       label = -1;
   }
   return labels;
@@ -383,7 +383,7 @@ void surface(const std::vector<std::size_t>& sizes) {
         const std::vector<SegmentMesh> meshes =
             triangulateSegments(viewOf(cloud.xyz), s, options, false);
         for (std::size_t i = 0; i < meshes.size(); ++i) {
-          if (s.segments[i].kind != SegmentKind::Regular) continue;
+          if (s.segments[i].kind != SegmentKind::REGULAR) continue;
           const MeshCheck one = check(meshes[i]);
           sum.broken += one.broken;
           sum.holes += one.holes;
@@ -450,7 +450,7 @@ void file(const std::string& name, FileSums& sums) {
   MeshCheck sum;
   std::size_t meshed = 0;
   for (std::size_t i = 0; i < meshes.size(); ++i) {
-    if (s.segments[i].kind != SegmentKind::Regular) continue;
+    if (s.segments[i].kind != SegmentKind::REGULAR) continue;
     const MeshCheck one = check(meshes[i]);
     sum.accounted += one.accounted;
     sum.broken += one.broken;

@@ -109,13 +109,13 @@ void segmentAndOrient(const Cloud::Ptr& cloud, const Normals::Ptr& normals) {
   expect(segmentation->getConfidences().size() == cloud->size(), "confidences");
 
   std::vector<std::uint8_t> regular;
-  for (const segorient::Segment& s : segmentation->getSegmentation().segments) {
-    regular.push_back(s.kind == segorient::SegmentKind::Regular ? 1 : 0);
+  for (const segorient::Segment& s : segmentation->getPlanarSegmentation().segments) {
+    regular.push_back(s.kind == segorient::SegmentKind::REGULAR ? 1 : 0);
   }
   segorient::NormalRecomputation<Point, pcl::Normal> recomputation;
   recomputation.setInputCloud(cloud);
   recomputation.setInputNormals(normals);
-  recomputation.setLabels(segmentation->getSegmentation().labels, regular);
+  recomputation.setLabels(segmentation->getPlanarSegmentation().labels, regular);
   Normals sharper;
   recomputation.compute(sharper);
   expect(sharper.size() == cloud->size(), "normals of NormalRecomputation");
@@ -128,7 +128,7 @@ void segmentAndOrient(const Cloud::Ptr& cloud, const Normals::Ptr& normals) {
     orientation->setInputCloud(cloud);
     orientation->setInputNormals(normals);
     orientation->setSegmentation(
-        std::make_shared<const segorient::Segmentation>(segmentation->getSegmentation()));
+        std::make_shared<const segorient::Segmentation>(segmentation->getPlanarSegmentation()));
     orientation->setMethod(method);
     expect(orientation->getMethod() == method, "method of SegmentOrientation");
     Normals oriented;

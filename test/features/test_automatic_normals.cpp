@@ -41,8 +41,8 @@ double rmsOf(const Sample& sample, NormalEstimator estimator, int k) {
 double bestSingle(const Sample& sample) {
   double best = std::numeric_limits<double>::infinity();
   for (const int k : {8, 12, 20, 32, 64}) {
-    for (const auto estimator : {NormalEstimator::Plane, NormalEstimator::LCT, NormalEstimator::LDT,
-                                 NormalEstimator::AwASQuadratic}) {
+    for (const auto estimator : {NormalEstimator::PLANE, NormalEstimator::LCT, NormalEstimator::LDT,
+                                 NormalEstimator::AWAS_QUADRATIC}) {
       best = std::min(best, rmsOf(sample, estimator, k));
     }
   }
@@ -94,7 +94,7 @@ TEST(AutomaticNormals, CubicSurfacesWhereASmoothCloudHasNoNoise) {
   EXPECT_NE(cubic.report.text().find("cubic ones of 12"), std::string::npos);
   EXPECT_EQ(cubic.report.surfaces[0].second + cubic.report.at_edges, 20000U);
   EXPECT_LT(rmsDegrees(smooth, cubic.normals),
-            0.5 * rmsOf(smooth, NormalEstimator::AwASQuadratic, 10));
+            0.5 * rmsOf(smooth, NormalEstimator::AWAS_QUADRATIC, 10));
   EXPECT_FALSE(automatic(cube(10000, 2)).report.analytic);
   EXPECT_FALSE(automatic(torus(20000, 2, 0.05F * torusSpacing(20000))).report.analytic);
 }
@@ -106,7 +106,7 @@ TEST(AutomaticNormals, BendsAreNoEdges) {
   const Automatic bends = automatic(smooth);
   EXPECT_LT(bends.report.at_edges, 100U);
   EXPECT_LT(rmsDegrees(smooth, bends.normals),
-            1.1 * rmsOf(smooth, NormalEstimator::AwASQuadratic, 10));
+            1.1 * rmsOf(smooth, NormalEstimator::AWAS_QUADRATIC, 10));
   EXPECT_GT(automatic(cube(400, 7)).report.at_edges, 150U);
 }
 

@@ -200,8 +200,8 @@ class BadRecomputation : public testing::TestWithParam<RecomputationRule> {
   const QuietPcl quiet_;
 };
 INSTANTIATE_TEST_SUITE_P(Rules, BadRecomputation,
-                         testing::Values(RecomputationRule::OneSided,
-                                         RecomputationRule::ModifiedNeighborhoods));
+                         testing::Values(RecomputationRule::ONE_SIDED,
+                                         RecomputationRule::MODIFIED_NEIGHBORHOODS));
 
 TEST_P(BadRecomputation, CloudsIndicesNormalsAndLabels) {
   NormalRecomputation<pcl::PointXYZ, pcl::Normal> recomputation;

@@ -279,9 +279,9 @@ TEST_P(AnyEstimator, QueriesAndPointsOfOneArray) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Estimators, AnyEstimator,
-                         testing::Values(NormalEstimator::Plane, NormalEstimator::LCT,
-                                         NormalEstimator::LDT, NormalEstimator::AwASQuadratic,
-                                         NormalEstimator::AwASCubic));
+                         testing::Values(NormalEstimator::PLANE, NormalEstimator::LCT,
+                                         NormalEstimator::LDT, NormalEstimator::AWAS_QUADRATIC,
+                                         NormalEstimator::AWAS_CUBIC));
 
 }  // namespace
 }  // namespace segorient::test

@@ -93,7 +93,7 @@ std::vector<float> normalsBy(NormalEstimator estimator, const Sample& sample,
 template <typename Oracle>
 double agreement(NormalEstimator estimator, const Sample& sample, int k, Oracle oracle) {
   const Neighborhoods table = neighborsOf(sample.view(), k);
-  const std::vector<float> planes = normalsBy(NormalEstimator::Plane, sample, table);
+  const std::vector<float> planes = normalsBy(NormalEstimator::PLANE, sample, table);
   const std::vector<float> normals = normalsBy(estimator, sample, table);
   std::size_t equal = 0;
   for (std::size_t i = 0; i < sample.normals.size(); ++i) {
@@ -152,7 +152,7 @@ TEST(LocalTriangulations, StrengthsAndWeaknesses) {
   };
   EXPECT_GT(near(NormalEstimator::LDT), near(NormalEstimator::LCT));
   const Neighborhoods table = neighborsOf(noisy.view(), 30);
-  const double plane = rmsDegrees(noisy, normalsBy(NormalEstimator::Plane, noisy, table));
+  const double plane = rmsDegrees(noisy, normalsBy(NormalEstimator::PLANE, noisy, table));
   const double lct = rmsDegrees(noisy, normalsBy(NormalEstimator::LCT, noisy, table));
   const double ldt = rmsDegrees(noisy, normalsBy(NormalEstimator::LDT, noisy, table));
   EXPECT_LT(plane, lct);

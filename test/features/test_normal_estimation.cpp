@@ -288,7 +288,7 @@ TEST(PlaneNormalEstimation, DuplicatesDoNotFillNeighborhoods) {
 TEST(AwASNormalEstimation, SettersAndCurvatures) {
   AwASNormalEstimation<pcl::PointXYZ, pcl::Normal> estimation;
   EXPECT_EQ(estimation.getDegree(), 2);
-  EXPECT_EQ(estimation.getFirstGuess(), NormalEstimator::Plane);
+  EXPECT_EQ(estimation.getFirstGuess(), NormalEstimator::PLANE);
   const Sample ball = sphere(3000, 1);
   estimation.setInputCloud(Cloud(ball.points).makeShared());
   estimation.setKSearch(20);

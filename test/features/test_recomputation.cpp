@@ -153,7 +153,7 @@ TEST(OneSidedRule, NewNormalsKeepTheirSide) {
 
 TEST(ModifiedNeighborhoods, SharpenACubeAndLeaveATorusAlone) {
   RecomputationOptions options;
-  options.rule = RecomputationRule::ModifiedNeighborhoods;
+  options.rule = RecomputationRule::MODIFIED_NEIGHBORHOODS;
   options.k = 12;
   Segmented s = segmentedCube(12000, 6, 0.F);
   s.labels = s.truth;
@@ -222,8 +222,8 @@ TEST_P(AnyRule, BadInputChangesNothing) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Rules, AnyRule,
-                         testing::Values(RecomputationRule::OneSided,
-                                         RecomputationRule::ModifiedNeighborhoods));
+                         testing::Values(RecomputationRule::ONE_SIDED,
+                                         RecomputationRule::MODIFIED_NEIGHBORHOODS));
 
 using Recomputation = NormalRecomputation<pcl::PointXYZ, pcl::Normal>;
 using Normals = pcl::PointCloud<pcl::Normal>;

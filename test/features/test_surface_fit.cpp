@@ -52,10 +52,10 @@ TEST(SurfaceFit, IsTheLeastSquaresSurface) {
   const Sample noisy = torus(3000, 2, 0.3F * torusSpacing(3000));
   for (const Sample* sample : {&smooth, &noisy}) {
     const Neighborhoods table = neighborsOf(sample->view(), 25);
-    const std::vector<float> planes = normalsBy(NormalEstimator::Plane, *sample, table, nullptr);
+    const std::vector<float> planes = normalsBy(NormalEstimator::PLANE, *sample, table, nullptr);
     for (const int degree : {2, 3}) {
       const std::vector<float> normals =
-          normalsBy(degree == 3 ? NormalEstimator::AwASCubic : NormalEstimator::AwASQuadratic,
+          normalsBy(degree == 3 ? NormalEstimator::AWAS_CUBIC : NormalEstimator::AWAS_QUADRATIC,
                     *sample, table, nullptr);
       for (std::size_t i = 0; i < sample->normals.size(); ++i) {
         const Eigen::Vector3d guess(planes[4 * i], planes[4 * i + 1], planes[4 * i + 2]);
@@ -72,16 +72,16 @@ TEST(SurfaceFit, OrdersOfAccuracyOnATorus) {
   const auto rms = [&](NormalEstimator estimator) {
     return rmsDegrees(sample, normalsBy(estimator, sample, table, nullptr));
   };
-  EXPECT_LT(rms(NormalEstimator::AwASQuadratic), 0.03);
-  EXPECT_LT(rms(NormalEstimator::AwASCubic), 0.01);
-  EXPECT_GT(rms(NormalEstimator::Plane), 0.1);
+  EXPECT_LT(rms(NormalEstimator::AWAS_QUADRATIC), 0.03);
+  EXPECT_LT(rms(NormalEstimator::AWAS_CUBIC), 0.01);
+  EXPECT_GT(rms(NormalEstimator::PLANE), 0.1);
 }
 
 TEST(SurfaceFit, CurvaturesOfASphereAndATorus) {
   std::vector<LocalCurvature> curvatures;
   const Sample ball = sphere(5000, 4);
   std::vector<float> normals =
-      normalsBy(NormalEstimator::AwASQuadratic, ball, neighborsOf(ball.view(), 20), &curvatures);
+      normalsBy(NormalEstimator::AWAS_QUADRATIC, ball, neighborsOf(ball.view(), 20), &curvatures);
   for (std::size_t i = 0; i < ball.normals.size(); ++i) {
     // Seen along the outward normal a sphere bends away.
     const float outward = ball.normals[i].dot(Eigen::Map<Eigen::Vector3f>(&normals[4 * i]));
@@ -89,7 +89,7 @@ TEST(SurfaceFit, CurvaturesOfASphereAndATorus) {
     ASSERT_NEAR(curvatures[i].pc2 * outward, -1.F, 0.1F);
   }
   const Sample ring = torus(40000, 4);
-  for (const auto estimator : {NormalEstimator::AwASQuadratic, NormalEstimator::AwASCubic}) {
+  for (const auto estimator : {NormalEstimator::AWAS_QUADRATIC, NormalEstimator::AWAS_CUBIC}) {
     normals = normalsBy(estimator, ring, neighborsOf(ring.view(), 25), &curvatures);
     for (std::size_t i = 0; i < ring.normals.size(); ++i) {
       const Eigen::Vector3f& n = ring.normals[i];
@@ -117,24 +117,24 @@ TEST(SurfaceFit, FallsBackToTheFirstGuess) {
   }
   const Neighborhoods table = neighborsOf(lines.view(), 12);
   std::vector<LocalCurvature> curvatures;
-  const std::vector<float> planes = normalsBy(NormalEstimator::Plane, lines, table, nullptr);
-  for (const auto estimator : {NormalEstimator::AwASQuadratic, NormalEstimator::AwASCubic}) {
+  const std::vector<float> planes = normalsBy(NormalEstimator::PLANE, lines, table, nullptr);
+  for (const auto estimator : {NormalEstimator::AWAS_QUADRATIC, NormalEstimator::AWAS_CUBIC}) {
     EXPECT_EQ(normalsBy(estimator, lines, table, &curvatures), planes);
     EXPECT_TRUE(std::all_of(curvatures.begin(), curvatures.end(),
                             [](const LocalCurvature& c) { return std::isnan(c.pc1); }));
   }
   const Sample few = torus(7, 1);  // enough for a quadratic surface, not for a cubic one
   const Neighborhoods all = neighborsOf(few.view(), 6);
-  EXPECT_EQ(normalsBy(NormalEstimator::AwASCubic, few, all, nullptr),
-            normalsBy(NormalEstimator::AwASQuadratic, few, all, nullptr));
+  EXPECT_EQ(normalsBy(NormalEstimator::AWAS_CUBIC, few, all, nullptr),
+            normalsBy(NormalEstimator::AWAS_QUADRATIC, few, all, nullptr));
 }
 
 TEST(SurfaceFit, FirstGuessHardlyMattersOnSmoothSurfaces) {
   const Sample sample = torus(20000, 6);
   const Neighborhoods table = neighborsOf(sample.view(), 12);
   LocalNormalOptions options;
-  options.estimator = NormalEstimator::AwASQuadratic;
-  for (const auto guess : {NormalEstimator::Plane, NormalEstimator::LCT, NormalEstimator::LDT}) {
+  options.estimator = NormalEstimator::AWAS_QUADRATIC;
+  for (const auto guess : {NormalEstimator::PLANE, NormalEstimator::LCT, NormalEstimator::LDT}) {
     options.first_guess = guess;
     std::vector<float> normals(4 * sample.normals.size());
     estimateNormals(sample.view(), table, options, normals.data());

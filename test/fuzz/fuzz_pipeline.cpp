@@ -28,7 +28,7 @@ PipelineOptions readOptions(ByteReader& reader) {
   if ((flags & 1U) != 0) options.orientation.boundary = BoundaryTest::TRIANGULATED;
   if ((flags & 2U) != 0) options.orientation.angle = SegmentAngle::REFERENCE_NORMALS;
   if ((flags & 4U) != 0) options.orientation.check_borders = false;
-  if ((flags & 8U) != 0) options.recomputation.rule = RecomputationRule::ModifiedNeighborhoods;
+  if ((flags & 8U) != 0) options.recomputation.rule = RecomputationRule::MODIFIED_NEIGHBORHOODS;
   if ((flags & 16U) != 0) options.segmentation.small_size = 4;
   if ((flags & 32U) != 0) options.segmentation.connect_small = false;
   return options;

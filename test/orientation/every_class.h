@@ -61,7 +61,7 @@ inline ClassResult runSegmentation(const std::string& name, const XyzCloud::Ptr&
   std::vector<pcl::PointIndices> faces;
   segmenter.extract(faces);
   out.labels = segmenter.getLabels();
-  if (segmentation != nullptr) *segmentation = segmenter.getSegmentation();
+  if (segmentation != nullptr) *segmentation = segmenter.getPlanarSegmentation();
   return out;
 }
 
@@ -69,7 +69,7 @@ inline ClassResult runRecomputation(const XyzCloud::Ptr& cloud, const NormalClou
                                     const Segmentation& segmentation) {
   ClassResult out{"NormalRecomputation", false, {}, {}};
   std::vector<std::uint8_t> regular;
-  for (const Segment& s : segmentation.segments) regular.push_back(s.kind == SegmentKind::Regular);
+  for (const Segment& s : segmentation.segments) regular.push_back(s.kind == SegmentKind::REGULAR);
   NormalRecomputation<pcl::PointXYZ, pcl::Normal> recomputation;
   recomputation.setInputCloud(cloud);
   recomputation.setInputNormals(normals.makeShared());

@@ -56,7 +56,7 @@ TEST(FoldedSegments, AreFoundAndSlopesAreNot) {
   FaceSegments together(sheets, {false});
   EXPECT_EQ(findFoldedSegments(together.points(), together.neighborhoods, together.segmentation),
             std::vector<std::int32_t>{0});
-  together.segmentation.segments[0].kind = SegmentKind::Connected;
+  together.segmentation.segments[0].kind = SegmentKind::CONNECTED;
   EXPECT_TRUE(
       findFoldedSegments(together.points(), together.neighborhoods, together.segmentation).empty());
 }

@@ -85,7 +85,7 @@ TEST(OneSegmentation, AgreesWithinEachSegment) {
       const std::int32_t label = out.segmentation.labels[i];
       ASSERT_GE(label, 0) << cloud.name;
       const Segment& segment = out.segmentation.segments[static_cast<std::size_t>(label)];
-      if (segment.kind != SegmentKind::Regular) continue;
+      if (segment.kind != SegmentKind::REGULAR) continue;
       const float* n = &out.normals[4 * i];
       const auto& r = segment.reference_normal;
       turned += n[0] * r[0] + n[1] * r[1] + n[2] * r[2] < 0.F ? 1U : 0U;
@@ -101,7 +101,7 @@ TEST(OneSegmentation, UnitesFacesWhereItIsAskedTo) {
   const auto regular = [&] {
     const OrientedCloud out = orientCloud(points, nullptr, options);
     return std::count_if(out.segmentation.segments.begin(), out.segmentation.segments.end(),
-                         [](const Segment& s) { return s.kind == SegmentKind::Regular; });
+                         [](const Segment& s) { return s.kind == SegmentKind::REGULAR; });
   };
   EXPECT_GT(regular(), 3);
   options.segmentation.unite_smooth = true;

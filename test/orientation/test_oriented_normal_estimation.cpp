@@ -186,17 +186,17 @@ TEST_F(OrientedNormalEstimationTest, GettersReturnWhatWasSet) {
   Estimation estimation;
   estimation.setMethod(OrientationMethod::BOUNDARY);
   estimation.setNormalEstimator(NormalEstimator::LCT);
-  estimation.setAlpha(0.1F);
-  estimation.setBeta(0.2F);
+  estimation.setSmoothnessThreshold(0.1F);
+  estimation.setReferenceThreshold(0.2F);
   estimation.setGamma(0.3F);
-  estimation.setEpsilon(0.05F);
+  estimation.setReferenceTolerance(0.05F);
   estimation.setNumberOfThreads(3);
   EXPECT_EQ(estimation.getMethod(), OrientationMethod::BOUNDARY);
   EXPECT_EQ(estimation.getNormalEstimator(), NormalEstimator::LCT);
-  EXPECT_EQ(estimation.getAlpha(), 0.1F);
-  EXPECT_EQ(estimation.getBeta(), 0.2F);
+  EXPECT_EQ(estimation.getSmoothnessThreshold(), 0.1F);
+  EXPECT_EQ(estimation.getReferenceThreshold(), 0.2F);
   EXPECT_EQ(estimation.getGamma(), 0.3F);
-  EXPECT_EQ(estimation.getEpsilon(), 0.05F);
+  EXPECT_EQ(estimation.getReferenceTolerance(), 0.05F);
   EXPECT_EQ(estimation.getNumberOfThreads(), 3U);
   EXPECT_EQ(estimation.getOptions().segmentation.beta, 0.2F);
   // AUTO orients by other segments than it returns.

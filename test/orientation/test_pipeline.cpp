@@ -159,7 +159,7 @@ TEST(Pipeline, SegmentsHoldTheirRowsAndSigns) {
     for (const pcl::index_t* p = segmentation.begin(s); p != segmentation.end(s); ++p) {
       const auto i = static_cast<std::size_t>(*p);
       ASSERT_EQ(segmentation.labels[i], static_cast<std::int32_t>(s));
-      if (segmentation.segments[s].kind == SegmentKind::Regular) {
+      if (segmentation.segments[s].kind == SegmentKind::REGULAR) {
         ASSERT_EQ(segmentation.signs[i], 1);  // everything in a segment is turned together
       }
       ++members;

@@ -236,7 +236,7 @@ TEST_F(HandMade, AngleAndBoundaryAreComparedIfAsked) {
 
 TEST_F(HandMade, OtherKindsAreLeftOutAndComponentsCounted) {
   chain(3);
-  segmentation.segments[1].kind = SegmentKind::Connected;
+  segmentation.segments[1].kind = SegmentKind::CONNECTED;
   links.links.clear();
   links.incident.clear();
   links.offsets = {0, 0, 0, 0};

@@ -148,7 +148,7 @@ TEST(SegmentLinks, BridgeAStripOfSmallSegments) {
                                    3000, 9),
                       {false, false, true});
   EXPECT_EQ(strips.links.links.size(), 2U);
-  strips.segmentation.segments[1].kind = SegmentKind::Connected;
+  strips.segmentation.segments[1].kind = SegmentKind::CONNECTED;
   strips.links = linkRegularSegments(strips.segmentation,
                                      buildSegmentGraph(strips.segmentation, strips.neighborhoods),
                                      strips.neighborhoods);

@@ -75,6 +75,33 @@ TEST(Options, ThoseWithoutEffectAreNamed) {
             "");
 }
 
+TEST(Options, ThoseOfStagesThatACommandDoesNotComeToAreNamed) {
+  const ScratchDirectory directory;
+  const std::string in = directory.write("in.xyz", "0 0 0\n1 0 0\n0 1 0\n1 1 0\n");
+  const std::string out = directory.file("out.pcd");
+  const auto warnsOf = [](std::vector<std::string> words, const std::string& option,
+                          const std::string& value) {
+    words.push_back(option);
+    if (!value.empty()) words.push_back(value);
+    const Outcome run = runProgram(words);
+    EXPECT_EQ(run.status, 0) << run.err;
+    return isOneLine(run.err) && run.err.find(option + " changes nothing") != std::string::npos;
+  };
+  for (const char* angle : {"--alpha", "--beta", "--epsilon", "--delta", "--gamma"}) {
+    EXPECT_TRUE(warnsOf({"normals", in, out}, angle, "25")) << angle;
+    EXPECT_TRUE(warnsOf({"knn", in}, angle, "25")) << angle;
+    EXPECT_TRUE(warnsOf({"sensors", in}, angle, "25")) << angle;
+  }
+  EXPECT_TRUE(warnsOf({"normals", in, out}, "--method", "combined"));
+  EXPECT_TRUE(warnsOf({"sensors", in}, "-k", "8"));
+  EXPECT_TRUE(warnsOf({"segment", in, out}, "--gamma", "25"));
+  EXPECT_TRUE(warnsOf({"segment", in, out, "--method", "combined"}, "--faces", ""));
+  EXPECT_TRUE(warnsOf({"segment", in, out, "--normals", "ldt"}, "--open", ""));
+  EXPECT_FALSE(warnsOf({"normals", in, out, "--recompute", "1"}, "--alpha", "25"));
+  EXPECT_FALSE(warnsOf({"segment", in, out, "--method", "combined"}, "--gamma", "25"));
+  EXPECT_FALSE(warnsOf({"segment", in, out}, "--faces", ""));
+}
+
 // The lower half of a sphere far from the origin, with what decides its side.
 std::string bowl(const std::string& more_names = "", const std::string& more_values = "") {
   std::string text = "x y z" + more_names + "\n";

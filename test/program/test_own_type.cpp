@@ -96,10 +96,10 @@ TEST(OwnType, GoesThroughAllClasses) {
   recomputation.setInputCloud(cloud);
   recomputation.setInputNormals(normals);
   std::vector<std::uint8_t> regular;
-  for (const Segment& s : segmentation.getSegmentation().segments) {
-    regular.push_back(s.kind == SegmentKind::Regular ? 1 : 0);
+  for (const Segment& s : segmentation.getPlanarSegmentation().segments) {
+    regular.push_back(s.kind == SegmentKind::REGULAR ? 1 : 0);
   }
-  recomputation.setLabels(segmentation.getSegmentation().labels, regular);
+  recomputation.setLabels(segmentation.getPlanarSegmentation().labels, regular);
   const Cloud::Ptr sharper(new Cloud);
   recomputation.compute(*sharper);
   ASSERT_EQ(sharper->size(), cloud->size());

@@ -101,7 +101,7 @@ TYPED_TEST(PointTypes, GoThroughAllClasses) {
   NormalRecomputation<TypeParam, pcl::Normal> recomputation;
   recomputation.setInputCloud(cloud);
   recomputation.setInputNormals(normals);
-  const Segmentation& flat = segmentation.getSegmentation();
+  const Segmentation& flat = segmentation.getPlanarSegmentation();
   recomputation.setLabels(flat.labels, std::vector<std::uint8_t>(flat.segments.size(), 1));
   pcl::PointCloud<pcl::Normal> sharper;
   recomputation.compute(sharper);

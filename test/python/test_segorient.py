@@ -14,6 +14,7 @@ import threading
 import time
 import unittest
 import urllib.request
+import warnings
 from pathlib import Path
 from unittest import mock
 
@@ -167,10 +168,35 @@ class Orient(unittest.TestCase):
                 result = segorient.orient(points, **hints)
                 self.assertEqual(share(result.normals, sign * outward), 1.0)
 
+    def test_arguments_without_effect_are_named(self):
+        points, _ = sphere(300)
+        cases = (
+            ("gamma", lambda: segorient.orient(points, gamma=20)),
+            ("normals", lambda: segorient.orient(points, normals="ldt")),
+            ("recompute", lambda: segorient.orient(points, recompute=1)),
+            ("viewpoint", lambda: segorient.orient(points, method="combined", viewpoint=[9, 0, 0])),
+            ("delta", lambda: segorient.orient(points, method="combined", delta=20)),
+            ("alpha", lambda: segorient.normals(points, alpha=20)),
+            ("delta", lambda: segorient.segment(points, delta=20)),
+            ("faces", lambda: segorient.segment(points, method="combined", faces=True)),
+        )
+        for name, call in cases:
+            with self.assertWarnsRegex(UserWarning, f"^{name} changes nothing") as caught:
+                call()
+            self.assertEqual(caught.filename, __file__)
+        with warnings.catch_warnings():
+            warnings.simplefilter("error")
+            segorient.orient(points, method="combined", gamma=20, normals="ldt", recompute=1, delta=20)
+            segorient.orient(points, viewpoint=[9, 0, 0], closed=True)
+            segorient.normals(points, recompute=1, alpha=20)
+            segorient.segment(points, faces=True)
+
     def test_every_method_and_option_is_taken(self):
         points, outward, _ = cube()
         for method in ("auto", "propagation", "boundary", "combined", "extremal"):
-            with self.subTest(method):
+            with self.subTest(method), warnings.catch_warnings():
+                if method == "auto":  # some are for the others, and are named
+                    warnings.simplefilter("ignore")
                 result = segorient.orient(
                     points, method=method, k=14, normals="ldt", alpha=20, beta=30.0, gamma=35,
                     delta=np.float32(30), epsilon=10, recompute=1, threads=1)

@@ -102,7 +102,7 @@ void checkSegments(const BadCloud& bad, const IndexCase& index, bool labelled,
   segmentation.getSegmentFromPoint(-1, cluster);
   EXPECT_TRUE(cluster.indices.empty());
   segmentation.getColoredCloud();
-  segmentation.getSegmentGraph();
+  segmentation.getPlanarSegmentGraph();
 }
 
 // One object for all of them: what it was used for before must not matter.

@@ -70,7 +70,7 @@ TEST(NormalSegmentation, LabelsAndClustersAgree) {
   segmentation.setInputNormals(in.normals);
   std::vector<pcl::PointIndices> clusters;
   segmentation.extract(clusters);
-  ASSERT_EQ(clusters.size(), segmentation.getSegmentation().segments.size());
+  ASSERT_EQ(clusters.size(), segmentation.getPlanarSegmentation().segments.size());
   std::size_t points = 0;
   for (std::size_t c = 0; c < clusters.size(); ++c) {
     points += clusters[c].indices.size();
@@ -108,7 +108,7 @@ TEST(NormalSegmentation, ClusterSizesFilterOnlyTheOutput) {
     EXPECT_LE(cluster.indices.size(), all[1].indices.size());
   }
   EXPECT_LT(some.size(), all.size());
-  EXPECT_EQ(segmentation.getSegmentation().segments.size(), all.size());
+  EXPECT_EQ(segmentation.getPlanarSegmentation().segments.size(), all.size());
 }
 
 TEST(NormalSegmentation, AllWaysToNeighborsGiveTheSame) {
@@ -133,7 +133,7 @@ TEST(NormalSegmentation, AllWaysToNeighborsGiveTheSame) {
   ready.extract(clusters);
   SegmentationOptions options;
   options.neighbors = static_cast<int>(ready.getNumberOfNeighbours());
-  EXPECT_EQ(ready.getSegmentation().labels, prepared.segment(options).labels);
+  EXPECT_EQ(ready.getPlanarSegmentation().labels, prepared.segment(options).labels);
 }
 
 TEST(NormalSegmentation, IndicesAndBadPoints) {
@@ -192,7 +192,7 @@ TEST(NormalSegmentation, DuplicatesShareTheirLabel) {
   segmentation.setInputNormals(in.normals);
   std::vector<pcl::PointIndices> clusters;
   segmentation.extract(clusters);
-  const Segmentation& s = segmentation.getSegmentation();
+  const Segmentation& s = segmentation.getPlanarSegmentation();
   for (std::size_t at = n, i = 0; at < in.cloud->size(); ++at, i = i + 2 < n ? i + 2 : 0) {
     EXPECT_EQ(s.labels[at], s.labels[i]);
     EXPECT_EQ(s.signs[at], -s.signs[i]);
@@ -201,7 +201,7 @@ TEST(NormalSegmentation, DuplicatesShareTheirLabel) {
       purity(std::vector<std::int32_t>(s.labels.begin(), s.labels.begin() + static_cast<long>(n)),
              prepared.cloud.face),
       0.97);
-  const SegmentGraph graph = segmentation.getSegmentGraph();
+  const SegmentGraph graph = segmentation.getPlanarSegmentGraph();
   EXPECT_FALSE(graph.pairs.empty());
   for (const SegmentBorder& border : graph.borders) {
     for (std::size_t i = border.first; i < border.first + border.size; ++i) {

@@ -76,7 +76,7 @@ std::vector<std::int32_t> growPlainly(const Prepared& in, const SegmentationOpti
 std::size_t inRegular(const Segmentation& s) {
   std::size_t points = 0;
   for (const Segment& segment : s.segments) {
-    if (segment.kind == SegmentKind::Regular) points += segment.size;
+    if (segment.kind == SegmentKind::REGULAR) points += segment.size;
   }
   return points;
 }
@@ -109,7 +109,7 @@ void expectConsistent(const Segmentation& s, const std::vector<float>& normals) 
     const Eigen::Vector3d reference =
         Eigen::Vector3f(s.segments[i].reference_normal.data()).cast<double>();
     EXPECT_LT((sum.normalized() - reference).norm(), 1e-4) << "segment " << i;
-    if (s.segments[i].kind != SegmentKind::Regular) continue;
+    if (s.segments[i].kind != SegmentKind::REGULAR) continue;
     for (const auto* it = s.begin(i); it != s.end(i); ++it) {
       const auto p = static_cast<std::size_t>(*it);
       const Eigen::Vector3d n(normals[4 * p], normals[4 * p + 1], normals[4 * p + 2]);
@@ -165,7 +165,7 @@ TEST(RegionGrowing, TrueNormalsGiveTheFaces) {
     const Segmentation s = in.segment();
     // A point in a corner may have all of its neighbours on the other faces.
     const auto regular = std::count_if(s.segments.begin(), s.segments.end(), [](const Segment& x) {
-      return x.kind == SegmentKind::Regular;
+      return x.kind == SegmentKind::REGULAR;
     });
     EXPECT_EQ(static_cast<std::size_t>(regular), faces.size());
     EXPECT_GE(adjustedRandIndex(s.labels, in.cloud.face), 0.999);
@@ -185,7 +185,7 @@ TEST(RegionGrowing, FindsTheFacesOfSolids) {
       const Segmentation s = in.segment();
       expectConsistent(s, in.normals);
       const auto large = std::count_if(s.segments.begin(), s.segments.end(), [](const Segment& x) {
-        return x.kind == SegmentKind::Regular && x.size >= 200;
+        return x.kind == SegmentKind::REGULAR && x.size >= 200;
       });
       EXPECT_EQ(static_cast<std::size_t>(large), c.faces.size()) << c.name << ", sigma " << sigma;
       EXPECT_GE(purity(s.labels, in.cloud.face), 0.98) << c.name << ", sigma " << sigma;
@@ -204,13 +204,13 @@ TEST(RegionGrowing, CylinderSidesAreStripsOfTwiceBeta) {
   expectConsistent(s, in.normals);
   std::size_t caps = 0;
   for (const Segment& segment : s.segments) {
-    if (segment.kind != SegmentKind::Regular) continue;
+    if (segment.kind != SegmentKind::REGULAR) continue;
     if (std::abs(segment.reference_normal[2]) > 0.99F && segment.size > 1000) ++caps;
   }
   EXPECT_EQ(caps, 2U);
   for (std::size_t p = 0; p < in.cloud.size(); ++p) {
     const Segment& segment = s.segments[static_cast<std::size_t>(s.labels[p])];
-    if (segment.kind != SegmentKind::Regular) continue;
+    if (segment.kind != SegmentKind::REGULAR) continue;
     const float along = std::abs(in.normals[4 * p] * segment.reference_normal[0] +
                                  in.normals[4 * p + 1] * segment.reference_normal[1] +
                                  in.normals[4 * p + 2] * segment.reference_normal[2]);
@@ -263,9 +263,9 @@ TEST(RegionGrowing, PassesCanBeSwitched) {
   for (const Segmentation* s : {&none, &first, &second, &third, &with_edges}) {
     expectConsistent(*s, in.normals);
     for (const Segment& segment : s->segments) {
-      if (segment.kind == SegmentKind::Regular) {
+      if (segment.kind == SegmentKind::REGULAR) {
         EXPECT_GE(segment.size, options.small_size);
-      } else if (segment.kind == SegmentKind::Isolated) {
+      } else if (segment.kind == SegmentKind::ISOLATED) {
         EXPECT_LT(segment.size, options.small_size);
       }
     }
@@ -283,9 +283,9 @@ TEST(RegionGrowing, SmallSegmentsThatTouchAreConnected) {
   std::size_t borders = 0;
   for (const SegmentBorder& border : graph.borders) {
     const bool small_a =
-        s.segments[static_cast<std::size_t>(border.a)].kind != SegmentKind::Regular;
+        s.segments[static_cast<std::size_t>(border.a)].kind != SegmentKind::REGULAR;
     const bool small_b =
-        s.segments[static_cast<std::size_t>(border.b)].kind != SegmentKind::Regular;
+        s.segments[static_cast<std::size_t>(border.b)].kind != SegmentKind::REGULAR;
     EXPECT_FALSE(small_a && small_b) << border.a << " " << border.b;
     if (small_a != small_b) ++borders;
   }

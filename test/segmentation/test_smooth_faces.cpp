@@ -31,7 +31,7 @@ Result segmentBoth(const Prepared& in, const SegmentationOptions& options = {}) 
 std::size_t countRegular(const Segmentation& s) {
   return static_cast<std::size_t>(
       std::count_if(s.segments.begin(), s.segments.end(),
-                    [](const Segment& t) { return t.kind == SegmentKind::Regular; }));
+                    [](const Segment& t) { return t.kind == SegmentKind::REGULAR; }));
 }
 
 // Share of neighbours in one face whose signed normals agree.
@@ -194,7 +194,7 @@ TEST(SmoothFaces, GettersOfTheClassGiveFacesOrSegments) {
   std::vector<pcl::PointIndices> faces;
   segmentation.extract(faces);
   EXPECT_EQ(segmentation.getSegments().size(), faces.size());
-  EXPECT_GT(segmentation.getSegmentation().segments.size(), faces.size());
+  EXPECT_GT(segmentation.getPlanarSegmentation().segments.size(), faces.size());
   EXPECT_GT(segmentation.getReport().united, 0U);
   for (std::size_t f = 0; f < faces.size(); ++f) {
     EXPECT_EQ(segmentation.getSegments()[f].size, faces[f].indices.size());
@@ -216,8 +216,8 @@ TEST(SmoothFaces, GettersOfTheClassGiveFacesOrSegments) {
   segmentation.setUniteSmooth(false);
   std::vector<pcl::PointIndices> segments;
   segmentation.extract(segments);
-  EXPECT_EQ(segments.size(), segmentation.getSegmentation().segments.size());
-  EXPECT_EQ(segmentation.getLabels(), segmentation.getSegmentation().labels);
+  EXPECT_EQ(segments.size(), segmentation.getPlanarSegmentation().segments.size());
+  EXPECT_EQ(segmentation.getLabels(), segmentation.getPlanarSegmentation().labels);
   EXPECT_EQ(segmentation.getReport().united, 0U);
 }
 

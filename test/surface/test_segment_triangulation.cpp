@@ -124,7 +124,7 @@ TEST(SegmentTriangulation, IndicesLimitTheMesh) {
 TEST(SegmentTriangulation, AllSegments) {
   LabelledCloud in = sample("cube", cube(), 3000, 4);
   Segmentation s = facesOf(in);
-  for (Segment& segment : s.segments) segment.kind = SegmentKind::Connected;
+  for (Segment& segment : s.segments) segment.kind = SegmentKind::CONNECTED;
   Triangulation triangulation;
   triangulation.setInputCloud(toPcl(in));
   triangulation.setSegmentation(s);

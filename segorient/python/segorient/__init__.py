@@ -304,6 +304,13 @@ def _options(
     return {name: value for name, value in options.items() if value is not None}
 
 
+def _warn_of_unused(reason: str, **given: bool) -> None:
+    """Names those arguments that were given though nothing looks at them."""
+    for name, is_given in given.items():
+        if is_given:
+            warnings.warn(f"{name} changes nothing {reason}", stacklevel=3)
+
+
 def _flag(name: str, value: bool) -> bool:
     if not isinstance(value, (bool, np.bool_)):
         raise TypeError(f"{name} must be True, False or None, not {value!r}")
@@ -482,6 +489,27 @@ def orient(
     options["method"] = _word("method", method)
     if gamma is not None:
         options["gamma"] = _angle("gamma", gamma)
+    if method == "auto":
+        _warn_of_unused(
+            "with method 'auto'",
+            normals=normals != "auto",
+            gamma=gamma is not None,
+            delta=delta is not None,
+            recompute=recompute > 0,
+        )
+    else:
+        _warn_of_unused("without recompute", delta=delta is not None and recompute == 0)
+        _warn_of_unused(
+            "without method 'auto'",
+            viewpoint=viewpoint is not None,
+            viewpoints=viewpoints is not None,
+            trajectory=trajectory is not None,
+            up=bool(up),
+            scans=scans is not None,
+            closed=closed is not None,
+            keep=keep is not None,
+            seeds=seeds is not None,
+        )
     array, origin = _local(points)
     if not isinstance(find_sensors, (bool, np.bool_)):
         raise TypeError(f"find_sensors must be True or False, not {find_sensors!r}")
@@ -583,6 +611,13 @@ def normals(
     :raises TypeError, ValueError: for arguments that make no sense
     """
     options = _options(k, normals, alpha, beta, delta, epsilon, recompute, threads)
+    _warn_of_unused(
+        "without recompute",
+        **{
+            name: value is not None and recompute == 0
+            for name, value in (("alpha", alpha), ("beta", beta), ("delta", delta), ("epsilon", epsilon))
+        },
+    )
     return Normals(*_core.normals(_local(points)[0], options, progress))
 
 
@@ -629,6 +664,8 @@ def segment(
         raise ValueError("faces and split contradict each other")
     options["faces"] = bool(faces)
     options["method"] = _word("method", method)
+    _warn_of_unused("without recompute", delta=delta is not None and recompute == 0)
+    _warn_of_unused("without method 'auto'", faces=bool(faces) and method != "auto")
     return Segments(*_core.segment(_local(points)[0], options, progress))
 
 

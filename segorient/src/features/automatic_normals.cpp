@@ -201,7 +201,7 @@ class Estimation {
   /// the quadratic surfaces are the best there is.
   void keepEdges() {
     const int k = report_.edge_k;
-    Surfaces planes(NormalEstimator::Plane);
+    Surfaces planes(NormalEstimator::PLANE);
     planes.fit(points_, table_, k, threads_, open_);
     report_.surfaces.back().second += close([&](std::size_t row) {
       const double plane = planeResidual(points_, table_, row, k, &planes.normals[4 * row]);
@@ -225,14 +225,14 @@ class Estimation {
     if (available() < kCubicNeighbors) return false;
     if (known_ != nullptr) return known_->analytic;
     const std::vector<pcl::index_t> rows = detail::sampleRows(rows_);
-    Surfaces cubics(NormalEstimator::AwASCubic);
+    Surfaces cubics(NormalEstimator::AWAS_CUBIC);
     cubics.fit(points_, table_, kCubicNeighbors, threads_, rows);
     return areCubic(rows, cubics, kNextTerm);
   }
 
   /// Cubic surfaces wherever they leave less than the quadratic ones, and where only they fit.
   void takeCubics() {
-    Surfaces cubics(NormalEstimator::AwASCubic);
+    Surfaces cubics(NormalEstimator::AWAS_CUBIC);
     cubics.fit(points_, table_, kCubicNeighbors, threads_, rows_);
     report_.analytic = true;
     const auto nearer = [&](std::size_t i) {
@@ -270,7 +270,7 @@ class Estimation {
   void takeCubicsAtEdges() {
     const int k = cubicSize(in_spacings_, available());
     if (k == 0) return;
-    Surfaces cubics(NormalEstimator::AwASCubic);
+    Surfaces cubics(NormalEstimator::AWAS_CUBIC);
     quadratics_.fit(points_, table_, k, threads_, open_);
     cubics.fit(points_, table_, k, threads_, open_);
     const bool better = known_ != nullptr ? known_->cubic_edges : areCubic(open_, cubics, kBetter);

@@ -20,7 +20,7 @@ struct Surfaces {
   FastVector<float> normals;    ///< 4 a row
   FastVector<float> residuals;  ///< standard deviations of the neighbours
 
-  explicit Surfaces(NormalEstimator e = NormalEstimator::AwASQuadratic) : estimator(e) {}
+  explicit Surfaces(NormalEstimator e = NormalEstimator::AWAS_QUADRATIC) : estimator(e) {}
   void fit(const PointView& points, const Neighborhoods& table, int k, int threads,
            const std::vector<pcl::index_t>& rows);
   /// Gives a row its normal.

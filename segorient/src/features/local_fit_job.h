@@ -16,8 +16,8 @@ struct LocalFitJob {
   bool same_points = false;    ///< the neighbours are of the queries' own cloud
   const Neighborhoods* neighborhoods = nullptr;
   const pcl::index_t* rows = nullptr;  ///< rows to do, or null for all
-  NormalEstimator estimator = NormalEstimator::Plane;
-  NormalEstimator first_guess = NormalEstimator::Plane;
+  NormalEstimator estimator = NormalEstimator::PLANE;
+  NormalEstimator first_guess = NormalEstimator::PLANE;
   int entries = 0;  ///< most entries of a row to use, the point itself included
   float* normals = nullptr;
   LocalCurvature* curvatures = nullptr;

@@ -48,7 +48,7 @@ SEGORIENT_APART Lanes3 surfaceNormals(const LocalFitJob& job, const Batch& batch
   for (std::size_t l = 0; job.curvatures && l < kWidth; ++l) {
     for (std::size_t i = 0; i < 6; ++i) c[i][l] = static_cast<double>(q.c[i][l]);
   }
-  if (job.estimator == NormalEstimator::AwASCubic) {
+  if (job.estimator == NormalEstimator::AWAS_CUBIC) {
     Cubics cubics;
     fitCubics(batch, half, plane, frame, cubics);
     takeCubics(cubics, batch, half, q, c);
@@ -79,13 +79,13 @@ SEGORIENT_APART Lanes3 surfaceNormals(const LocalFitJob& job, const Batch& batch
 
 /// Rows [begin, end) of the job.
 void estimateRows(const LocalFitJob& job, std::size_t begin, std::size_t end) {
-  const bool surface = job.estimator == NormalEstimator::AwASQuadratic ||
-                       job.estimator == NormalEstimator::AwASCubic;
+  const bool surface = job.estimator == NormalEstimator::AWAS_QUADRATIC ||
+                       job.estimator == NormalEstimator::AWAS_CUBIC;
   const NormalEstimator first = surface ? job.first_guess : job.estimator;
   const auto entries = static_cast<std::size_t>(job.entries);
   Batch batch(entries);
   SortingNetwork network;
-  std::vector<float> scratch(first == NormalEstimator::Plane ? 0 : 3 * entries * kBatchRows);
+  std::vector<float> scratch(first == NormalEstimator::PLANE ? 0 : 3 * entries * kBatchRows);
   for (std::size_t i = begin; i < end; i += kBatchRows) {
     loadBatch(job, i, end, batch);
     Plane planes[2];

@@ -25,7 +25,7 @@ RecomputationReport recomputeNormals(const PointView& points, const Neighborhood
   const detail::RecomputationScene scene{points,  neighborhoods, regular,        labels,
                                          normals, entries,       options.threads};
   const std::vector<detail::Recomputed> results =
-      options.rule == RecomputationRule::OneSided
+      options.rule == RecomputationRule::ONE_SIDED
           ? detail::applyOneSidedRule(scene, options)
           : detail::applyModifiedNeighborhoods(scene, options);
   for (const detail::Recomputed& r : results) {

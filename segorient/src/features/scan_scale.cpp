@@ -101,7 +101,7 @@ struct Scales {
   }
 };
 
-constexpr Scales<4> kFew{{8, 12, 18, kSheetNeighbors}};
+constexpr Scales<4> kFew{kSheetScales};
 // Half as many again each time, up to where planes are nearly free of noise.
 constexpr Scales<6> kMany{{8, 12, 18, 27, 40, 60}};
 // Neighbours that are sought: those of the largest scale, and some to vote beyond them.

@@ -10,8 +10,6 @@
 namespace segorient::detail {
 namespace {
 
-constexpr std::array<int, 4> kScales{8, 12, 18, kSheetNeighbors};
-
 // How much of the neighbourhood lies on the plane through the point: falls smoothly to 0 at the
 // tolerance.
 float support(const Offsets& o, const Eigen::Vector3f& n, float inverse_tolerance) {
@@ -183,15 +181,15 @@ AdaptivePlane fitAdaptive(const Offsets& o, int smallest) {
   // Of the share of variance that the larger neighbourhood leaves: chance does less.
   constexpr float kClearlyFlatter = 0.6F;
   constexpr float kFlat = 1e-4F;  // a hundredth of a spacing, squared: nothing is left to gain
-  constexpr int kLargest = static_cast<int>(kScales.size()) - 1;
+  constexpr int kLargest = static_cast<int>(kSheetScales.size()) - 1;
   // The scale of 18 neighbours, as a plain normal estimation would take.
   constexpr int kCurvature = 2;
-  std::array<Moments, kScales.size()> moments;
+  std::array<Moments, kSheetScales.size()> moments;
   Moments m;
   m.addOrigin();
   std::size_t j = 0;
-  for (std::size_t s = 0; s < kScales.size(); ++s) {
-    for (; j < static_cast<std::size_t>(std::min(kScales[s], o.n)); ++j)
+  for (std::size_t s = 0; s < kSheetScales.size(); ++s) {
+    for (; j < static_cast<std::size_t>(std::min(kSheetScales[s], o.n)); ++j)
       m.add(o.x[j], o.y[j], o.z[j]);
     moments[s] = m;
   }

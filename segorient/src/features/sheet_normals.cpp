@@ -221,8 +221,7 @@ SheetNormals estimateSheetNormals(const PointView& points, const Neighborhoods& 
   out.traits.noise = noise;
   out.noise = noise.fine;
   const int smallest = smallestScale(noise.fine);
-  constexpr int kSizes[] = {8, 12, 18, kSheetNeighbors};
-  out.scale = kSizes[smallest];
+  out.scale = kSheetScales[static_cast<std::size_t>(smallest)];
 
   std::vector<float> lopsided(n, std::numeric_limits<float>::infinity());
   const int threads = resolveThreads(options.threads, n, 2000.0);

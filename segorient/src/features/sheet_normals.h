@@ -6,6 +6,7 @@
 #include <segorient/common/neighborhoods.h>
 #include <segorient/common/point_view.h>
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <vector>
@@ -14,6 +15,9 @@ namespace segorient {
 
 /// Most neighbours of a point that sheet estimation looks at.
 constexpr int kSheetNeighbors = 32;
+
+/// Neighbourhoods that planes are tried for: half as many again each time, two rings to four.
+constexpr std::array<int, 4> kSheetScales{8, 12, 18, kSheetNeighbors};
 
 /// How noisy a cloud is; 0 where no neighbourhood has a plane.
 struct NoiseLevel {

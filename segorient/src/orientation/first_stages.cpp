@@ -41,7 +41,9 @@ void FirstStages::findNormals() {
 
 void FirstStages::findSegments() {
   impl_->clock.begin("segmentation", 0.8);
-  impl_->stages.findSegments(impl_->options.segmentation, impl_->options.threads);
+  SegmentationOptions options{impl_->options.segmentation};
+  options.threads = impl_->options.threads;
+  impl_->stages.findSegments(options);
   impl_->clock.end();
 }
 

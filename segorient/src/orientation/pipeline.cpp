@@ -19,6 +19,7 @@
 #include "features/sheet_normals.h"
 #include "orientation/automatic/stages.h"
 #include "orientation/cloud_scale.h"
+#include "orientation/former_settings.h"
 #include "orientation/orient_segments.h"
 #include "orientation/sensors/point_hints.h"
 #include "orientation/sensors/sensor_hints.h"
@@ -52,15 +53,13 @@ void runPaper(const PipelineOptions& options, detail::StageClock& clock, Working
   report.normals_chosen = surface.normals_chosen;
   surface.recomputeNormals(options, clock);
   clock.begin("segmentation", 0.75);
-  SegmentationOptions cuts = options.segmentation;
-  cuts.neighbors = 0;
+  SegmentationOptions cuts{options.segmentation, 0, options.threads};
   cuts.unite_smooth = false;
   // A point of a thin part that is given to the other side's segment is turned over with it.
   cuts.settle_edges = false;
-  surface.findSegments(cuts, options.threads);
+  surface.findSegments(cuts);
   clock.begin("orientation", 0.8);
-  OrientationOptions how = options.orientation;
-  how.threads = options.threads;
+  const OrientationOptions how{options.orientation, options.threads};
   const Neighborhoods& neighborhoods = surface.cloud.neighborhoods();
   const SegmentGraph graph = buildSegmentGraph(surface.segmentation, neighborhoods);
   work.orientation = orientSegments(surface.cloud.points(), surface.normalView(), neighborhoods,
@@ -206,13 +205,13 @@ void fillReport(const Working& work, const OrientedCloud& cloud, PipelineReport&
   }
   for (std::size_t s = 0; s < cloud.segments.size(); ++s) {
     switch (cloud.segmentation.segments[s].kind) {
-      case SegmentKind::Regular:
+      case SegmentKind::REGULAR:
         ++report.regular_segments;
         break;
-      case SegmentKind::Connected:
+      case SegmentKind::CONNECTED:
         ++report.connected_segments;
         break;
-      case SegmentKind::Isolated:
+      case SegmentKind::ISOLATED:
         ++report.isolated_segments;
         break;
     }
@@ -255,7 +254,8 @@ OrientedCloud firstStages(const PointView& points, const PipelineOptions& option
 }  // namespace
 
 OrientedCloud orientCloud(const PointView& points, const std::vector<pcl::index_t>* indices,
-                          const PipelineOptions& options, const PipelineProgress& progress) {
+                          const PipelineOptions& given, const PipelineProgress& progress) {
+  const PipelineOptions options = detail::withFormerSettings(given);
   OrientedCloud out;
   out.report.method = options.orientation.method;
   out.report.estimator = options.normals.estimator;
@@ -286,7 +286,7 @@ OrientedCloud segmentCloud(const PointView& points, const PipelineOptions& optio
                            const PipelineProgress& progress) {
   const bool automatic = options.orientation.method == OrientationMethod::AUTO;
   const bool own_normals =
-      options.normals.estimator != NormalEstimator::Automatic || options.recomputations > 0;
+      options.normals.estimator != NormalEstimator::AUTO || options.recomputations > 0;
   OrientedCloud out = automatic && own_normals ? firstStages(points, options, progress)
                                                : orientCloud(points, nullptr, options, progress);
   for (std::size_t row = 0; row < out.segmentation.signs.size(); ++row) {
@@ -309,7 +309,7 @@ std::size_t expectedMemory(std::size_t points, const PipelineOptions& options) {
   constexpr std::size_t kElse = 150;
   // Automatic normals of noisy clouds have neighbours of their own for a while.
   const bool wider =
-      !automatic && options.k <= 0 && options.normals.estimator == NormalEstimator::Automatic;
+      !automatic && options.k <= 0 && options.normals.estimator == NormalEstimator::AUTO;
   const std::size_t wide =
       wider ? sizeof(pcl::index_t) * static_cast<std::size_t>(kMostAutomaticNeighbors + 1) : 0;
   return points * (entry * (k + 1) + wide + kElse);

@@ -15,7 +15,7 @@ namespace segorient::detail {
 
 void SurfaceStages::findNormals(const PipelineOptions& options) {
   normals.resize(4 * cloud.size());
-  if (options.normals.estimator == NormalEstimator::Automatic) {
+  if (options.normals.estimator == NormalEstimator::AUTO) {
     const AutomaticNormalReport report =
         options.k > 0
             ? estimateNormalsAutomatically(cloud.points(), cloud.neighborhoods(), options.threads,
@@ -25,15 +25,12 @@ void SurfaceStages::findNormals(const PipelineOptions& options) {
     normals_chosen = report.text();
     return;
   }
-  LocalNormalOptions settings = options.normals;
-  settings.k = 0;
-  settings.threads = options.threads;
+  const LocalNormalOptions settings{options.normals, 0, options.threads};
   estimateNormals(cloud.points(), cloud.neighborhoods(), settings, normals.data());
   normals_chosen = "as asked for";
 }
 
-void SurfaceStages::findSegments(SegmentationOptions options, int threads) {
-  options.threads = threads;
+void SurfaceStages::findSegments(const SegmentationOptions& options) {
   Segmentation faces;
   segmentation = segmentByNormals(cloud.points(), normalView(), cloud.neighborhoods(),
                                   segmentation::inUnitOf(cloud, options), nullptr,
@@ -42,19 +39,18 @@ void SurfaceStages::findSegments(SegmentationOptions options, int threads) {
 }
 
 void SurfaceStages::recomputeNormals(const PipelineOptions& options, StageClock& clock) {
-  RecomputationOptions settings = options.recomputation;
-  settings.estimator = options.normals.estimator;
-  settings.k = 0;
-  settings.threads = options.threads;
-  SegmentationOptions cuts = options.segmentation;
+  const RecomputationOptions settings{options.recomputation, options.normals.estimator, 0,
+                                      options.threads};
+  SegmentationOptions cuts{options.segmentation};
+  cuts.threads = options.threads;
   cuts.unite_smooth = false;
   for (int round = 0; round < options.recomputations; ++round) {
     clock.begin("segmentation", 0.5);
-    findSegments(cuts, options.threads);
+    findSegments(cuts);
     clock.begin("recomputation", 0.65);
     std::vector<std::uint8_t> regular;
     for (const Segment& segment : segmentation.segments) {
-      regular.push_back(segment.kind == SegmentKind::Regular ? 1 : 0);
+      regular.push_back(segment.kind == SegmentKind::REGULAR ? 1 : 0);
     }
     segorient::recomputeNormals(cloud.points(), cloud.neighborhoods(), regular, settings,
                                 segmentation.labels, normals);

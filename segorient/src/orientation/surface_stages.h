@@ -23,7 +23,7 @@ struct SurfaceStages {
   /// found and, unless the options say how many, more of them where the noise asks for more.
   void findNormals(const PipelineOptions& options);
   /// Segments (2.3), or faces where the options unite them.
-  void findSegments(SegmentationOptions options, int threads);
+  void findSegments(const SegmentationOptions& options);
   /// Normals near sharp edges from one side only (2.3.1), `options.recomputations` times, each time
   /// by the segments of `options.segmentation` that the normals then make.
   void recomputeNormals(const PipelineOptions& options, StageClock& clock);

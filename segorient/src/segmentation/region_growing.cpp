@@ -32,9 +32,9 @@ Segmentation segmentByNormals(const PointView& points, const NormalView& normals
                                                      std::move(state.signs))
                               : segmentation::finish(points, state, state.labels, state.signs);
     for (const Segment& segment : result.segments) {
-      counts.regular += segment.kind == SegmentKind::Regular;
-      counts.connected += segment.kind == SegmentKind::Connected;
-      counts.isolated += segment.kind == SegmentKind::Isolated;
+      counts.regular += segment.kind == SegmentKind::REGULAR;
+      counts.connected += segment.kind == SegmentKind::CONNECTED;
+      counts.isolated += segment.kind == SegmentKind::ISOLATED;
     }
     if (faces != nullptr) {
       counts.united = segmentation::uniteSmooth(options, state);

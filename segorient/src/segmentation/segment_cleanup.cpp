@@ -183,7 +183,7 @@ void CleanUp::connectSmall() {
     if (target.normal.dot(cluster.normal) < 0.0) sign[s] = -1;
     target.normal.add(cluster.normal, sign[s]);
     target.size += cluster.size;
-    state_.kinds[root] = SegmentKind::Connected;
+    state_.kinds[root] = SegmentKind::CONNECTED;
     cluster = Cluster{};
   }
   for (std::uint32_t slot = 0; slot < adjacency_.size(); ++slot) {
@@ -219,9 +219,9 @@ void findStrips(const SegmentationOptions& options, GrowthState& state) {
 }
 
 void setKinds(const SegmentationOptions& options, GrowthState& state) {
-  state.kinds.assign(state.clusters.size(), SegmentKind::Regular);
+  state.kinds.assign(state.clusters.size(), SegmentKind::REGULAR);
   for (std::size_t s = 0; s < state.clusters.size(); ++s) {
-    if (state.clusters[s].size < options.small_size) state.kinds[s] = SegmentKind::Isolated;
+    if (state.clusters[s].size < options.small_size) state.kinds[s] = SegmentKind::ISOLATED;
   }
 }
 

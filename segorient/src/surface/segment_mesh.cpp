@@ -168,7 +168,7 @@ std::vector<SegmentMesh> triangulateSegments(const PointView& points,
   for (std::ptrdiff_t i = 0; i < count; ++i) {
     const auto s = static_cast<std::size_t>(i);
     const Segment& segment = segmentation.segments[s];
-    if (!all && segment.kind != SegmentKind::Regular) continue;
+    if (!all && segment.kind != SegmentKind::REGULAR) continue;
     meshes[s] = triangulatePoints(points, segmentation.begin(s), segment.size,
                                   segment.reference_normal, options);
   }

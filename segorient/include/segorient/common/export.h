@@ -56,3 +56,16 @@
 #else
 #define SEGORIENT_TILES_EXPORT SEGORIENT_TAKEN
 #endif
+
+// Around code that may use names that are deprecated: copies of what still has them.
+#if defined(__GNUC__) || defined(__clang__)
+#define SEGORIENT_DEPRECATED_BEGIN \
+  _Pragma("GCC diagnostic push") _Pragma("GCC diagnostic ignored \"-Wdeprecated-declarations\"")
+#define SEGORIENT_DEPRECATED_END _Pragma("GCC diagnostic pop")
+#elif defined(_MSC_VER)
+#define SEGORIENT_DEPRECATED_BEGIN __pragma(warning(push)) __pragma(warning(disable : 4996))
+#define SEGORIENT_DEPRECATED_END __pragma(warning(pop))
+#else
+#define SEGORIENT_DEPRECATED_BEGIN
+#define SEGORIENT_DEPRECATED_END
+#endif

@@ -21,14 +21,14 @@ class AwASNormalEstimation : public LocalNormalEstimation<PointInT, PointOutT> {
   /// \param threads as setNumberOfThreads()
   explicit AwASNormalEstimation(unsigned int threads = 0)
       : LocalNormalEstimation<PointInT, PointOutT>("AwASNormalEstimation",
-                                                   NormalEstimator::AwASQuadratic, threads) {}
+                                                   NormalEstimator::AWAS_QUADRATIC, threads) {}
 
   /// \param degree 2 (default) or 3; others are taken as the nearer of the two
   void setDegree(int degree) {
     this->options_.estimator =
-        degree > 2 ? NormalEstimator::AwASCubic : NormalEstimator::AwASQuadratic;
+        degree > 2 ? NormalEstimator::AWAS_CUBIC : NormalEstimator::AWAS_QUADRATIC;
   }
-  int getDegree() const { return this->options_.estimator == NormalEstimator::AwASCubic ? 3 : 2; }
+  int getDegree() const { return this->options_.estimator == NormalEstimator::AWAS_CUBIC ? 3 : 2; }
 
   /// \param estimator Plane (default), LCT or LDT; others mean Plane
   void setFirstGuess(NormalEstimator estimator) { this->options_.first_guess = estimator; }

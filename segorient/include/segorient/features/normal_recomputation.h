@@ -13,13 +13,13 @@
 namespace segorient {
 
 /// Sharpens the normals near edges with the help of a segmentation (paper, section 2.3.1); see
-/// recomputeNormals() for the two rules.
+/// RecomputationRule for the two rules.
 ///
 /// @code
 /// segorient::NormalRecomputation<pcl::PointXYZ, pcl::Normal> recomputation;
 /// recomputation.setInputCloud(cloud);
 /// recomputation.setInputNormals(normals);
-/// recomputation.setLabels(labels, regular);  // from NormalSegmentation::getSegmentation()
+/// recomputation.setLabels(labels, regular);  // of NormalSegmentation::getPlanarSegmentation()
 /// recomputation.compute(*sharper);
 /// @endcode
 ///
@@ -35,7 +35,7 @@ class NormalRecomputation : public pcl::PCLBase<PointT> {
   using NormalsConstPtr = typename Normals::ConstPtr;
   using NeighborhoodsConstPtr = pcl::shared_ptr<const Neighborhoods>;
 
-  NormalRecomputation() { options_.k = 20; }
+  NormalRecomputation() { setKSearch(21); }
 
   /// One normal a point of the input cloud, in any orientation.
   void setInputNormals(const NormalsConstPtr& normals) { normals_ = normals; }
@@ -58,7 +58,7 @@ class NormalRecomputation : public pcl::PCLBase<PointT> {
   }
   NeighborhoodsConstPtr getNeighborhoods() const { return neighborhoods_; }
 
-  /// Default OneSided.
+  /// Default ONE_SIDED.
   void setRule(RecomputationRule rule) { options_.rule = rule; }
   RecomputationRule getRule() const { return options_.rule; }
 
@@ -67,10 +67,13 @@ class NormalRecomputation : public pcl::PCLBase<PointT> {
   void setNumberOfRounds(int rounds) { rounds_ = rounds; }
   int getNumberOfRounds() const { return rounds_; }
 
-  /// Neighbours of each point; unlike elsewhere the point itself is not counted. Default 20. 0 or
-  /// less: one, or all that a ready table has.
-  void setKSearch(int k) { options_.k = k; }
-  int getKSearch() const { return options_.k; }
+  /// Neighbours of each point and the point itself, as in PCL; default 21. (Version 1.0 did not
+  /// count the point here.) 1 or less: one neighbour, or all that a ready table has.
+  void setKSearch(int k) {
+    k_ = k;
+    options_.k = k > 1 ? k - 1 : 0;
+  }
+  int getKSearch() const { return k_; }
 
   /// \param angle see RecomputationOptions::edge_angle, radians; default 20 degrees
   void setEdgeAngle(float angle) { options_.edge_angle = angle; }
@@ -84,7 +87,7 @@ class NormalRecomputation : public pcl::PCLBase<PointT> {
   void setDeltaBetweenReferences(bool between) { options_.delta_between_references = between; }
   bool getDeltaBetweenReferences() const { return options_.delta_between_references; }
 
-  /// \param estimator for modified neighbourhoods; default Plane, which Automatic is as well
+  /// \param estimator for modified neighbourhoods; default PLANE, which AUTO is as well
   void setEstimator(NormalEstimator estimator) { options_.estimator = estimator; }
   NormalEstimator getEstimator() const { return options_.estimator; }
 
@@ -111,6 +114,7 @@ class NormalRecomputation : public pcl::PCLBase<PointT> {
   std::vector<std::uint8_t> regular_;
   NeighborhoodsConstPtr neighborhoods_;
   RecomputationOptions options_;
+  int k_ = 0;
   int rounds_ = 2;
   RecomputationReport report_;
 };

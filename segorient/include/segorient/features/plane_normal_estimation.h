@@ -23,7 +23,7 @@ class PlaneNormalEstimation : public LocalNormalEstimation<PointInT, PointOutT> 
 
   /// \param threads as setNumberOfThreads()
   explicit PlaneNormalEstimation(unsigned int threads = 0)
-      : LocalNormalEstimation<PointInT, PointOutT>("PlaneNormalEstimation", NormalEstimator::Plane,
+      : LocalNormalEstimation<PointInT, PointOutT>("PlaneNormalEstimation", NormalEstimator::PLANE,
                                                    threads) {}
 };
 

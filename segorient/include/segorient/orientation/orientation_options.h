@@ -10,6 +10,7 @@
 #include <cstdint>
 #include <memory>
 #include <string>
+#include <vector>
 
 namespace segorient {
 
@@ -83,13 +84,13 @@ struct AutomaticOptions {
   /// filter_rounds.
   bool winding_normals = true;
   /// Surfaces are fitted around each point at last, on one side of sharp edges, as
-  /// NormalEstimator::Automatic does it; with noise, averaged with the above. Not for scans that
+  /// NormalEstimator::AUTO does it; with noise, averaged with the above. Not for scans that
   /// chose the scale of their planes point by point.
   bool fit_normals = true;
 };
 
 /// How segments are oriented. Angles in radians.
-struct OrientationOptions {
+struct OrientationSettings {
   OrientationMethod method = OrientationMethod::AUTO;
 
   // The paper's methods.
@@ -98,7 +99,7 @@ struct OrientationOptions {
   float gamma = 0.6108652F;
   SegmentAngle angle = SegmentAngle::ACROSS_BORDER;
   BoundaryTest boundary = BoundaryTest::LOCAL;
-  TriangulationOptions triangulation;  ///< for BoundaryTest::TRIANGULATED; its threads are not used
+  TriangulationSettings triangulation;  ///< for BoundaryTest::TRIANGULATED
   float min_margin = 0.5F;  ///< majority that a boundary needs to decide: 0.5 is three to one
   std::size_t max_box_points =
       120;  ///< most points in a box of the subdivision for extremal points
@@ -119,6 +120,10 @@ struct OrientationOptions {
   bool turn_outward = true;
   /// What is known beforehand, by input row; null = nothing. Only AUTO uses it.
   std::shared_ptr<const OrientationHints> hints;
+};
+
+/// The same with the number of threads.
+struct OrientationOptions : OrientationSettings {
   int threads = 0;  ///< 0 = all cores; no result depends on it
 };
 
@@ -128,5 +133,10 @@ struct OrientationOptions {
 /// PROPAGATION, BOUNDARY, EXTREMAL, COMBINED or HOPPE
 SEGORIENT_ORIENTATION_EXPORT OrientationOptions
 paperOptions(OrientationMethod method = OrientationMethod::COMBINED);
+
+/// Names of those settings that were changed from their defaults and that their method does not
+/// look at, such as "gamma" with OrientationMethod::AUTO. The classes warn of them.
+SEGORIENT_ORIENTATION_EXPORT std::vector<std::string> settingsWithoutEffect(
+    const OrientationSettings& settings);
 
 }  // namespace segorient

@@ -42,9 +42,12 @@ struct SegmentOrientationResult {
 /// The orientation of one connected component: which way is out.
 struct ComponentOrientationResult {
   DecidedBy by = DecidedBy::NOTHING;
-  std::int8_t sign = 1;    ///< what its relative orientation was multiplied by
-  float evidence = 0.F;    ///< sum of signed votes before that, in points that voted
-  float confidence = 0.F;  ///< |sum of votes| / sum of |votes|
+  std::int8_t sign = 1;  ///< what its relative orientation was multiplied by
+  /// How far the evidence spoke for its side before that: -1 all against, 1 all for. From the
+  /// winding number (AUTO) 0 to 1.
+  float evidence = 0.F;
+  float votes = 0.F;       ///< how much evidence there was: the paper's methods, in extremal points
+  float confidence = 0.F;  ///< of the sign, 0 a guess, 1 all evidence agrees
   /// Share of the borders between its segments that the result contradicts. Far from 0: the surface
   /// is not orientable, or segments mix two sides of it.
   float contradiction = 0.F;

@@ -32,7 +32,8 @@ namespace segorient {
 ///
 /// A point without a normal (NaN coordinates, a stray farther away than 2^24 times the extent of
 /// the others, or fewer than three distinct points around) gets NaN, and is_dense is cleared. No
-/// cloud, an empty one, a negative k or radius, or both: PCL_ERROR and an empty output.
+/// cloud, an empty one, a negative k or radius, or both: PCL_ERROR and an empty output. Settings
+/// that the method does not look at, see settingsWithoutEffect(), are named by a PCL_WARN.
 template <typename PointInT, typename PointOutT>
 class OrientedNormalEstimation : public pcl::NormalEstimation<PointInT, PointOutT> {
  public:
@@ -60,35 +61,51 @@ class OrientedNormalEstimation : public pcl::NormalEstimation<PointInT, PointOut
   void setMethod(Method method) { options_.orientation.method = method; }
   Method getMethod() const { return options_.orientation.method; }
 
-  /// How normals are estimated; default Automatic: estimator and neighbours from the cloud itself,
+  /// How normals are estimated; default AUTO: estimator and neighbours from the cloud itself,
   /// as getReport().normals_chosen tells. AUTO has its own way and does not look at this.
   void setNormalEstimator(NormalEstimator estimator) { options_.normals.estimator = estimator; }
   NormalEstimator getNormalEstimator() const { return options_.normals.estimator; }
 
-  /// Largest angle between the normals of neighbours in a segment, radians; default 20 degrees, but
-  /// AUTO takes 15 on clean data for the segments that it orients by.
-  void setAlpha(float alpha) {
+  /// Alpha: largest angle between the normals of neighbours in a segment, radians; default 20
+  /// degrees, but AUTO takes 15 on clean data for the segments that it orients by.
+  void setSmoothnessThreshold(float alpha) {
     options_.segmentation.alpha = options_.orientation.automatic.alpha = alpha;
   }
-  float getAlpha() const { return options_.segmentation.alpha; }
+  float getSmoothnessThreshold() const { return options_.segmentation.alpha; }
 
-  /// Largest angle between a normal and its segment's reference normal, radians; default 30
+  /// Beta: largest angle between a normal and its segment's reference normal, radians; default 30
   /// degrees.
-  void setBeta(float beta) {
+  void setReferenceThreshold(float beta) {
     options_.segmentation.beta = options_.orientation.automatic.beta = beta;
   }
-  float getBeta() const { return options_.segmentation.beta; }
+  float getReferenceThreshold() const { return options_.segmentation.beta; }
 
-  /// Angles between segments up to this decide, radians; default 35 degrees. AUTO does not look at
-  /// this.
+  /// Gamma: angles between segments up to this decide, radians; default 35 degrees. AUTO does not
+  /// look at this.
   void setGamma(float gamma) { options_.orientation.gamma = gamma; }
   float getGamma() const { return options_.orientation.gamma; }
 
-  /// By how much the clean-up of segments may exceed beta, radians; default 10 degrees.
-  void setEpsilon(float epsilon) {
+  /// Epsilon: by how much the clean-up of segments may exceed beta, radians; default 10 degrees.
+  void setReferenceTolerance(float epsilon) {
     options_.segmentation.epsilon = options_.orientation.automatic.epsilon = epsilon;
   }
-  float getEpsilon() const { return options_.segmentation.epsilon; }
+  float getReferenceTolerance() const { return options_.segmentation.epsilon; }
+
+  // As version 1.0 had them.
+  [[deprecated("setSmoothnessThreshold")]] void setAlpha(float alpha) {
+    setSmoothnessThreshold(alpha);
+  }
+  [[deprecated("getSmoothnessThreshold")]] float getAlpha() const {
+    return getSmoothnessThreshold();
+  }
+  [[deprecated("setReferenceThreshold")]] void setBeta(float beta) { setReferenceThreshold(beta); }
+  [[deprecated("getReferenceThreshold")]] float getBeta() const { return getReferenceThreshold(); }
+  [[deprecated("setReferenceTolerance")]] void setEpsilon(float epsilon) {
+    setReferenceTolerance(epsilon);
+  }
+  [[deprecated("getReferenceTolerance")]] float getEpsilon() const {
+    return getReferenceTolerance();
+  }
 
   /// Whether the surface is closed or open; default UNKNOWN: told from the cloud.
   void setSurfaceKind(SurfaceKind kind) { surface_kind_ = kind; }

@@ -13,29 +13,79 @@
 
 #include <cstddef>
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
 namespace segorient {
 
+/// What version 1.0 called some of AutomaticOptions in PipelineOptions. Those that are set take the
+/// place of the others; they go with the next version.
+struct FormerSheetNormalOptions {
+  std::optional<bool> split_walls;
+  std::optional<bool> dominant_plane;
+};
+struct FormerSheetOptions {
+  std::optional<float> alpha;
+  std::optional<float> beta;
+  std::optional<float> epsilon;
+  std::optional<bool> require_support;
+  std::optional<bool> clean_up;
+};
+struct FormerAutomaticOptions {
+  std::optional<bool> contract_certain;
+  std::optional<bool> flip_clusters;
+  std::optional<bool> wind_components;
+  std::optional<bool> turn_loose_parts;
+  std::optional<bool> infer_viewpoint;
+};
+
 /// Settings of orientCloud(). The defaults need no tuning.
-struct PipelineOptions {
+struct SEGORIENT_ORIENTATION_EXPORT PipelineOptions {
   /// Neighbours of a point, itself not counted; <= 0 = 32 for OrientationMethod::AUTO, 12 for
   /// FirstStages, and 12, 18 or 30 by the cloud's noise for the paper's methods.
   int k = 0;
-  /// How normals are estimated, by default as the cloud asks for; its k and threads are not used.
-  LocalNormalOptions normals{NormalEstimator::Automatic};
-  /// Its threads are not used. OrientationMethod::AUTO grows by AutomaticOptions and takes from
-  /// here what is about the clean-up; the paper's methods do not settle edges, unite segments or
-  /// look at its neighbors.
-  SegmentationOptions segmentation;
+  /// How normals are estimated, by default as the cloud asks for. Not for OrientationMethod::AUTO.
+  NormalSettings normals{NormalEstimator::AUTO};
+  /// OrientationMethod::AUTO grows by AutomaticOptions and takes from here what is about the
+  /// clean-up; the paper's methods do not settle edges or unite segments.
+  SegmentationSettings segmentation;
   /// How often normals near sharp edges are found anew (paper, 2.3.1), each time by the segments
   /// that the normals then make. Not for OrientationMethod::AUTO.
   int recomputations = 0;
-  RecomputationOptions recomputation;  ///< its estimator, k and threads are not used
-  OrientationOptions orientation;      ///< its threads are not used
-  int threads = 0;                     ///< 0 = all cores; the result does not depend on it
+  RecomputationSettings recomputation;
+  OrientationSettings orientation;
+  int threads = 0;  ///< of all stages: 0 = all cores; the result does not depend on it
+
+  // As version 1.0 had them.
+  [[deprecated("orientation.automatic")]] FormerSheetNormalOptions sheet_normals{};
+  [[deprecated("orientation.automatic")]] FormerSheetOptions sheets{};
+  [[deprecated("orientation.automatic")]] FormerAutomaticOptions automatic{};
+  [[deprecated("orientation.automatic.denoise")]] std::optional<bool> denoise{};
+  [[deprecated("orientation.automatic.filter_rounds")]] std::optional<int> filter_rounds{};
+  [[deprecated("orientation.automatic.filter_wedges")]] std::optional<bool> filter_wedges{};
+  [[deprecated("orientation.automatic.winding_normals")]] std::optional<bool> winding_normals{};
+
+  // Not written by the compiler where they are used: it would warn there of the above.
+  PipelineOptions();
+  PipelineOptions(const PipelineOptions& other);
+  PipelineOptions(PipelineOptions&& other) noexcept;
+  PipelineOptions& operator=(const PipelineOptions& other);
+  PipelineOptions& operator=(PipelineOptions&& other) noexcept;
+  ~PipelineOptions();
 };
+
+/// The paper to the letter, all stages: planes through the neighbours, segments that gaps and thin
+/// walls do not keep apart, one round of recomputation by the paper's rule with delta between
+/// reference normals, and paperOptions(). The paper leaves the number of neighbours open; so does
+/// this.
+SEGORIENT_ORIENTATION_EXPORT PipelineOptions
+paperPipelineOptions(OrientationMethod method = OrientationMethod::COMBINED);
+
+/// Names of all settings that were changed from their defaults and that the method does not look
+/// at, such as "orientation.gamma" with OrientationMethod::AUTO. The classes warn of them.
+SEGORIENT_ORIENTATION_EXPORT std::vector<std::string> settingsWithoutEffect(
+    const PipelineOptions& options);
 
 /// Called when a stage begins and as it goes on, from the calling thread.
 /// \param stage search, normals, segmentation, recomputation, orientation or output; one that ended
@@ -61,7 +111,7 @@ struct PipelineReport {
   std::size_t isolated_segments = 0;
   std::size_t hard_segments = 0;  ///< regular ones that no method decided
   int k = 0;                      ///< neighbours used, the point itself not counted
-  NormalEstimator estimator = NormalEstimator::Automatic;  ///< as asked for
+  NormalEstimator estimator = NormalEstimator::AUTO;  ///< as asked for
   std::string normals_chosen;  ///< how normals were found and, where nothing was asked for, why so
   OrientationMethod method = OrientationMethod::AUTO;
   float spacing = 0.F;    ///< h: median over points of the mean distance to the 6 nearest

@@ -25,10 +25,8 @@ namespace segorient {
 /// orientation.compute(*oriented);
 /// @endcode
 ///
-/// With setSegmentAngle (SegmentAngle::REFERENCE_NORMALS), setBoundaryTest (BoundaryTest::
-/// TRIANGULATED), setCheckBorders (false), setTurnOutward (false) and triangulation options whose
-/// critical_factor is 1 and fill_gaps false, the rules are the paper's to the letter; the defaults
-/// are ours.
+/// setOptions (paperOptions (method)) sets the paper's rules to the letter; the defaults are ours.
+/// Settings that the method does not look at, see settingsWithoutEffect(), are named by a PCL_WARN.
 ///
 /// Segments are those of setSegmentation(), such as NormalSegmentation finds them, or made anew.
 /// AUTO orients by segments and normals of its own, which keep the sides of thin walls apart, and
@@ -68,10 +66,10 @@ class SegmentOrientation : public pcl::PCLBase<PointT> {
   SegmentationConstPtr getSegmentation() const { return segmentation_; }
 
   /// How the segments made anew are made.
-  void setSegmentationOptions(const SegmentationOptions& options) {
+  void setSegmentationOptions(const SegmentationSettings& options) {
     segmentation_options_ = options;
   }
-  const SegmentationOptions& getSegmentationOptions() const { return segmentation_options_; }
+  const SegmentationSettings& getSegmentationOptions() const { return segmentation_options_; }
 
   /// What finds neighbours; null (default) = our own all-points search, which is faster. It is put
   /// on the whole input cloud.
@@ -82,6 +80,13 @@ class SegmentOrientation : public pcl::PCLBase<PointT> {
   /// the others. More than 129 are not used.
   void setKSearch(int k) { k_ = k; }
   int getKSearch() const { return k_; }
+
+  /// All settings at once, such as paperOptions(). Hints among them take the place of what this
+  /// class's own setters and the points say.
+  void setOptions(const OrientationSettings& options) {
+    static_cast<OrientationSettings&>(options_) = options;
+  }
+  const OrientationSettings& getOptions() const { return options_; }
 
   /// Default AUTO.
   void setMethod(Method method) { options_.method = method; }
@@ -101,11 +106,11 @@ class SegmentOrientation : public pcl::PCLBase<PointT> {
   void setBoundaryTest(BoundaryTest test) { options_.boundary = test; }
   BoundaryTest getBoundaryTest() const { return options_.boundary; }
 
-  /// How segments are triangulated for BoundaryTest::TRIANGULATED; its threads are not used.
-  void setTriangulationOptions(const TriangulationOptions& options) {
+  /// How segments are triangulated for BoundaryTest::TRIANGULATED.
+  void setTriangulationOptions(const TriangulationSettings& options) {
     options_.triangulation = options;
   }
-  const TriangulationOptions& getTriangulationOptions() const { return options_.triangulation; }
+  const TriangulationSettings& getTriangulationOptions() const { return options_.triangulation; }
 
   /// Beyond the paper: segments that are not one-sided are dissolved, and angle and boundary of a
   /// border must not contradict each other, see OrientationOptions; default true.
@@ -184,7 +189,7 @@ class SegmentOrientation : public pcl::PCLBase<PointT> {
   PointCloudNConstPtr normals_;
   SearcherPtr search_;
   SegmentationConstPtr segmentation_;
-  SegmentationOptions segmentation_options_;
+  SegmentationSettings segmentation_options_;
   OrientationOptions options_;
   OrientationHints hints_;  // without what the clouds say
   pcl::PointCloud<pcl::PointNormal>::ConstPtr seeds_;

@@ -43,7 +43,7 @@ enum class SensorKind : std::uint8_t {
 };
 
 /// "station", "camera", "moving" or "above".
-SEGORIENT_ORIENTATION_EXPORT const char* sensorKindName(SensorKind kind);
+SEGORIENT_ORIENTATION_EXPORT const char* toString(SensorKind kind);
 
 /// What told that there was a sensor.
 enum class SensorEvidence : std::uint8_t {
@@ -71,7 +71,15 @@ struct FoundSensor {
 };
 
 /// "density", "layers" or "image".
-SEGORIENT_ORIENTATION_EXPORT const char* sensorEvidenceName(SensorEvidence evidence);
+SEGORIENT_ORIENTATION_EXPORT const char* toString(SensorEvidence evidence);
+
+// As they were first called.
+[[deprecated("toString")]] inline const char* sensorKindName(SensorKind kind) {
+  return toString(kind);
+}
+[[deprecated("toString")]] inline const char* sensorEvidenceName(SensorEvidence evidence) {
+  return toString(evidence);
+}
 
 struct SensorOptions {
   /// Positions to be looked at first: where a file says nothing, the origin is where most cameras

@@ -35,9 +35,10 @@ namespace segorient {
 /// needed to have others.
 ///
 /// Beta keeps each segment so flat that it can be seen through a plane: triangulation and
-/// orientation build on that, and take getSegmentation(). A round face consists of several such
-/// segments. Everything else here, extract() and getLabels() first of all, gives whole faces:
-/// segments united where their common border is smooth, unless setUniteSmooth (false).
+/// orientation build on that, and take getPlanarSegmentation(). A round face consists of several
+/// such segments. Everything without Planar in its name, extract() and getLabels() first of all,
+/// is about whole faces: segments united where their common border is smooth, unless
+/// setUniteSmooth (false).
 ///
 /// Without a cloud, or with normals of another size, extract() reports through PCL_ERROR and gives
 /// no segments. Points with NaN coordinates or normals are in no segment, nor are strays farther
@@ -190,18 +191,28 @@ class NormalSegmentation : public pcl::PCLBase<PointT> {
   /// Face of each point of the cloud, -1 = none; empty before extract().
   const std::vector<std::int32_t>& getLabels() const { return result_.faces().labels; }
   /// The faces by label: kind, size, reference normal, centroid, area, rms; empty before extract().
-  /// Their `first` does not refer to the members of getSegmentation(): extract() has the points.
   const std::vector<Segment>& getSegments() const { return result_.faces().segments; }
+  /// The faces with their points: getLabels(), getSegments(), members and signs in one. Empty
+  /// before extract().
+  const Segmentation& getFaces() const { return result_.faces(); }
   /// How surely each point of the cloud is in its face: the share of its neighbours that are in the
   /// same one, 0 without a face; empty before extract().
   std::vector<float> getConfidences() const { return result_.confidences(); }
   /// The segments before they were united, with labels of their own: what SegmentTriangulation and
   /// SegmentOrientation take. Empty before extract().
-  const Segmentation& getSegmentation() const { return result_.segmentation(); }
+  const Segmentation& getPlanarSegmentation() const { return result_.segmentation(); }
   /// What growing and each clean-up pass did.
   const SegmentationReport& getReport() const { return result_.report(); }
-  /// Which segments of getSegmentation() touch, and the point pairs across each border.
-  SegmentGraph getSegmentGraph() const { return result_.graph(); }
+  /// Which segments of getPlanarSegmentation() touch, and the point pairs across each border.
+  SegmentGraph getPlanarSegmentGraph() const { return result_.graph(); }
+
+  // As version 1.0 had them.
+  [[deprecated("getPlanarSegmentation")]] const Segmentation& getSegmentation() const {
+    return getPlanarSegmentation();
+  }
+  [[deprecated("getPlanarSegmentGraph")]] SegmentGraph getSegmentGraph() const {
+    return getPlanarSegmentGraph();
+  }
 
  protected:
   using Base::deinitCompute;

@@ -14,14 +14,19 @@ namespace segorient {
 
 /// What the clean-up left a segment as (paper, section 2.3, pass 3).
 enum class SegmentKind : std::uint8_t {
-  Regular,    ///< grown from a seed, large enough
-  Connected,  ///< small segments joined, as they occur along sharp edges
-  Isolated    ///< a small segment without small neighbours
+  REGULAR,    ///< grown from a seed, large enough
+  CONNECTED,  ///< small segments joined, as they occur along sharp edges
+  ISOLATED,   ///< a small segment without small neighbours
+
+  // As version 1.0 had them.
+  Regular [[deprecated("REGULAR")]] = REGULAR,
+  Connected [[deprecated("CONNECTED")]] = CONNECTED,
+  Isolated [[deprecated("ISOLATED")]] = ISOLATED
 };
 
 /// One segment. Its points are Segmentation::members[first, first + size).
 struct Segment {
-  SegmentKind kind = SegmentKind::Regular;
+  SegmentKind kind = SegmentKind::REGULAR;
   std::uint32_t first = 0;                               ///< into Segmentation::members
   std::uint32_t size = 0;                                ///< number of points
   std::array<float, 3> reference_normal{0.F, 0.F, 0.F};  ///< unit sum of its points' signed normals
@@ -73,17 +78,14 @@ struct SegmentGraph {
   std::vector<std::uint32_t> incident;  ///< indices into borders
 };
 
-/// Settings of segmentByNormals(). Angles in radians, lengths in multiples of the local spacing, so
-/// nothing depends on the unit or the size of a cloud.
-struct SegmentationOptions {
+/// How a cloud is cut into segments, see NormalSegmentation. Angles in radians, lengths in
+/// multiples of the local spacing, so nothing depends on the unit or the size of a cloud.
+struct SegmentationSettings {
   float alpha = 0.3490659F;  ///< largest angle between the normals of two neighbours (20 degrees)
   float beta =
       0.5235988F;  ///< largest angle between a normal and the reference normal (30 degrees)
   float epsilon = 0.1745329F;   ///< by how much the clean-up may exceed beta (10 degrees)
   std::size_t small_size = 20;  ///< segments with fewer points are small
-  /// Neighbours of each row to use, the point itself not counted; 0 = all. More cost time and do
-  /// not make segments better: the normals have seen them already.
-  int neighbors = 10;
   /// Pass 1: share of the points around a small segment that another one must hold to take it in.
   float neighbor_share = 0.4F;
   /// Two points farther apart than this are no neighbours: growing does not jump gaps. 0 = no
@@ -112,7 +114,14 @@ struct SegmentationOptions {
   /// beta cannot be triangulated or oriented as one.
   bool unite_smooth = false;
   bool connect_small = true;  ///< clean-up pass 3: small segments that touch become connected ones
-  int threads = 0;            ///< see resolveThreads()
+};
+
+/// The same for a table of neighbours that is there.
+struct SegmentationOptions : SegmentationSettings {
+  /// Neighbours of each row to use, the point itself not counted; 0 = all. More cost time and do
+  /// not make segments better: the normals have seen them already.
+  int neighbors = 10;
+  int threads = 0;  ///< 0 = all cores; no result depends on it
 };
 
 /// What the stages of segmentByNormals() did.

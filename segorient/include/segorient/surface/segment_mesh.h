@@ -15,7 +15,7 @@
 namespace segorient {
 
 /// How triangles are taken away from a Delaunay triangulation (paper, section 3.2.1).
-struct TriangulationOptions {
+struct TriangulationSettings {
   /// A bin of the histogram of edge lengths counts as a maximum if it holds more than this share of
   /// the fullest one; the last such bin gives the critical length.
   float kappa1 = 0.1F;
@@ -32,7 +32,11 @@ struct TriangulationOptions {
   /// the largest empty circle that so many random points are likely to have. False is the paper's
   /// rule.
   bool fill_gaps = true;
-  int threads = 0;  ///< see resolveThreads()
+};
+
+/// The same with the number of threads.
+struct TriangulationOptions : TriangulationSettings {
+  int threads = 0;  ///< 0 = all cores; no result depends on it
 };
 
 /// A segment's triangulation and its boundary. All points are indices into the cloud.

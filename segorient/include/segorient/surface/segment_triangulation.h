@@ -19,7 +19,7 @@ namespace segorient {
 /// @code
 /// segorient::SegmentTriangulation<pcl::PointNormal> triangulation;
 /// triangulation.setInputCloud(cloud_with_normals);
-/// triangulation.setSegmentation(segmentation.getSegmentation());  // else its own
+/// triangulation.setSegmentation(segmentation.getPlanarSegmentation());  // else its own
 /// pcl::PolygonMesh mesh;
 /// triangulation.reconstruct(mesh);
 /// @endcode

@@ -124,7 +124,7 @@ class FinalNormals {
     std::vector<std::int32_t> labels = segments_.labels;
     std::vector<std::uint8_t> regular;
     for (const Segment& s : segments_.segments) {
-      regular.push_back(s.kind == SegmentKind::Regular ? 1 : 0);
+      regular.push_back(s.kind == SegmentKind::REGULAR ? 1 : 0);
     }
     const int entries = std::min(kEdgeNeighbors + 1, table_.k());
     for (int round = 0; round < kRounds; ++round) {

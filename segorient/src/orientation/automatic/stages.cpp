@@ -114,7 +114,7 @@ AutoStages runAutoStages(PreparedCloud& cloud, const PipelineOptions& options,
   const Neighborhoods& table = out.denoised ? of_smoothed : cloud.neighborhoods();
   const AutomaticOptions& settings = options.orientation.automatic;
   FinishedSegments finished;
-  finished.options = segmentation::inUnitOf(cloud, options.segmentation);
+  finished.options = segmentation::inUnitOf(cloud, {options.segmentation});
   finished.options.threads = options.threads;
   AutoNormals oriented =
       orientPoints(points, table, settings, hints, options.threads, begin, record, &finished);

@@ -78,7 +78,7 @@ std::vector<ExtremalEvidence> gatherExtremalEvidence(const std::vector<ExtremalP
     const std::int32_t label = segmentation.labels[p];
     if (label < 0 || !(found.angle < gamma)) continue;
     const auto s = static_cast<std::size_t>(label);
-    if (segmentation.segments[s].kind != SegmentKind::Regular) continue;
+    if (segmentation.segments[s].kind != SegmentKind::REGULAR) continue;
     const int sign = found.sign * segmentation.signs[p];
     const float weight = std::cos(found.angle);
     balance[s] += static_cast<float>(sign) * weight;

@@ -107,7 +107,7 @@ bool isDouble(const Elevated* begin, const Elevated* end, float gap) {
 bool isFolded(const PointView& points, const Neighborhoods& neighborhoods,
               const Segmentation& segmentation, std::size_t s, float max_share) {
   const Segment& segment = segmentation.segments[s];
-  if (segment.kind != SegmentKind::Regular || segment.size < 4) return false;
+  if (segment.kind != SegmentKind::REGULAR || segment.size < 4) return false;
   const float spacing = spacingOf(points, neighborhoods, segmentation, s);
   if (!(spacing > 0.F) || !std::isfinite(spacing)) return false;
   if (!rangesOver(points, segmentation, s, kGap * spacing)) return false;  // flat, as most are

@@ -72,8 +72,9 @@ void turnOutward(const std::vector<ExtremalPoint>& extremal, float gamma,
     balance += static_cast<float>(sign) * std::cos(found.angle);
     total += std::cos(found.angle);
   }
-  component.evidence = balance;
-  component.confidence = total > 0.F ? std::abs(balance) / total : 0.F;
+  component.evidence = total > 0.F ? balance / total : 0.F;
+  component.votes = total;
+  component.confidence = std::abs(component.evidence);
   component.by = total > 0.F ? DecidedBy::EXTREMAL : DecidedBy::NOTHING;
   component.sign = balance < 0.F ? std::int8_t{-1} : std::int8_t{1};
 }

@@ -43,8 +43,7 @@ class LinkRelations {
         segmentation_(segmentation),
         options_(options) {
     if (options.boundary != BoundaryTest::TRIANGULATED) return;
-    TriangulationOptions triangulation = options.triangulation;
-    triangulation.threads = options.threads;
+    const TriangulationOptions triangulation{options.triangulation, options.threads};
     meshes_ = triangulateSegments(points, segmentation, triangulation);
   }
 
@@ -170,7 +169,7 @@ OrientedRegularSegments orientRegularSegments(const PointView& points, const Poi
   LinkRelations relations(points, normals, neighborhoods, segmentation, options);
   for (int round = 1;; ++round) {
     for (const std::int32_t s : mixed) {
-      current.segments[static_cast<std::size_t>(s)].kind = SegmentKind::Connected;
+      current.segments[static_cast<std::size_t>(s)].kind = SegmentKind::CONNECTED;
     }
     out.mixed.insert(out.mixed.end(), mixed.begin(), mixed.end());
     relations.update(linkRegularSegments(current, graph, neighborhoods));

@@ -153,7 +153,7 @@ void indexBySegment(const Segmentation& segmentation, SegmentLinks& out) {
 bool isRegular(const Segmentation& segmentation, std::int32_t label) {
   if (label < 0) return false;
   const Segment& segment = segmentation.segments[static_cast<std::size_t>(label)];
-  return segment.kind == SegmentKind::Regular && segment.size > 0;
+  return segment.kind == SegmentKind::REGULAR && segment.size > 0;
 }
 
 SegmentLinks linkRegularSegments(const Segmentation& segmentation, const SegmentGraph& graph,

@@ -6,7 +6,7 @@
 
 namespace segorient {
 
-const char* sensorKindName(SensorKind kind) {
+const char* toString(SensorKind kind) {
   switch (kind) {
     case SensorKind::CAMERA:
       return "camera";
@@ -20,7 +20,7 @@ const char* sensorKindName(SensorKind kind) {
   return "station";
 }
 
-const char* sensorEvidenceName(SensorEvidence evidence) {
+const char* toString(SensorEvidence evidence) {
   switch (evidence) {
     case SensorEvidence::LAYERS:
       return "layers";

@@ -14,6 +14,7 @@
 #include <cstddef>
 #include <limits>
 #include <memory>
+#include <string>
 
 namespace segorient {
 
@@ -90,6 +91,10 @@ void OrientedNormalEstimation<PointInT, PointOutT>::computeFeature(PointCloudOut
   const pcl::PointCloud<PointInT>& cloud = own_surface ? *input_ : joined;
   if (!options.orientation.hints) {
     options.orientation.hints = std::make_shared<OrientationHints>(gatherHints(cloud));
+  }
+  for (const std::string& name : settingsWithoutEffect(options)) {
+    PCL_WARN("[segorient::%s::compute] %s changes nothing with method %s.\n",
+             getClassName().c_str(), name.c_str(), toString(options.orientation.method));
   }
   const CloudPoints<PointInT> points(cloud);
   if (search_radius_ > 0.0) {

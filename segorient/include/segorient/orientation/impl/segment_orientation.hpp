@@ -12,6 +12,7 @@
 #include <cstddef>
 #include <limits>
 #include <memory>
+#include <string>
 #include <vector>
 
 namespace segorient {
@@ -49,9 +50,13 @@ bool SegmentOrientation<PointT, NormalT>::orient() {
   if (keep_orientation_) detail::addNormals(*normals_, *hints);
   if (seeds_) detail::addSeeds(*seeds_, *hints);
   OrientationOptions options = options_;
-  options.hints = hints;
-  SegmentationOptions segmentation_options = segmentation_options_;
+  if (!options.hints) options.hints = hints;
+  SegmentationOptions segmentation_options{segmentation_options_};
   segmentation_options.threads = options.threads;
+  for (const std::string& name : settingsWithoutEffect(options)) {
+    PCL_WARN("[segorient::SegmentOrientation::compute] %s changes nothing with method %s.\n",
+             name.c_str(), toString(options.method));
+  }
   result_ = orientSegmentation(points.view(), normals.view(), segmentation_.get(),
                                k_ > 0 ? std::max(1, k_ - 1) : 0, segmentation_options, options,
                                searchFunction());
