@@ -190,7 +190,7 @@ int runOrient(const std::vector<std::string>& words) {
   std::string report_path;
   TileFlags tiles;
   line.argumentsMany("IN", "OUT");
-  stages.add(line, true);
+  stages.add(line, LastStage::ORIENTATION);
   hints.add(line);
   tiles.add(line);
   line.options()("report", po::value(&report_path), "what was done, as JSON");
