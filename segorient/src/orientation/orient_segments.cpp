@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "common/dot.h"
-#include "orientation/automatic/orient_points.h"
+#include "orientation/automatic/stages.h"
 #include "orientation/paper/completion.h"
 #include "orientation/paper/hoppe_tree.h"
 #include "orientation/paper/outward_components.h"
@@ -73,22 +73,19 @@ void giveSigns(const PointView& normals, Segmentation& segmentation) {
   segmentation::collectMembers(segmentation);
 }
 
-// The default method brings its own segments: each given point takes the sign that turns its normal
-// to the oriented one there, and each given segment that of most of its points.
-// \param own where not null: in place of given segments those of the default method
-OrientationResult orientAutomatically(const PointView& points, const PointView& normals,
-                                      const Neighborhoods& neighborhoods,
-                                      const Segmentation& segmentation,
-                                      const OrientationOptions& options, const PointHints& hints,
-                                      FinishedSegments* own) {
-  detail::AutoNormals found = detail::orientPoints(points, neighborhoods, options.automatic, hints,
-                                                   options.threads, {}, nullptr, own);
-  OrientationResult result;
-  result.components = std::move(found.orientation.result.components);
-  result.point_signs.assign(points.size, 0);
-  result.point_confidences.assign(points.size, 0.F);
-  result.point_components.assign(points.size, -1);
-  for (std::size_t i = 0; i < points.size; ++i) {
+/// What the default method found out about the points.
+struct FoundNormals {
+  const std::vector<float>& normals;  // 4 floats a point
+  const std::vector<float>& confidences;
+  const std::vector<std::int32_t>& components;
+};
+
+// Each given point takes the sign that turns its normal to the oriented one there.
+void followNormals(const PointView& normals, const FoundNormals& found, OrientationResult& result) {
+  result.point_signs.assign(normals.size, 0);
+  result.point_confidences.assign(normals.size, 0.F);
+  result.point_components.assign(normals.size, -1);
+  for (std::size_t i = 0; i < normals.size; ++i) {
     const float* m = &found.normals[4 * i];
     const float* n = normals[i];
     if (!isFinite(n) || !isFinite(m) || found.components[i] < 0) continue;
@@ -96,8 +93,26 @@ OrientationResult orientAutomatically(const PointView& points, const PointView& 
     result.point_confidences[i] = found.confidences[i];
     result.point_components[i] = found.components[i];
   }
+}
+
+// The default method brings its own segments; each given one takes the sign of most of its points.
+OrientationResult orientAutomatically(const PointView& points, const PointView& normals,
+                                      const Neighborhoods& neighborhoods,
+                                      const Segmentation& segmentation,
+                                      const OrientationOptions& options, const PointHints& hints,
+                                      detail::AutoStages* own) {
+  OrientationResult result;
+  if (own != nullptr) {
+    result.components = own->orientation.result.components;
+    followNormals(normals, {own->normals, own->confidences, own->components}, result);
+    giveSigns(normals, own->segmentation);
+  } else {
+    detail::AutoNormals found =
+        detail::orientPoints(points, neighborhoods, options.automatic, hints, options.threads);
+    result.components = std::move(found.orientation.result.components);
+    followNormals(normals, {found.normals, found.confidences, found.components}, result);
+  }
   completeOrientation(points, normals, neighborhoods, result);
-  if (own != nullptr) giveSigns(normals, own->segmentation);
   summarizeSegments(own != nullptr ? own->segmentation : segmentation, DecidedBy::GLOBAL, result);
   return result;
 }
@@ -131,7 +146,7 @@ OrientationResult orientSegments(const PointView& points, const PointView& norma
                                  const Neighborhoods& neighborhoods,
                                  const Segmentation& segmentation, const SegmentGraph& graph,
                                  const OrientationOptions& options, const PointHints& hints,
-                                 FinishedSegments* own) {
+                                 detail::AutoStages* own) {
   OrientationResult result;
   const bool automatic = options.method == OrientationMethod::AUTO;
   if (normals.size != points.size || neighborhoods.size() != points.size ||

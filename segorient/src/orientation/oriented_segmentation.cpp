@@ -9,6 +9,7 @@
 
 #include "common/unit_vector.h"
 #include "features/sheet_normals.h"
+#include "orientation/automatic/stages.h"
 #include "orientation/orient_segments.h"
 #include "search/prepared_cloud.h"
 #include "segmentation/region_growing.h"
@@ -97,26 +98,32 @@ OrientedSegmentation orientSegmentation(const PointView& points, const NormalVie
   findNeighbors(cloud, k > 0 ? k : defaultNeighbors(options), search);
   const Neighborhoods& neighborhoods = cloud.neighborhoods();
 
-  SegmentationOptions cuts = segmentation::inUnitOf(cloud, segmentation_options);
-  cuts.threads = options.threads;
-  FinishedSegments made;
-  made.options = cuts;
+  PointHints hints;
+  if (options.hints) hints = resolveHints(*options.hints, cloud);
+  detail::AutoStages stages;
   const bool own = segmentation == nullptr && options.method == OrientationMethod::AUTO;
   Segmentation of_points;
   if (segmentation != nullptr) {
     of_points = segmentation::gather(cloud, point_normals, *segmentation);
-  } else if (!own) {
+  } else if (own) {
+    PipelineOptions settings;
+    settings.k = k > 0 ? neighborhoods.k() - 1 : 0;
+    settings.threads = options.threads;
+    settings.segmentation = segmentation_options;
+    settings.orientation = options;
+    stages = detail::runAutoStages(cloud, settings, hints, [](const char*, double) {});
+  } else {
+    SegmentationOptions cuts = segmentation::inUnitOf(cloud, segmentation_options);
+    cuts.threads = options.threads;
     of_points = segmentByNormals(cloud.points(), normal_view, neighborhoods, cuts);
   }
   SegmentGraph graph;  // the default method does without
   if (options.method != OrientationMethod::AUTO)
     graph = buildSegmentGraph(of_points, neighborhoods);
-  PointHints hints;
-  if (options.hints) hints = resolveHints(*options.hints, cloud);
   out.orientation = scatter(cloud, normals,
                             orientSegments(cloud.points(), normal_view, neighborhoods, of_points,
-                                           graph, options, hints, own ? &made : nullptr));
-  if (own) of_points = std::move(made.segmentation);
+                                           graph, options, hints, own ? &stages : nullptr));
+  if (own) of_points = std::move(stages.segmentation);
   out.segmentation =
       segmentation != nullptr ? *segmentation : segmentation::scatter(cloud, of_points, &normals);
   invertTurned(out.orientation.segments, out.segmentation);

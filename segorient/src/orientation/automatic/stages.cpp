@@ -4,6 +4,7 @@
 
 #include <segorient/search/median_hash_index.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "common/dot.h"
@@ -22,11 +23,16 @@ constexpr int kDenoisingNeighbors = 48;
 // In spacings, as NoiseLevel::fine measures it. With less, borders tell enough.
 constexpr float kFieldNoise = 0.2F;
 
-// Finds the neighbours, of smoothed positions where the noise asks for that.
+// Finds the neighbours unless they are known, and those of smoothed positions where the noise asks
+// for that.
 // \param smoothed stays empty where it does not
 void findNeighbors(PreparedCloud& cloud, const PipelineOptions& options, const SheetRecord* record,
                    std::vector<float>& smoothed, Neighborhoods& of_smoothed, AutoStages& out) {
-  out.k = cloud.findNeighbors(options.k > 0 ? options.k : kSheetNeighbors, false);
+  out.k = options.k > 0 ? options.k : kSheetNeighbors;
+  const auto entries = static_cast<int>(std::min<std::size_t>(cloud.size(), out.k + 1U));
+  const bool known = cloud.size() > 0 && cloud.neighborhoods().size() == cloud.size() &&
+                     cloud.neighborhoods().k() == entries;
+  out.k = known ? entries - 1 : cloud.findNeighbors(out.k, false);
   const NoiseLevel noise =
       record != nullptr ? record->traits.noise
                         : measureNoise(cloud.points(), cloud.neighborhoods(), options.threads);
