@@ -31,6 +31,8 @@ std::vector<LabelledCloud> clouds() {
   out.push_back(sample("bracket", bracket(), 5000, 71));
   out.push_back(sample("cylinder", cylinder(), 5000, 72, 0.1));
   out.push_back(sample("plate", plate(2, 5000), 5000, 73));
+  // So noisy that positions are smoothed first.
+  out.push_back(sample("noisy cylinder", cylinder(), 3000, 79, 0.45));
   return out;
 }
 
@@ -91,6 +93,22 @@ TEST(OneSegmentation, AgreesWithinEachSegment) {
       turned += n[0] * r[0] + n[1] * r[1] + n[2] * r[2] < 0.F ? 1U : 0U;
     }
     EXPECT_EQ(turned, 0U) << cloud.name;
+  }
+}
+
+TEST(OneSegmentation, HasThePointsWhoseNormalsAreOfItsFace) {
+  // Of a cube, each normal but those of a corner or two is of one face; so are its segments.
+  for (const unsigned seed : {76U, 77U, 78U}) {
+    const LabelledCloud cloud = sample("cube", cube(), 6000, seed);
+    const OrientedCloud out = segmentCloud({cloud.xyz.data(), 4, cloud.size()}, {});
+    std::size_t contrary = 0;
+    for (std::size_t i = 0; i < cloud.size(); ++i) {
+      const auto label = static_cast<std::size_t>(out.segmentation.labels[i]);
+      const auto& face = out.segmentation.segments[label].reference_normal;
+      const float* n = &out.normals[4 * i];
+      contrary += n[0] * face[0] + n[1] * face[1] + n[2] * face[2] < 0.5F ? 1U : 0U;
+    }
+    EXPECT_LE(contrary, 1U) << seed;
   }
 }
 

@@ -10,6 +10,7 @@
 #include "common/dot.h"
 #include "features/sheet_denoise.h"
 #include "features/sheet_normals.h"
+#include "orientation/automatic/final_labels.h"
 #include "orientation/automatic/final_normals.h"
 #include "orientation/automatic/noise_field.h"
 #include "orientation/automatic/sensor_normals.h"
@@ -53,22 +54,6 @@ void findNeighbors(PreparedCloud& cloud, const PipelineOptions& options, const S
 bool knowsNothing(const PointHints& hints) {
   return hints.surface != SurfaceKind::OPEN && !hints.has_viewpoint && hints.sensors.empty() &&
          hints.directions.empty() && hints.seeds.empty() && hints.toward.empty();
-}
-
-// Points that have no plane of their own, but a normal from those around them, are of the segment
-// of the nearest that has one.
-void labelTheRest(const Neighborhoods& table, const std::vector<float>& normals,
-                  Segmentation& segmentation) {
-  const std::vector<std::int32_t> labels = segmentation.labels;
-  bool any = false;
-  for (std::size_t i = 0; i < labels.size(); ++i) {
-    if (labels[i] >= 0 || !std::isfinite(normals[4 * i])) continue;
-    for (int j = 1; j < table.count(i) && segmentation.labels[i] < 0; ++j) {
-      segmentation.labels[i] = labels[static_cast<std::size_t>(table.indices(i)[j])];
-      any = any || segmentation.labels[i] >= 0;
-    }
-  }
-  if (any) segmentation::collectMembers(segmentation);
 }
 
 // Turns the segments as most of their points are.
@@ -140,6 +125,7 @@ AutoStages runAutoStages(PreparedCloud& cloud, const PipelineOptions& options,
   if (!oriented.orientation.toward.empty()) {
     leanToSensors(points, table, oriented.orientation.toward, options.threads, oriented.normals);
   }
+  followFinalNormals(table, oriented.normals, options.threads, out.segmentation);
   turnSegments(oriented, out);
   out.normals = std::move(oriented.normals);
   out.confidences = std::move(oriented.confidences);
