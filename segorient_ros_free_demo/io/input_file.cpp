@@ -74,7 +74,7 @@ void InputFile::read(void* out, std::size_t bytes) {
   if (buffered > 0) std::memcpy(to, buffer_.data() + begin_, buffered);
   begin_ += buffered;
   const std::size_t rest = bytes - buffered;
-  if (rest >= buffer_.size()) {
+  if (rest >= buffer_.size() || (sought_ && rest > 0)) {
     if (std::fread(to + buffered, 1, rest, file_.get()) != rest) fail("is cut short");
   } else if (rest > 0) {
     while (end_ - begin_ < rest) {
@@ -101,6 +101,7 @@ void InputFile::seek(std::uint64_t position) {
   if (fseeko(file_.get(), static_cast<off_t>(position), SEEK_SET) != 0) fail(std::strerror(errno));
   position_ = position;
   begin_ = end_ = 0;
+  sought_ = true;
 }
 
 }  // namespace segorient::program

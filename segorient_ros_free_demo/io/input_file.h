@@ -32,7 +32,8 @@ class InputFile {
   /// Exactly so many bytes; throws if the file ends before.
   void read(void* out, std::size_t bytes);
   void skip(std::uint64_t bytes);
-  /// Goes on at any byte of the file; line numbers then mean nothing.
+  /// Goes on at any byte of the file; line numbers then mean nothing. From there on, what is read is
+  /// read as it is, and nothing ahead.
   void seek(std::uint64_t position);
 
   [[noreturn]] void fail(const std::string& reason) const { throw FileError(path_, reason); }
@@ -52,6 +53,7 @@ class InputFile {
   std::uint64_t size_ = 0;
   std::uint64_t position_ = 0;
   std::size_t line_number_ = 0;
+  bool sought_ = false;
   std::vector<char> buffer_;
   std::size_t begin_ = 0;
   std::size_t end_ = 0;

@@ -7,12 +7,12 @@
 // Numbers in as few bits as what they are for needs.
 namespace segorient::program {
 
-/// Bits of a packed normal: to a hundredth of a degree. A third of that many would spoil what
+/// Bits of a packed normal: to two hundredths of a degree. A third of that many would spoil what
 /// surfaces without noise tell.
-constexpr unsigned kNormalBits = 28;
+constexpr unsigned kNormalBits = 26;
 constexpr std::uint64_t kNoNormal = (std::uint64_t{1} << kNormalBits) - 1;  ///< of no normal
-/// Bits of a packed curvature, of which PCL's definition leaves 0 to 1/3: to a thousandth of it.
-constexpr unsigned kCurvatureBits = 14;
+/// Bits of a packed curvature, of which PCL's definition leaves 0 to 1/3: to a 256th of it.
+constexpr unsigned kCurvatureBits = 12;
 
 /// A unit vector as a place in a square onto which the sphere is folded (an octahedron's faces).
 /// \param bits even, 2 to 32: of both coordinates

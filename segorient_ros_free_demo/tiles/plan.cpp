@@ -18,6 +18,7 @@ void forEachNumber(P& p, const Visit& visit) {
   visit(p.finite);
   visit(p.origin);
   visit(p.bulk);
+  visit(p.step);
   visit(p.traits);
   visit(p.k);
   visit(p.patch_points);
@@ -119,6 +120,18 @@ Plan loadPlan(const std::string& folder) {
     throw FileError(planPath(folder), kDamaged);
   }
   return plan;
+}
+
+std::array<double, 3> storedPlace(const Plan& plan, const std::array<double, 3>& place) {
+  std::array<double, 3> out = place;
+  if (!(plan.step > 0.0)) return out;
+  constexpr double kExact =
+      4503599627370496.0;  // 2^52: doubles have no smaller parts from there on
+  for (double& x : out) {
+    const double steps = x / plan.step;
+    if (std::fabs(steps) < kExact) x = plan.step * std::nearbyint(steps);
+  }
+  return out;
 }
 
 OrientationHints hintsOf(const Plan& plan, const std::array<double, 3>& origin) {

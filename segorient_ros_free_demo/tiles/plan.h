@@ -74,6 +74,7 @@ struct Plan {
   std::array<double, 3> origin{0, 0, 0};
   Bounds bulk;  ///< where the points are but for strays, as a sample tells
   TileTree tree;
+  double step = 0.0;  ///< what coordinates in tiles are multiples of; 0 = of nothing
   std::vector<std::array<double, 3>> tile_origins;
   std::vector<std::uint64_t> tile_points;  ///< own ones
   TileTraits traits;
@@ -104,6 +105,9 @@ using StepProgress = std::function<void(double)>;
 
 Plan loadPlan(const std::string& folder);
 void savePlan(const Plan& plan, const std::string& folder);
+
+/// A finite place as tiles have it: its owner is the tile of that.
+std::array<double, 3> storedPlace(const Plan& plan, const std::array<double, 3>& place);
 
 /// What is known of all points alike, in coordinates relative to `origin`.
 OrientationHints hintsOf(const Plan& plan, const std::array<double, 3>& origin);

@@ -57,27 +57,32 @@ void forEachPoint(const StepProgress& progress, double from, double to, const Be
 }
 
 // Draws a sample of all inputs: of those that are small enough all points are looked at, of others
-// pages from all over them, by no pattern that a file could have, too.
-// \param begin called with each input's layout
+// some of each of many pages from all over them, by no pattern that a file could have, too. Those
+// of a page may lie side by side: few of them, so that what is measured between points of the
+// sample is not only between those. \param begin called with each input's layout
 template <typename Begin>
 void drawSample(const Plan& plan, const StepProgress& progress, const Begin& begin,
                 PointSample& sample) {
-  constexpr std::uint64_t kRead = std::uint64_t{1} << 22;  // points
-  constexpr std::uint64_t kPage = 256;
+  constexpr std::uint64_t kAll = std::uint64_t{1} << 22;   // points
+  constexpr std::uint64_t kRead = std::uint64_t{1} << 21;  // of more
+  constexpr std::uint64_t kPage = 32;
+  constexpr std::uint64_t kOfPage = 16;  // one of so many is taken
   constexpr std::size_t kSmallBuffer = 4096;
-  const bool all = plan.rows <= kRead;
+  const bool all = plan.rows <= kAll;
   const double share = static_cast<double>(kRead) / static_cast<double>(plan.rows);
   const auto limit = static_cast<std::uint64_t>(std::ldexp(all ? 0.5 : share, 64));
   for (const PlanInput& in : plan.inputs) {
     CloudStream stream(in.streamed, kSmallBuffer);
     begin(stream.layout());
     CloudTable block;
-    for (std::uint64_t row = 0; row < in.rows; row += kPage) {
+    const std::uint64_t page = all ? std::uint64_t{1} << 14 : kPage;
+    for (std::uint64_t row = 0; row < in.rows; row += page) {
       if (!all && PointSample::scatter((in.first_row + row) / kPage) > limit) continue;
       stream.skipTo(row);
-      if (!stream.next(block, kPage)) break;
+      if (!stream.next(block, static_cast<std::size_t>(page))) break;
       const auto xyz = block.xyz();
       for (std::size_t i = 0; i < block.size; ++i) {
+        if (!all && PointSample::scatter(in.first_row + row + i) % kOfPage != 0) continue;
         const Place place = block.triple(xyz, i);
         if (isFinite(place)) sample.add(in.first_row + row + i, place);
       }
@@ -172,17 +177,6 @@ double roundingStep(const TileTree& tree) {
   return std::isfinite(least) ? std::ldexp(1.0, std::ilogb(least / kSpacingsInReach) - kBits) : 0.0;
 }
 
-Place rounded(const Place& p, double step) {
-  Place out = p;
-  constexpr double kExact =
-      4503599627370496.0;  // 2^52: doubles have no smaller parts from there on
-  for (double& x : out) {
-    const double steps = x / step;
-    if (std::fabs(steps) < kExact) x = step * std::nearbyint(steps);
-  }
-  return out;
-}
-
 // The second pass: each point to its tile.
 void distribute(const TileRequest& request, const std::string& folder, const StepProgress& progress,
                 const PlanSensors& sensors, Probe& probe, Plan& plan) {
@@ -192,14 +186,18 @@ void distribute(const TileRequest& request, const std::string& folder, const Ste
                    {plan.has_viewpoints, plan.keep_orientation}, waiting);
   plan.tile_points.assign(plan.tree.tiles(), 0);
   Viewpoints viewpoints(sensors);
-  const double step = roundingStep(plan.tree);
+  plan.step = roundingStep(plan.tree);
+  std::uint32_t output = 0;
   forEachPoint(
       progress, 0.4, 0.95, [&](const CloudTable& block) { viewpoints.begin(block); },
       [&](std::uint64_t row, const Place& place, const CloudTable& block, std::size_t i) {
         if (!isFinite(place)) return;
         StoredPoint point;
-        point.row = row;
-        point.place = step > 0.0 ? rounded(place, step) : place;
+        point.place = storedPlace(plan, place);
+        while (output + 1 < plan.outputs.size() &&
+               row >= plan.inputs[plan.outputs[output + 1].first_input].first_row) {
+          ++output;
+        }
         if (plan.has_viewpoints) {
           point.seen_from = viewpoints.of(block, i, row, place, plan.origin);
         }
@@ -212,7 +210,7 @@ void distribute(const TileRequest& request, const std::string& folder, const Ste
         if (plan.keep_orientation) {
           point.normal = near(block.triple(block.normals(), i), {0.0, 0.0, 0.0});
         }
-        files.add(owner, point);
+        files.add(owner, output, point);
       },
       plan);
   if (plan.finite == 0) {

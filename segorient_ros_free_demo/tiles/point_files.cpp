@@ -15,6 +15,7 @@ namespace {
 
 // Of a packet, but at the end of what is written at once: its head is a tenth of it.
 constexpr std::size_t kPacketPoints = 256;
+constexpr std::uint64_t kMostTilePoints = 0xffffffffU;  // as numbers of 32 bits tell them apart
 
 }  // namespace
 
@@ -54,7 +55,7 @@ void PointFiles::append(std::size_t tile, const void* data, std::size_t bytes) {
   files_[tile].offset += bytes;
 }
 
-// By cell, and within packets by row.
+// By cell, and within packets by number.
 void PointFiles::flush(std::size_t tile) {
   File& file = files_[tile];
   std::vector<StoredPoint>& waiting = file.waiting;
@@ -70,10 +71,10 @@ void PointFiles::flush(std::size_t tile) {
     packet.count = static_cast<std::uint32_t>(last - first);
     std::sort(waiting.begin() + static_cast<std::ptrdiff_t>(first),
               waiting.begin() + static_cast<std::ptrdiff_t>(last),
-              [](const StoredPoint& p, const StoredPoint& q) { return p.row < q.row; });
+              [](const StoredPoint& p, const StoredPoint& q) { return p.number < q.number; });
     packPoints(&waiting[first], last - first, fields_, packet_);
-    packet.part = {file.offset + bytes_.size(), packet_.size(),
-                   checksumOf(packet_.data(), packet_.size())};
+    packet.bytes = static_cast<std::uint32_t>(packet_.size());
+    packet.checksum = checksumOf(packet_.data(), packet_.size());
     file.packets.push_back(packet);
     bytes_.insert(bytes_.end(), packet_.begin(), packet_.end());
     first = last;
@@ -82,8 +83,16 @@ void PointFiles::flush(std::size_t tile) {
   append(tile, bytes_.data(), bytes_.size());
 }
 
-void PointFiles::add(std::size_t tile, const StoredPoint& point) {
-  std::vector<StoredPoint>& waiting = files_[tile].waiting;
+void PointFiles::add(std::size_t tile, std::uint32_t output, StoredPoint& point) {
+  File& file = files_[tile];
+  if (file.points >= kMostTilePoints) {
+    throw FileError(aside(tile), "has more than four billion points in one place");
+  }
+  if (file.starts.empty() || file.starts.back().output != output) {
+    file.starts.push_back({file.points, output, 0});
+  }
+  point.number = static_cast<std::uint32_t>(file.points++);
+  std::vector<StoredPoint>& waiting = file.waiting;
   if (waiting.empty()) waiting.reserve(most_waiting_);
   waiting.push_back(point);
   if (waiting.size() >= most_waiting_) flush(tile);
@@ -95,6 +104,7 @@ void PointFiles::commit() {
     std::vector<StoredPoint>().swap(files_[t].waiting);
     ListWriter lists;
     lists.list(files_[t].packets);
+    lists.list(files_[t].starts);
     const std::vector<std::uint8_t>& bytes = lists.bytes();
     const PartsEnd end{files_[t].offset, checksumOf(bytes.data(), bytes.size())};
     append(t, bytes.data(), bytes.size());

@@ -9,16 +9,17 @@
 
 #include "tiles/point_packets.h"
 #include "tiles/tile_parts.h"
+#include "tiles/tile_records.h"
 
 namespace segorient::program {
 
 /// Points of some cells of the tree that follow one another.
 struct PointPacket {
-  FilePart part;
+  std::uint64_t checksum = 0;
+  std::uint32_t bytes = 0;  ///< behind those of the packet before
   std::uint32_t first_cell = 0;
   std::uint32_t last_cell = 0;
   std::uint32_t count = 0;
-  std::uint32_t unused = 0;  ///< no hidden bytes: they are stored as they are
 };
 
 /// The point files of all tiles, written at once: any number of them, none of which stays open.
@@ -33,13 +34,17 @@ class PointFiles {
   PointFiles(const PointFiles&) = delete;
   PointFiles& operator=(const PointFiles&) = delete;
 
-  void add(std::size_t tile, const StoredPoint& point);
+  /// \param point its number is given to it here
+  /// \param output that it will be part of; they come one after the other
+  void add(std::size_t tile, std::uint32_t output, StoredPoint& point);
   void commit();
 
  private:
   struct File {
     std::vector<StoredPoint> waiting;
     std::vector<PointPacket> packets;
+    std::vector<OutputStart> starts;
+    std::uint64_t points = 0;
     std::uint64_t offset = 0;
   };
   std::string aside(std::size_t tile) const;

@@ -18,16 +18,55 @@ constexpr int kMostBits = 52;
 // How one coordinate of a packet's points is stored.
 struct Axis {
   double least = 0.0;
-  std::int32_t step = 0;  // its exponent
-  std::uint32_t bits = 0;
+  std::int16_t step = 0;  // its exponent
+  std::uint8_t bits = 0;
 };
 
+// Numbers one behind the other, as they are in memory.
+template <typename T>
+void put(const T& value, std::vector<std::uint8_t>& out) {
+  const auto* bytes = reinterpret_cast<const std::uint8_t*>(&value);
+  out.insert(out.end(), bytes, bytes + sizeof(T));
+}
+
+template <typename T>
+bool take(const std::vector<std::uint8_t>& from, std::size_t& at, T& value) {
+  if (sizeof(T) > from.size() - at) return false;
+  std::memcpy(&value, from.data() + at, sizeof(T));
+  at += sizeof(T);
+  return true;
+}
+
+// What stands before the points.
 struct Head {
-  std::uint64_t row = 0;
-  std::uint64_t span = 0;  // of rows
+  std::uint32_t number = 0;
+  std::uint32_t span = 0;  // of numbers
   std::array<Axis, 3> axes;
   std::array<float, 3> seen_from{0, 0, 0};
-  std::uint32_t one_place = 1;  // whether all were seen from there
+  std::uint8_t one_place = 1;  // whether all were seen from there
+
+  void write(const PointFields& fields, std::vector<std::uint8_t>& out) const {
+    put(number, out);
+    put(span, out);
+    for (const Axis& axis : axes) {
+      put(axis.least, out);
+      put(axis.step, out);
+      put(axis.bits, out);
+    }
+    if (!fields.viewpoints) return;
+    put(seen_from, out);
+    put(one_place, out);
+  }
+  // \return false where it is none
+  bool read(const PointFields& fields, const std::vector<std::uint8_t>& from, std::size_t& at) {
+    bool whole = take(from, at, number) && take(from, at, span);
+    for (Axis& axis : axes) {
+      whole = whole && take(from, at, axis.least) && take(from, at, axis.step) &&
+              take(from, at, axis.bits) && axis.bits <= kMostBits + 1;
+    }
+    if (fields.viewpoints) whole = whole && take(from, at, seen_from) && take(from, at, one_place);
+    return whole;
+  }
 };
 
 // The exponent of the last bit that is set.
@@ -58,8 +97,8 @@ Axis axisOf(const StoredPoint* points, std::size_t count, std::size_t a) {
   if (!(extent > 0.0) || !std::isfinite(extent)) return axis;
   int exponent = 0;
   std::frexp(extent, &exponent);
-  axis.step = std::max(exact, exponent - kMostBits);
-  axis.bits = bitsOf(stepsOf(axis, most));
+  axis.step = static_cast<std::int16_t>(std::max(exact, exponent - kMostBits));
+  axis.bits = static_cast<std::uint8_t>(bitsOf(stepsOf(axis, most)));
   return axis;
 }
 
@@ -82,18 +121,16 @@ void packPoints(const StoredPoint* points, std::size_t count, const PointFields&
   out.clear();
   if (count == 0) return;
   Head head;
-  std::memset(static_cast<void*>(&head), 0, sizeof(head));  // what lies between members, too
-  head.row = points[0].row;
-  head.span = points[count - 1].row - points[0].row;
+  head.number = points[0].number;
+  head.span = points[count - 1].number - points[0].number;
   for (std::size_t a = 0; a < 3; ++a) head.axes[a] = axisOf(points, count, a);
   head.one_place = !fields.viewpoints || sameViewpoints(points, count) ? 1 : 0;
   if (fields.viewpoints) head.seen_from = points[0].seen_from;
-  const auto* bytes = reinterpret_cast<const std::uint8_t*>(&head);
-  out.insert(out.end(), bytes, bytes + sizeof(head));
+  head.write(fields, out);
   BitWriter bits(out);
-  const RiceCode rows(head.span, count);
+  const RiceCode numbers(head.span, count);
   for (std::size_t i = 0; i < count; ++i) {
-    if (i > 0) rows.put(points[i].row - points[i - 1].row - 1, bits);
+    if (i > 0) numbers.put(points[i].number - points[i - 1].number - 1, bits);
     for (std::size_t a = 0; a < 3; ++a) {
       if (head.axes[a].bits > 0)
         bits.put(stepsOf(head.axes[a], points[i].place[a]), head.axes[a].bits);
@@ -112,18 +149,15 @@ bool unpackPoints(const std::vector<std::uint8_t>& packet, std::size_t count,
                   const PointFields& fields, std::vector<StoredPoint>& out) {
   if (count == 0) return packet.empty();
   Head head;
-  if (packet.size() < sizeof(head)) return false;
-  std::memcpy(static_cast<void*>(&head), packet.data(), sizeof(head));
-  for (const Axis& axis : head.axes) {
-    if (axis.bits > static_cast<std::uint32_t>(kMostBits) + 1) return false;
-  }
-  BitReader bits(packet.data() + sizeof(head), packet.size() - sizeof(head));
-  const RiceCode rows(head.span, count);
+  std::size_t at = 0;
+  if (!head.read(fields, packet, at)) return false;
+  BitReader bits(packet.data() + at, packet.size() - at);
+  const RiceCode numbers(head.span, count);
   StoredPoint p;
-  p.row = head.row;
+  p.number = head.number;
   if (fields.viewpoints) p.seen_from = head.seen_from;
   for (std::size_t i = 0; i < count; ++i) {
-    if (i > 0) p.row += rows.get(bits) + 1;
+    if (i > 0) p.number += static_cast<std::uint32_t>(numbers.get(bits)) + 1;
     for (std::size_t a = 0; a < 3; ++a) {
       const Axis& axis = head.axes[a];
       const auto steps = static_cast<double>(bits.get(axis.bits));

@@ -11,7 +11,7 @@ namespace segorient::program {
 
 /// A point as it is in the input.
 struct StoredPoint {
-  std::uint64_t row = 0;
+  std::uint32_t number = 0;  ///< among those of its tile, in the order of the inputs
   std::array<double, 3> place{0, 0, 0};
   std::array<float, 3> seen_from{0, 0, 0};  ///< where points carry that, see Plan
   std::array<float, 3> normal{0, 0, 0};     ///< the same; 0 = unknown
@@ -24,10 +24,10 @@ struct PointFields {
   bool normals = false;
 };
 
-/// Points near each other in few bytes: rows by their steps, coordinates as whole numbers of the
+/// Points near each other in few bytes: numbers by their steps, coordinates as whole numbers of the
 /// largest power of two that they are multiples of. They are exact unless that takes more than the
 /// 52 bits of a double.
-/// \param points ascending by row
+/// \param points ascending by number
 void packPoints(const StoredPoint* points, std::size_t count, const PointFields& fields,
                 std::vector<std::uint8_t>& out);
 /// Appends the points. \return false if the bytes are no packet of so many

@@ -19,19 +19,13 @@ std::uint64_t pairOf(const RowRecord& r) {
          static_cast<std::uint32_t>(r.followed);
 }
 
-RiceCode stepsOf(const RowBlock& block) {
-  return RiceCode(block.last_row - block.first_row, static_cast<std::size_t>(block.count));
-}
-
-void pack(const RowRecord* rows, const RowBlock& block, const std::vector<std::uint64_t>& pairs,
+void pack(const RowRecord* rows, std::size_t count, const std::vector<std::uint64_t>& pairs,
           std::vector<std::uint8_t>& out) {
   out.clear();
   BitWriter bits(out);
-  const RiceCode steps = stepsOf(block);
   const unsigned pair_bits = bitsOf(pairs.size());
-  for (std::size_t i = 0; i < block.count; ++i) {
+  for (std::size_t i = 0; i < count; ++i) {
     const RowRecord& r = rows[i];
-    if (i > 0) steps.put(r.row - rows[i - 1].row - 1, bits);
     const bool has_normal = std::isfinite(r.normal[0]);
     bits.put(has_normal ? packNormal(r.normal, kNormalBits) : kNoNormal, kNormalBits);
     bits.put(packCurvature(r.normal[3]), kCurvatureBits);
@@ -43,8 +37,8 @@ void pack(const RowRecord* rows, const RowBlock& block, const std::vector<std::u
 
 }  // namespace
 
-void saveRows(const std::vector<RowRecord>& rows, const std::string& path, std::uint64_t run,
-              std::uint32_t tile) {
+void saveRows(const std::vector<RowRecord>& rows, const std::vector<OutputStart>& starts,
+              const std::string& path, std::uint64_t run, std::uint32_t tile) {
   std::vector<std::uint64_t> pairs;
   for (const RowRecord& r : rows) {
     if (pairs.empty() || pairs.back() != pairOf(r)) pairs.push_back(pairOf(r));
@@ -56,32 +50,34 @@ void saveRows(const std::vector<RowRecord>& rows, const std::string& path, std::
   std::sort(pairs.begin(), pairs.end());
   pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
   PartsWriter file(path, TileFileKind::ROWS, run, tile);
-  std::vector<RowBlock> blocks;
+  std::vector<FilePart> blocks;
   std::vector<std::uint8_t> bytes;
   for (std::size_t first = 0; first < rows.size(); first += kBlockRows) {
-    RowBlock block;
-    block.count = std::min(kBlockRows, rows.size() - first);
-    block.first_row = rows[first].row;
-    block.last_row = rows[first + static_cast<std::size_t>(block.count) - 1].row;
-    pack(&rows[first], block, pairs, bytes);
-    block.part = file.add(bytes);
-    blocks.push_back(block);
+    pack(&rows[first], std::min(kBlockRows, rows.size() - first), pairs, bytes);
+    blocks.push_back(file.add(bytes));
   }
   ListWriter lists;
   lists.list(pairs);
   lists.list(blocks);
+  lists.list(starts);
+  lists.list(std::vector<std::uint64_t>{rows.size()});
   file.commit(lists);
 }
 
 RowReader::RowReader(const std::string& path, std::uint64_t run, std::uint32_t tile,
-                     std::uint64_t first_row)
+                     std::uint32_t output)
     : file_(path, TileFileKind::ROWS, run, tile),
       pairs_(file_.list<std::uint64_t>()),
-      blocks_(file_.list<RowBlock>()) {
-  const auto block = std::find_if(blocks_.begin(), blocks_.end(),
-                                  [&](const RowBlock& b) { return b.last_row >= first_row; });
-  load(static_cast<std::size_t>(block - blocks_.begin()));
-  while (!done() && row().row < first_row) next();
+      blocks_(file_.list<FilePart>()) {
+  const auto starts = file_.list<OutputStart>();
+  const auto count = file_.list<std::uint64_t>();
+  if (count.size() != 1 || blocks_.size() != (count[0] + kBlockRows - 1) / kBlockRows) file_.fail();
+  count_ = count[0];
+  const auto start = std::find_if(starts.begin(), starts.end(),
+                                  [&](const OutputStart& s) { return s.output == output; });
+  if (start == starts.end()) return;
+  load(static_cast<std::size_t>(start->number / kBlockRows));
+  at_ = static_cast<std::size_t>(start->number % kBlockRows);
 }
 
 void RowReader::load(std::size_t number) {
@@ -89,16 +85,12 @@ void RowReader::load(std::size_t number) {
   at_ = 0;
   rows_.clear();
   if (number >= blocks_.size()) return;
-  const RowBlock& block = blocks_[number];
-  if (block.count > kBlockRows || block.last_row < block.first_row) file_.fail();
-  const std::vector<std::uint8_t> bytes = file_.part(block.part);
+  const std::vector<std::uint8_t> bytes = file_.part(blocks_[number]);
   BitReader bits(bytes.data(), bytes.size());
-  const RiceCode steps = stepsOf(block);
+  const auto count = std::min<std::uint64_t>(kBlockRows, count_ - number * kBlockRows);
   const unsigned pair_bits = bitsOf(pairs_.size());
   RowRecord r;
-  r.row = block.first_row;
-  for (std::size_t i = 0; i < block.count; ++i) {
-    if (i > 0) r.row += steps.get(bits) + 1;
+  for (std::uint64_t i = 0; i < count; ++i) {
     const std::uint64_t normal = bits.get(kNormalBits);
     const auto curvature = static_cast<std::uint32_t>(bits.get(kCurvatureBits));
     if (normal == kNoNormal) {

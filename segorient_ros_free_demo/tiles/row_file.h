@@ -10,25 +10,15 @@
 
 namespace segorient::program {
 
-/// Some rows of a tile that follow one another.
-struct RowBlock {
-  FilePart part;
-  std::uint64_t first_row = 0;
-  std::uint64_t last_row = 0;
-  std::uint64_t count = 0;
-};
+/// Writes what is known of a tile's points, all of them in the order of the inputs: normals and
+/// curvatures as packed_values.h has them, labels and pieces as the number of their pair.
+void saveRows(const std::vector<RowRecord>& rows, const std::vector<OutputStart>& starts,
+              const std::string& path, std::uint64_t run, std::uint32_t tile);
 
-/// Writes what is known of a tile's points, ascending by row: normals and curvatures as
-/// packed_values.h has them, labels and pieces as the number of their pair.
-void saveRows(const std::vector<RowRecord>& rows, const std::string& path, std::uint64_t run,
-              std::uint32_t tile);
-
-/// Reads such a file from any row on, a block at a time; it is not kept open.
+/// Reads such a file from an output's first point on, a block at a time; it is not kept open.
 class RowReader {
  public:
-  /// \param first_row the first that is wanted
-  RowReader(const std::string& path, std::uint64_t run, std::uint32_t tile,
-            std::uint64_t first_row);
+  RowReader(const std::string& path, std::uint64_t run, std::uint32_t tile, std::uint32_t output);
   bool done() const { return at_ >= rows_.size(); }
   const RowRecord& row() const { return rows_[at_]; }
   void next() {
@@ -40,7 +30,8 @@ class RowReader {
 
   PartsReader file_;
   std::vector<std::uint64_t> pairs_;  // of labels and pieces
-  std::vector<RowBlock> blocks_;
+  std::vector<FilePart> blocks_;
+  std::uint64_t count_ = 0;
   std::size_t block_ = 0;
   std::vector<RowRecord> rows_;  // of the block
   std::size_t at_ = 0;

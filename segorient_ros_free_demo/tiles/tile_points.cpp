@@ -23,14 +23,15 @@ class Reader {
     for (std::uint32_t t = 0; t < plan_.tiles(); ++t) {
       if (t == tile_ || has_wanted_[t] != 0) readFile(t);
     }
-    sortByRow();
+    sortByNumber();
     return std::move(out_);
   }
 
  private:
   // What a point is to this tile.
   struct Entry {
-    std::uint64_t row;
+    std::uint32_t owner;
+    std::uint32_t number;
     std::uint32_t place;  // in the arrays, as they were read
   };
   struct Tie {
@@ -43,7 +44,7 @@ class Reader {
   void readFile(std::uint32_t owner);
   void addPoint(const StoredPoint& p, std::uint32_t owner);
   void push(const StoredPoint& p, TileRole role, double whole);
-  void sortByRow();
+  void sortByNumber();
 
   const Plan& plan_;
   const std::string& folder_;
@@ -53,6 +54,7 @@ class Reader {
   std::vector<std::uint8_t> is_near_;
   std::vector<std::uint8_t> has_wanted_;  // by tile
   std::vector<Tie> ties_;
+  std::vector<Entry> order_;
   TilePoints out_;
 };
 
@@ -77,14 +79,20 @@ void Reader::findCells() {
 void Reader::readFile(std::uint32_t owner) {
   PartsReader file(tilePath(folder_, owner, "points"), TileFileKind::POINTS, plan_.run, owner);
   std::vector<StoredPoint> points;
-  for (const PointPacket& packet : file.list<PointPacket>()) {
+  const std::vector<PointPacket> packets = file.list<PointPacket>();
+  if (owner == tile_) out_.starts = file.list<OutputStart>();
+  FilePart part{sizeof(TileFileHeader), 0, 0};
+  for (const PointPacket& packet : packets) {
+    part.offset += part.bytes;
+    part.bytes = packet.bytes;
+    part.checksum = packet.checksum;
     if (packet.last_cell < packet.first_cell || packet.last_cell >= is_near_.size()) file.fail();
     const auto first = is_near_.begin() + packet.first_cell;
     const auto last = is_near_.begin() + packet.last_cell + 1;
     if (owner != tile_ && std::find(first, last, 1) == last) continue;
     points.clear();
-    if (!unpackPoints(file.part(packet.part), packet.count,
-                      {plan_.has_viewpoints, plan_.keep_orientation}, points)) {
+    if (!unpackPoints(file.part(part), packet.count, {plan_.has_viewpoints, plan_.keep_orientation},
+                      points)) {
       file.fail();
     }
     for (const StoredPoint& p : points) addPoint(p, owner);
@@ -94,7 +102,7 @@ void Reader::readFile(std::uint32_t owner) {
 void Reader::addPoint(const StoredPoint& p, std::uint32_t owner) {
   const std::uint32_t cell = plan_.tree.cellOf(p.place);
   const double reach = plan_.tree.nodes()[cell].reach;
-  const auto place = static_cast<std::uint32_t>(out_.rows.size());
+  const auto place = static_cast<std::uint32_t>(order_.size());
   if (owner == tile_) {
     bool shared = false;
     if (is_near_[cell] != 0) {
@@ -104,6 +112,7 @@ void Reader::addPoint(const StoredPoint& p, std::uint32_t owner) {
         ties_.push_back({t, tile_, place});
       });
     }
+    order_.push_back({owner, p.number, place});
     push(p, shared ? TileRole::SHARED : TileRole::OWN, reach);
     return;
   }
@@ -113,13 +122,13 @@ void Reader::addPoint(const StoredPoint& p, std::uint32_t owner) {
   });
   if (distance < 0.0) return;
   ties_.push_back({owner, owner, place});
+  order_.push_back({owner, p.number, place});
   push(p, TileRole::HALO,
        distance > 0.0 ? plan_.tree.wholeRadius(p.place, reach, distance) : reach);
 }
 
 void Reader::push(const StoredPoint& p, TileRole role, double whole) {
   const std::array<double, 3>& origin = plan_.tile_origins[tile_];
-  out_.rows.push_back(p.row);
   for (std::size_t a = 0; a < 3; ++a) {
     out_.xyz.push_back(static_cast<float>(p.place[a] - origin[a]));
   }
@@ -146,15 +155,11 @@ void reorder(const Order& order, std::size_t width, std::vector<T>& values) {
   values.swap(sorted);
 }
 
-void Reader::sortByRow() {
-  std::vector<Entry> order;
-  order.reserve(out_.rows.size());
-  for (std::size_t i = 0; i < out_.rows.size(); ++i) {
-    order.push_back({out_.rows[i], static_cast<std::uint32_t>(i)});
-  }
-  std::sort(order.begin(), order.end(),
-            [](const Entry& a, const Entry& b) { return a.row < b.row; });
-  reorder(order, 1, out_.rows);
+void Reader::sortByNumber() {
+  std::vector<Entry>& order = order_;
+  std::sort(order.begin(), order.end(), [](const Entry& a, const Entry& b) {
+    return a.owner != b.owner ? a.owner < b.owner : a.number < b.number;
+  });
   reorder(order, 3, out_.xyz);
   reorder(order, 1, out_.roles);
   reorder(order, 1, out_.whole);

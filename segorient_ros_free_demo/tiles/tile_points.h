@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "tiles/plan.h"
+#include "tiles/tile_records.h"
 #include "tiles/tile_share.h"
 
 namespace segorient::program {
@@ -20,10 +21,11 @@ struct SharedPoints {
   std::vector<std::uint32_t> points;
 };
 
-/// A tile's own points, and those of others in its halo, in the order of the input.
+/// A tile's own points, and those of others in its halo: by the tile that owns them, and in the
+/// order of the inputs.
 struct TilePoints {
-  std::vector<std::uint64_t> rows;
-  std::vector<float> xyz;  ///< 3 each, relative to the tile's origin
+  std::vector<OutputStart> starts;  ///< of outputs, among its own points
+  std::vector<float> xyz;           ///< 3 each, relative to the tile's origin
   std::vector<TileRole> roles;
   std::vector<float> whole;          ///< see workOnTile()
   std::vector<float> viewpoints;     ///< 3 each, relative to the plan's origin; or empty

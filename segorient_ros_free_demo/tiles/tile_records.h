@@ -13,9 +13,15 @@
 // for join; signs, what join says of it; and what it leaves when it is finished.
 namespace segorient::program {
 
+/// Where the points of one output begin among those of a tile.
+struct OutputStart {
+  std::uint64_t number = 0;
+  std::uint32_t output = 0;
+  std::uint32_t unused = 0;  ///< no hidden bytes: they are stored as they are
+};
+
 /// What is known of one of a tile's own points.
 struct RowRecord {
-  std::uint64_t row = 0;
   float normal[4] = {0.F, 0.F, 0.F, 0.F};  ///< with the curvature; NaN where there is none
   std::int32_t label = -1;                 ///< of the tile
   std::int32_t followed = -1;              ///< see TileShare

@@ -17,7 +17,6 @@ std::vector<RowRecord> ownRows(const TilePoints& points, const TileShare& share)
   for (std::size_t i = 0; i < points.roles.size(); ++i) {
     if (!isOwn(points.roles[i])) continue;
     RowRecord r;
-    r.row = points.rows[i];
     std::copy_n(&share.normals[4 * i], 4, r.normal);
     r.label = share.labels[i];
     r.followed = share.followed[i];
@@ -79,7 +78,8 @@ void tileStep(const Plan& plan, const std::string& folder, std::size_t number, i
   }
   const Work work = prepare(plan, folder, number, threads);
   TileShare share = workOnTile(work.view(), work.points.roles, work.points.whole, work.options);
-  saveRows(ownRows(work.points, share), tilePath(folder, tile, "rows"), plan.run, tile);
+  saveRows(ownRows(work.points, share), work.points.starts, tilePath(folder, tile, "rows"),
+           plan.run, tile);
   saveTies(work.points.shared, share, tilePath(folder, tile, "ties"), plan.run, tile);
   ShareFile file;
   file.piece_sizes = std::move(share.piece_sizes);
@@ -102,7 +102,8 @@ void finishStep(const Plan& plan, const std::string& folder, std::size_t number,
   const Work work = prepare(plan, folder, number, threads);
   const TileShare share =
       finishTile(work.view(), work.points.roles, work.points.whole, work.options, file.signs);
-  saveRows(ownRows(work.points, share), tilePath(folder, tile, "rows2"), plan.run, tile);
+  saveRows(ownRows(work.points, share), work.points.starts, tilePath(folder, tile, "rows2"),
+           plan.run, tile);
   saveTies(work.points.shared, share, ties_path, plan.run, tile);
 }
 

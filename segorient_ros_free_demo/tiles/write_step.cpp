@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026, the segorient authors
 #include <algorithm>
+#include <array>
 #include <cmath>
-#include <functional>
 #include <limits>
 #include <memory>
-#include <queue>
 #include <utility>
 
 #include "io/cloud_writer.h"
@@ -21,34 +20,35 @@ namespace {
 
 constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
 
-// The results of all tiles in the order of the input's rows.
+// The results of all tiles for the points of one output, in the order of its rows.
 class Results {
  public:
-  Results(const Plan& plan, const std::string& folder, std::uint64_t first_row)
-      : labels_(loadLabels(labelsPath(folder), plan.run, plan.tiles())) {
+  Results(const Plan& plan, const std::string& folder, std::uint32_t output)
+      : plan_(plan), labels_(loadLabels(labelsPath(folder), plan.run, plan.tiles())) {
     for (std::size_t t = 0; t < plan.tiles(); ++t) {
       const auto tile = static_cast<std::uint32_t>(t);
       SignsFile file = loadSigns(tilePath(folder, t, "signs"), plan.run, tile);
       signs_.push_back(std::move(file.signs.pieces));
       rows_.push_back(std::make_unique<RowReader>(
-          tilePath(folder, t, file.again ? "rows2" : "rows"), plan.run, tile, first_row));
-      if (!rows_[t]->done()) next_.emplace(rows_[t]->row().row, t);
+          tilePath(folder, t, file.again ? "rows2" : "rows"), plan.run, tile, output));
     }
   }
 
-  // Of the rows from `first_row` on; NaN and no label for those that no tile knows.
-  void take(std::uint64_t first_row, std::size_t count) {
-    normals.assign(4 * count, kNaN);
-    labels.assign(count, kNoSegment);
-    while (!next_.empty() && next_.top().first < first_row + count) {
-      const std::size_t tile = next_.top().second;
-      next_.pop();
-      RowReader& reader = *rows_[tile];
-      const RowRecord& r = reader.row();
-      const auto i = static_cast<std::size_t>(r.row - first_row);
-      place(tile, r, i);
-      reader.next();
-      if (!reader.done()) next_.emplace(reader.row().row, tile);
+  // Of the next rows; NaN and no label for those that no tile knows.
+  void take(const CloudTable& block) {
+    normals.assign(4 * block.size, kNaN);
+    labels.assign(block.size, kNoSegment);
+    const auto xyz = block.xyz();
+    for (std::size_t i = 0; i < block.size; ++i) {
+      const std::array<double, 3> place = block.triple(xyz, i);
+      if (!std::isfinite(place[0]) || !std::isfinite(place[1]) || !std::isfinite(place[2])) {
+        continue;
+      }
+      double reach = 0.0;
+      const std::uint32_t tile = plan_.tree.owner(storedPlace(plan_, place), reach);
+      if (rows_[tile]->done()) continue;
+      copy(tile, rows_[tile]->row(), i);
+      rows_[tile]->next();
     }
   }
 
@@ -56,7 +56,7 @@ class Results {
   std::vector<std::uint32_t> labels;
 
  private:
-  void place(std::size_t tile, const RowRecord& r, std::size_t i) {
+  void copy(std::size_t tile, const RowRecord& r, std::size_t i) {
     std::copy_n(r.normal, 4, &normals[4 * i]);
     const auto label = static_cast<std::size_t>(r.label);
     if (r.label >= 0 && label < labels_[tile].size()) labels[i] = labels_[tile][label];
@@ -65,11 +65,10 @@ class Results {
     for (std::size_t a = 0; a < 3; ++a) normals[4 * i + a] *= signs_[tile][piece];
   }
 
+  const Plan& plan_;
   LabelFile labels_;
   std::vector<std::vector<std::int8_t>> signs_;  // of each tile's pieces
   std::vector<std::unique_ptr<RowReader>> rows_;
-  using Next = std::pair<std::uint64_t, std::size_t>;
-  std::priority_queue<Next, std::vector<Next>, std::greater<>> next_;  // row and tile
 };
 
 // Calls visit(columns, block's first row) for each block of the points of an output.
@@ -130,9 +129,9 @@ void writeStep(const Plan& plan, const std::string& folder, std::size_t output, 
   }
   // As of a cloud in memory: LAS has room for a camera's colours only in some of its formats.
   const bool colors = fileEnding(to.path) != ".las";
-  Results results(plan, folder, first_row);
+  Results results(plan, folder, static_cast<std::uint32_t>(output));
   forEachBlock(plan, to, [&](const CloudTable& block, std::uint64_t row) {
-    results.take(row, block.size);
+    results.take(block);
     addBlock(block, results, colors, size, writer);
     if (progress) progress(static_cast<double>(row - first_row) / static_cast<double>(size));
   });

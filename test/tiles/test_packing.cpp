@@ -52,7 +52,7 @@ TEST(Packing, NormalsKeepTheirDirection) {
     }
     const float length = std::sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
     for (float& x : n) x /= length;
-    for (const auto& [bits, degrees] : {std::pair<unsigned, float>{16U, 1.F}, {28U, 0.015F}}) {
+    for (const auto& [bits, degrees] : {std::pair<unsigned, float>{16U, 1.F}, {26U, 0.03F}}) {
       float m[3];
       const std::uint32_t packed = packNormal(n, bits);
       ASSERT_LT(packed, (std::uint64_t{1} << bits) - 1);  // that stands for no normal
@@ -68,26 +68,26 @@ TEST(Packing, NormalsKeepTheirDirection) {
   }
 }
 
-TEST(Packing, CurvaturesKeepThreeDigits) {
+TEST(Packing, CurvaturesKeepTwoDigits) {
   EXPECT_EQ(unpackCurvature(packCurvature(0.F)), 0.F);
   EXPECT_EQ(unpackCurvature(packCurvature(std::numeric_limits<float>::quiet_NaN())), 0.F);
   EXPECT_EQ(unpackCurvature(packCurvature(1e-20F)), 0.F);
   for (float c = 1e-8F; c < 0.34F; c *= 1.07F) {
-    ASSERT_NEAR(unpackCurvature(packCurvature(c)) / c, 1.F, 0.001F) << c;
+    ASSERT_NEAR(unpackCurvature(packCurvature(c)) / c, 1.F, 0.004F) << c;
   }
 }
 
-// Floats at any place, doubles at UTM size, points in one place, rows far apart, viewpoints.
+// Floats at any place, doubles at UTM size, points in one place, numbers far apart, viewpoints.
 TEST(Packing, PointsComeBackExactly) {
   std::mt19937_64 random(7);
   std::uniform_real_distribution<double> uniform(-1.0, 1.0);
   for (int kind = 0; kind < 4; ++kind) {
     const PointFields fields{true, kind == 1};
     std::vector<StoredPoint> points(kind == 3 ? 1 : 500);
-    std::uint64_t row = 12345678901ULL;
+    std::uint32_t row = 123456789;
     for (StoredPoint& p : points) {
-      row += 1 + random() % (kind == 1 ? 1000000000ULL : 50ULL);
-      p.row = row;
+      row += 1 + static_cast<std::uint32_t>(random() % (kind == 1 ? 8000000ULL : 50ULL));
+      p.number = row;
       for (double& x : p.place) {
         x = uniform(random);
         if (kind == 0) x = static_cast<double>(static_cast<float>(x));
@@ -104,7 +104,7 @@ TEST(Packing, PointsComeBackExactly) {
     ASSERT_TRUE(unpackPoints(packet, points.size(), fields, back));
     ASSERT_EQ(back.size(), points.size());
     for (std::size_t i = 0; i < points.size(); ++i) {
-      ASSERT_EQ(back[i].row, points[i].row) << kind;
+      ASSERT_EQ(back[i].number, points[i].number) << kind;
       ASSERT_EQ(back[i].place, points[i].place) << kind;
       ASSERT_EQ(back[i].normal, points[i].normal) << kind;
       ASSERT_EQ(std::memcmp(&back[i].seen_from, &points[i].seen_from, 12), 0) << kind;
