@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the segorient authors
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "orientation/automatic/sensor_signs.h"
+#include "orientation/automatic/sheet_stages.h"
+
+namespace segorient::detail {
+namespace {
+
+// One place for all points may be wrong as a whole, inside a solid, or have seen one side of it
+// only. Unless its density says that all was seen from there, what closes in itself knows better:
+// it keeps its outside if that faces the place, and if its points are spread as evenly as no sensor
+// spreads them.
+void keepClosedFromSensors(SheetSigns& sheets, const std::vector<Ballot>& ballots) {
+  const bool told_closed = sheets.hints.surface == SurfaceKind::CLOSED;
+  if (!sheets.sensors.one_place || !sheets.sensors.scans[0].used) return;
+  if (sheets.hints.surface == SurfaceKind::OPEN) return;
+  if (sheets.sensors.scans[0].density < kConfirmed && !told_closed) return;
+  std::vector<Ballot> by_component(sheets.windings.size());
+  for (std::size_t s = 0; s < sheets.signs.size(); ++s) {
+    by_component[at(sheets.component_of[s])].add(ballots[s], sheets.signs[s]);
+  }
+  std::vector<bool> own(sheets.windings.size(), false);
+  std::size_t believed = 0;
+  for (std::size_t c = 0; c < own.size(); ++c) {
+    const bool contrary = by_component[c].share() < -kClearly;
+    const bool keeps = told_closed || !contrary || sheets.sensors.even;
+    own[c] = keeps && sheets.isClosed(c, kOpenResidual);
+    if (!own[c] || !contrary) believed += sheets.found.result.components[c].points;
+  }
+  for (std::size_t i = 0; i < sheets.points.size; ++i) {
+    const std::int32_t s = sheets.segmentation.labels[i];
+    if (s < 0 || !own[at(sheets.component_of[at(s)])]) continue;
+    sheets.facing[i] = 0.F;
+    std::fill_n(&sheets.sensors.toward[3 * i], 3, 0.F);
+  }
+  KnownSensor& report = sheets.sensors.scans[0];
+  report.used = 2 * believed > sheets.cloud_points;
+  if (!report.used) report.seen = 0;
+}
+
+}  // namespace
+
+void followHints(SheetSigns& sheets) {
+  std::vector<HintVotes> by_cluster(sheets.clusters.size());
+  std::vector<std::int32_t> component_of(sheets.clusters.size(), -1);
+  for (std::size_t s = 0; s < sheets.clusters.size(); ++s) {
+    by_cluster[at(sheets.clusters.of(s))].add(sheets.hint_votes[s], sheets.signs[s]);
+    component_of[at(sheets.clusters.of(s))] = sheets.component_of[s];
+  }
+  sheets.hinted.assign(sheets.clusters.size(), false);
+  std::vector<Ballot> seen(sheets.clusters.size());
+  std::vector<Ballot> known(sheets.clusters.size());
+  for (std::size_t c = 0; c < sheets.clusters.size(); ++c) {
+    if (component_of[c] < 0) continue;
+    const HintVotes& v = by_cluster[c];
+    if (v.seeds.total > 0.F || v.directions.total > 0.F) {
+      known[c] = v.seeds.total > 0.F ? v.seeds : v.directions;
+      sheets.hinted[c] = true;
+    } else if (!sheets.isClosed(at(component_of[c]), kClosedResidual)) {
+      seen[c] = v.view;
+    }
+  }
+  sheets.turnClusters(sheets.outvoted(known, kFirmBorders));
+  sheets.turnClusters(sheets.outvoted(seen, kSureBorders));
+}
+
+void followSensors(SheetSigns& sheets) {
+  sheets.facing = facingOf(sheets.field, sheets.points.size, sheets.sensors);
+  keepClosedFromSensors(sheets, facingBySegment(sheets.facing, sheets.segmentation));
+  const std::vector<Ballot> ballots = facingBySegment(sheets.facing, sheets.segmentation);
+  const std::vector<bool> decided =
+      turnToSensors(ballots, sheets.votes, sheets.segmentation, sheets.clusterOf(),
+                    sheets.component_of, sheets.signs);
+  std::vector<Ballot> seen(sheets.windings.size());
+  for (std::size_t s = 0; s < sheets.signs.size(); ++s) {
+    if (decided[s]) seen[at(sheets.component_of[s])].add(ballots[s], sheets.signs[s]);
+  }
+  for (std::size_t c = 0; c < seen.size(); ++c) {
+    if (!(seen[c].total > 0.F)) continue;
+    sheets.found.result.components[c].by = DecidedBy::HINTS;
+    sheets.found.result.components[c].confidence = std::fabs(seen[c].share());
+  }
+}
+
+void believeSensors(SheetSigns& sheets) {
+  if (sheets.sensors.none()) return;
+  for (std::size_t i = 0; i < sheets.points.size; ++i) {
+    if (!isClear(sheets.facing[i])) continue;
+    sheets.found.result.point_signs[i] = sheets.facing[i] < 0.F ? std::int8_t{-1} : std::int8_t{1};
+    sheets.found.result.point_confidences[i] = 1.F;
+  }
+  sheets.found.sensors = std::move(sheets.sensors.scans);
+  sheets.found.toward = std::move(sheets.sensors.toward);
+}
+
+}  // namespace segorient::detail

@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the segorient authors
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "orientation/automatic/loose_parts.h"
+#include "orientation/automatic/sheet_stages.h"
+
+namespace segorient::detail {
+namespace {
+
+void findContradictions(SheetSigns& sheets) {
+  // Unanimous borders about as long as the object is wide: noise does not produce those.
+  const auto long_enough = static_cast<std::uint32_t>(
+      std::max(20.0, 0.5 * std::sqrt(static_cast<double>(sheets.cloud_points))));
+  for (const BorderVote& v : sheets.votes) {
+    // Walls face apart in a plate, but not in a roll.
+    if (v.by_planes || v.wall_counts || v.unanimity() < 0.9F || v.count < long_enough ||
+        v.reliable < 0.8F * v.absolute) {
+      continue;
+    }
+    const float agreed =
+        v.weight * static_cast<float>(sheets.signs[at(v.a)] * sheets.signs[at(v.b)]);
+    if (agreed >= 0.F) continue;
+    const float* p = sheets.points[static_cast<std::size_t>(v.where)];
+    sheets.found.contradictions.push_back({v.a, v.b, -agreed, {p[0], p[1], p[2]}});
+  }
+  std::stable_sort(
+      sheets.found.contradictions.begin(), sheets.found.contradictions.end(),
+      [](const Contradiction& x, const Contradiction& y) { return x.weight > y.weight; });
+}
+
+void listClusters(SheetSigns& sheets) {
+  std::vector<ClusterOrientationResult> all(sheets.clusters.size());
+  const std::vector<float> agreement =
+      agreementOf(sheets.clusterOf(), sheets.votes, sheets.signs, 1.F);
+  for (std::size_t s = 0; s < sheets.clusters.size(); ++s) {
+    ClusterOrientationResult& cluster = all[at(sheets.clusters.of(s))];
+    cluster.points += sheets.segmentation.segments[s].size;
+    cluster.component = sheets.component_of[s];
+    cluster.confidence = std::clamp(agreement[at(sheets.clusters.of(s))], 0.F, 1.F);
+  }
+  std::vector<std::int32_t> order;
+  for (std::size_t c = 0; c < all.size(); ++c) {
+    if (all[c].points > 0) order.push_back(static_cast<std::int32_t>(c));
+  }
+  std::stable_sort(order.begin(), order.end(), [&](std::int32_t a, std::int32_t b) {
+    return all[at(a)].points > all[at(b)].points;
+  });
+  std::vector<std::int32_t> rank(all.size(), -1);
+  for (std::size_t k = 0; k < order.size(); ++k) {
+    rank[at(order[k])] = static_cast<std::int32_t>(k);
+    sheets.found.clusters.push_back(all[at(order[k])]);
+  }
+  sheets.found.cluster_of.resize(sheets.clusters.size());
+  for (std::size_t s = 0; s < sheets.clusters.size(); ++s)
+    sheets.found.cluster_of[s] = rank[at(sheets.clusters.of(s))];
+}
+
+}  // namespace
+
+void judge(SheetSigns& sheets) {
+  OrientationResult& result = sheets.found.result;
+  const std::size_t n = sheets.signs.size();
+  std::vector<std::int32_t> itself(n);
+  std::iota(itself.begin(), itself.end(), 0);
+  constexpr float kNone = 2.F;  // without borders
+  const std::vector<float> agreement = agreementOf(itself, sheets.votes, sheets.signs, kNone);
+  result.segments.resize(n);
+  for (std::size_t s = 0; s < n; ++s) {
+    SegmentOrientationResult& r = result.segments[s];
+    r.sign = sheets.signs[s];
+    r.by = DecidedBy::GLOBAL;
+    r.component = sheets.component_of[s];
+    const float known = agreement[s] == kNone
+                            ? result.components[at(sheets.component_of[s])].confidence
+                            : agreement[s];
+    r.confidence = std::clamp(known, 0.F, 1.F);
+    r.hard = known <= 0.F;
+  }
+  findContradictions(sheets);
+  listClusters(sheets);
+  result.point_signs.assign(sheets.points.size, 0);
+  result.point_confidences.assign(sheets.points.size, 0.F);
+  result.point_components.assign(sheets.points.size, -1);
+  for (std::size_t i = 0; i < sheets.points.size; ++i) {
+    const std::int32_t s = sheets.segmentation.labels[i];
+    if (s < 0) continue;
+    result.point_signs[i] =
+        static_cast<std::int8_t>(sheets.segmentation.signs[i] * sheets.signs[at(s)]);
+    result.point_confidences[i] = result.segments[at(s)].confidence;
+    result.point_components[i] = sheets.component_of[at(s)];
+  }
+}
+
+}  // namespace segorient::detail

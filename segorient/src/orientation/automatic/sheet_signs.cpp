@@ -1,0 +1,143 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the segorient authors
+#include "orientation/automatic/sheet_signs.h"
+
+#include <algorithm>
+#include <numeric>
+#include <utility>
+
+#include "orientation/automatic/loose_parts.h"
+
+namespace segorient::detail {
+
+SheetSigns::SheetSigns(const PointView& all, const Neighborhoods& neighborhoods,
+                       const SheetField& sheet_field, const Segmentation& segments,
+                       std::vector<BorderVote> border_votes, std::size_t count,
+                       const AutomaticOptions& settings, const PointHints& known, int most_threads)
+    : points(all),
+      cloud_points(count),
+      field(sheet_field),
+      segmentation(segments),
+      options(settings),
+      hints(known),
+      threads(most_threads),
+      hint_votes(hintVotes(all, sheet_field, segments, known)),
+      sensors(findKnownSensors(all, neighborhoods, sheet_field.spacing, known, most_threads)),
+      votes(std::move(border_votes)),
+      clusters(segments, votes, {settings.contract_certain, settings.flip_clusters, count}) {
+  numberComponents();
+}
+
+void SheetSigns::numberComponents() {
+  const std::size_t n = clusters.size();
+  std::vector<std::uint32_t> size(n, 0);
+  std::vector<bool> is_root(n, false);
+  signs.resize(n);
+  for (std::size_t s = 0; s < n; ++s) {
+    const std::size_t root = at(clusters.root(clusters.of(s)));
+    is_root[root] = true;
+    size[root] += segmentation.segments[s].size;
+    signs[s] = clusters.sign(s);
+  }
+  // Segments without points are components of their own, too.
+  std::vector<std::int32_t> order;
+  for (std::size_t s = 0; s < n; ++s) {
+    if (is_root[s]) order.push_back(static_cast<std::int32_t>(s));
+  }
+  std::stable_sort(order.begin(), order.end(),
+                   [&](std::int32_t a, std::int32_t b) { return size[at(a)] > size[at(b)]; });
+  std::vector<std::int32_t> rank(n, -1);
+  for (std::size_t c = 0; c < order.size(); ++c) rank[at(order[c])] = static_cast<std::int32_t>(c);
+  component_of.resize(n);
+  for (std::size_t s = 0; s < n; ++s) component_of[s] = rank[at(clusters.root(clusters.of(s)))];
+  windings.assign(order.size(), ComponentWinding{});
+  found.result.components.resize(order.size());
+  for (std::size_t c = 0; c < order.size(); ++c) {
+    found.result.components[c].points = size[at(order[c])];
+  }
+}
+
+std::vector<float> SheetSigns::orientedNormals(bool dipoles) const {
+  std::vector<float> out(4 * points.size, 0.F);
+  // The mean distance to the 6 nearest of points of density 1/a is 0.977 sqrt(a). Noise of r
+  // spacings takes two points sqrt(2) r apart across the surface, which adds about 2 r^2 to the
+  // square.
+  const float r = field.residual;
+  const float per_square = 1.047F / (1.F + 2.F * r * r);
+  for (std::size_t i = 0; i < points.size; ++i) {
+    const float h = field.spacing[i];
+    const float area = dipoles ? per_square * h * h : 1.F;
+    const float sign = pointSign(i);
+    if (sign == 0.F) continue;
+    for (std::size_t a = 0; a < 3; ++a) out[4 * i + a] = sign * area * field.normals[4 * i + a];
+    out[4 * i + 3] = area;
+  }
+  return out;
+}
+
+std::vector<std::int32_t> SheetSigns::clusterOf() const {
+  std::vector<std::int32_t> out;
+  for (std::size_t s = 0; s < clusters.size(); ++s) out.push_back(clusters.of(s));
+  return out;
+}
+
+std::vector<std::int32_t> SheetSigns::ofPoints(const std::vector<std::int32_t>& of_segments) const {
+  std::vector<std::int32_t> out(points.size, -1);
+  for (std::size_t i = 0; i < points.size; ++i) {
+    if (segmentation.labels[i] >= 0) out[i] = of_segments[at(segmentation.labels[i])];
+  }
+  return out;
+}
+
+void SheetSigns::windComponents() {
+  const std::vector<float> spacing(field.spacing, field.spacing + points.size);
+  windings = solveComponents(points, orientedNormals(true), spacing, ofPoints(component_of),
+                             windings.size(), threads);
+}
+
+bool SheetSigns::isClosed(std::size_t component, float residual) const {
+  if (hints.surface != SurfaceKind::UNKNOWN) return hints.surface == SurfaceKind::CLOSED;
+  return windings[component].residual <= residual;
+}
+
+std::vector<bool> SheetSigns::outvoted(const std::vector<Ballot>& ballots,
+                                       float sure_borders) const {
+  const std::vector<float> agreement = agreementOf(clusterOf(), votes, signs, 0.F);
+  std::vector<bool> out(clusters.size());
+  for (std::size_t c = 0; c < out.size(); ++c) {
+    out[c] = agreement[c] <= sure_borders && ballots[c].share() < -kClearly;
+  }
+  return out;
+}
+
+void SheetSigns::turnClusters(const std::vector<bool>& chosen) {
+  for (std::size_t s = 0; s < signs.size(); ++s) {
+    if (chosen[at(clusters.of(s))]) signs[s] = static_cast<std::int8_t>(-signs[s]);
+  }
+}
+
+void SheetSigns::keepWhatWindsRight(const std::vector<std::int32_t>& part_of,
+                                    std::vector<bool>& chosen) const {
+  if (!options.wind_components || hints.surface == SurfaceKind::OPEN) return;
+  // About 1 for a cavity; .6 for a hemisphere and .8 for a box without a lid, which are open.
+  constexpr float kRises = 0.8F;
+  const std::size_t fixed = windings.size();
+  std::vector<std::int32_t> number(chosen.size(), -1);
+  std::vector<std::int32_t> numbered = component_of;
+  std::size_t count = fixed;
+  for (std::size_t s = 0; s < signs.size(); ++s) {
+    const std::size_t part = at(part_of[s]);
+    if (!chosen[part]) continue;
+    if (number[part] < 0) number[part] = static_cast<std::int32_t>(count++);
+    numbered[s] = number[part];
+  }
+  if (count == fixed) return;
+  const std::vector<float> spacing(field.spacing, field.spacing + points.size);
+  const std::vector<float> rise = riseIfTurned(points, orientedNormals(true), spacing,
+                                               ofPoints(numbered), count, fixed, threads);
+  for (std::size_t part = 0; part < chosen.size(); ++part) {
+    if (number[part] >= 0 && rise[at(number[part])] > kRises) chosen[part] = false;
+  }
+}
+
+}  // namespace segorient::detail

@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the segorient authors
+#pragma once
+
+#include <segorient/common/neighborhoods.h>
+#include <segorient/common/point_view.h>
+#include <segorient/orientation/orientation_options.h>
+#include <segorient/segmentation/segmentation.h>
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "orientation/automatic/border_votes.h"
+#include "orientation/automatic/orient_sheets.h"
+#include "orientation/automatic/segment_clusters.h"
+#include "orientation/sensors/hint_votes.h"
+#include "orientation/sensors/known_sensors.h"
+#include "orientation/sensors/point_hints.h"
+#include "orientation/winding/winding_components.h"
+#include "segmentation/sheet_segmentation.h"
+
+namespace segorient::detail {
+
+/// Residuals of the winding number: clean closed clouds have .00 to .03, with noise of half a
+/// spacing up to .08.
+constexpr float kClosedResidual = 0.03F;
+constexpr float kOpenResidual = 0.1F;
+constexpr float kClearly = 0.6F;  ///< four of five votes
+/// Agreement of borders, as votes for less votes against: what is known of single points, and what
+/// patches show as a whole, outweighs all that are not as firm as the first, and what could merely
+/// have been seen those that are not as sure as the second (three of four).
+constexpr float kFirmBorders = 0.9F;
+constexpr float kSureBorders = 0.5F;
+
+inline std::size_t at(std::int32_t i) {
+  return static_cast<std::size_t>(i);
+}
+
+/// Segments while the stages of orientSheets() turn them over: what is known of them, their signs
+/// so far, and what several stages ask.
+struct SheetSigns {
+  /// Signs by the borders' votes, relative to each other within each component. The parameters are
+  /// those of orientSheets(); all but the votes must outlive this.
+  SheetSigns(const PointView& all, const Neighborhoods& neighborhoods,
+             const SheetField& sheet_field, const Segmentation& segments,
+             std::vector<BorderVote> border_votes, std::size_t count,
+             const AutomaticOptions& settings, const PointHints& known, int most_threads);
+
+  /// Finds which way each component is outward, by the winding number.
+  void windComponents();
+
+  /// The sign of a point's normal so far, 0 without a segment.
+  float pointSign(std::size_t i) const {
+    const std::int32_t s = segmentation.labels[i];
+    return s < 0 ? 0.F
+                 : static_cast<float>(segmentation.signs[i] * signs[static_cast<std::size_t>(s)]);
+  }
+  /// 4 floats a point: normal and 1, or, as dipoles, normal times area and area; 0 without one.
+  std::vector<float> orientedNormals(bool dipoles) const;
+  /// The cluster of each segment.
+  std::vector<std::int32_t> clusterOf() const;
+  /// What is known of segments, one a point; -1 without a segment.
+  std::vector<std::int32_t> ofPoints(const std::vector<std::int32_t>& of_segments) const;
+  /// Whether a component is told or known to be closed. \param residual most of the winding
+  /// number's
+  bool isClosed(std::size_t component, float residual) const;
+  /// Clusters that nearly all of the ballot is against, unless their borders know better.
+  std::vector<bool> outvoted(const std::vector<Ballot>& ballots, float sure_borders) const;
+  void turnClusters(const std::vector<bool>& chosen);
+  /// Takes out of the parts chosen what the winding number vouches for: the walls of a cavity turn
+  /// their backs to all that could have seen the body from within. \param part_of by segment, named
+  /// by a segment's number
+  void keepWhatWindsRight(const std::vector<std::int32_t>& part_of,
+                          std::vector<bool>& chosen) const;
+
+  const PointView& points;
+  std::size_t cloud_points;  ///< of the cloud, which a point may stand for several of
+  const SheetField& field;
+  const Segmentation& segmentation;
+  const AutomaticOptions& options;
+  const PointHints& hints;
+  int threads;
+  std::vector<HintVotes> hint_votes;  ///< of each segment
+  KnownSensors sensors;
+  std::vector<float> facing;  ///< of each point's sensor, see facingOf()
+  std::vector<BorderVote> votes;
+  SegmentClusters clusters;
+  std::vector<std::int8_t> signs;          ///< of each segment
+  std::vector<std::int32_t> component_of;  ///< of each segment, 0.. by descending size
+  std::vector<ComponentWinding> windings;  ///< of each component
+  std::vector<bool> hinted;                ///< clusters with points that hints say something about
+  AutoOrientation found;
+
+ private:
+  void numberComponents();
+};
+
+}  // namespace segorient::detail
