@@ -8,12 +8,10 @@
 #include <cstdint>
 #include <limits>
 
+#include "common/at.h"
+
 namespace segorient::segmentation {
 namespace {
-
-std::size_t at(std::int32_t i) {
-  return static_cast<std::size_t>(i);
-}
 
 void restoreUnit(float unit, Segment& segment) {
   for (float& v : segment.centroid) v *= unit;

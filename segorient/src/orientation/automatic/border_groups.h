@@ -8,12 +8,15 @@
 #include <cstdint>
 #include <limits>
 
+#include "common/dot.h"
+#include "orientation/mirrored_agreement.h"
+
 namespace segorient::detail {
 
 using Vec3 = std::array<float, 3>;
 
 inline float dot(const Vec3& a, const Vec3& b) {
-  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+  return segorient::dot(a.data(), b.data());
 }
 
 /// Points of one label on one sheet: mean offset from somewhere, in spacings, and mean signed
@@ -41,13 +44,12 @@ struct SheetGroup {
   }
   /// Whether two finished groups agree, -1 to 1; see borderVotes().
   float compare(const SheetGroup& other) const {
-    const float cosine = dot(normal, other.normal);
-    if (other.wall) return -cosine;
+    if (other.wall) return -dot(normal, other.normal);
     const Vec3 chord{other.mean[0] - mean[0], other.mean[1] - mean[1], other.mean[2] - mean[2]};
     // A quarter of a squared spacing: chords shorter than that have no direction.
     const float square = dot(chord, chord) + 0.25F;
     if (!(square < std::numeric_limits<float>::max())) return 0.F;  // as many spacings long
-    return cosine - 2.F * dot(normal, chord) * dot(other.normal, chord) / square;
+    return mirroredAgreement(normal.data(), other.normal.data(), chord.data(), square);
   }
   /// Whether one of two finished groups lies above the other and is parallel to it, as the walls of
   /// a plate or the turns of a roll; or as noise within one sheet, whose votes are no better.

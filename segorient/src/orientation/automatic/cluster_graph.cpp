@@ -6,14 +6,12 @@
 #include <cmath>
 #include <numeric>
 
+#include "common/at.h"
+
 namespace segorient {
 namespace {
 
 constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
-
-std::size_t at(std::int32_t i) {
-  return static_cast<std::size_t>(i);
-}
 
 }  // namespace
 

@@ -6,6 +6,7 @@
 #include <map>
 #include <utility>
 
+#include "common/at.h"
 #include "common/disjoint_sets.h"
 #include "orientation/automatic/cluster_graph.h"
 #include "orientation/winding/winding_components.h"
@@ -15,10 +16,6 @@ namespace {
 
 // Parts that three of four votes or more agree with are not loose.
 constexpr float kLoose = 0.5F;
-
-std::size_t at(std::int32_t i) {
-  return static_cast<std::size_t>(i);
-}
 
 }  // namespace
 

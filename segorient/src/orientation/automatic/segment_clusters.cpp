@@ -4,15 +4,9 @@
 
 #include <numeric>
 
+#include "common/at.h"
+
 namespace segorient::detail {
-namespace {
-
-std::size_t at(std::int32_t i) {
-  return static_cast<std::size_t>(i);
-}
-
-}  // namespace
-
 SegmentClusters::SegmentClusters(const Segmentation& segmentation,
                                  const std::vector<BorderVote>& votes, const Rules& rules) {
   const std::size_t n = segmentation.segments.size();

@@ -11,6 +11,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "common/at.h"
 #include "orientation/automatic/border_votes.h"
 #include "orientation/automatic/orient_sheets.h"
 #include "orientation/automatic/segment_clusters.h"
@@ -32,10 +33,6 @@ constexpr float kClearly = 0.6F;  ///< four of five votes
 /// have been seen those that are not as sure as the second (three of four).
 constexpr float kFirmBorders = 0.9F;
 constexpr float kSureBorders = 0.5F;
-
-inline std::size_t at(std::int32_t i) {
-  return static_cast<std::size_t>(i);
-}
 
 /// Segments while the stages of orientSheets() turn them over: what is known of them, their signs
 /// so far, and what several stages ask.

@@ -8,6 +8,7 @@
 #include <map>
 #include <numeric>
 
+#include "common/at.h"
 #include "orientation/checks/fault_patches.h"
 
 #include "common/dot.h"
@@ -24,10 +25,6 @@ constexpr float kClearlySeen = 0.2588190F;
 constexpr float kClosedResidual = 0.1F;
 
 constexpr float kMost = std::numeric_limits<float>::max();
-
-std::size_t at(std::int32_t i) {
-  return static_cast<std::size_t>(i);
-}
 
 // To unit length, in double as lengths may be anything; false where there is no direction.
 bool normalize(const std::array<double, 3>& v, float* out) {

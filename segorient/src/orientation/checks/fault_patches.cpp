@@ -8,6 +8,8 @@
 #include <map>
 #include <numeric>
 
+#include "common/at.h"
+
 namespace segorient {
 namespace {
 
@@ -16,10 +18,6 @@ constexpr float kSmooth = 0.70710678F;
 // Along the border of a patch that is turned over, the surface goes on smoothly but for some
 // strays.
 constexpr double kMostlySmooth = 2.0 / 3.0;
-
-std::size_t at(std::int32_t i) {
-  return static_cast<std::size_t>(i);
-}
 
 // Sets of points that hang together.
 class UnionFind {

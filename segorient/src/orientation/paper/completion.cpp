@@ -8,18 +8,17 @@
 #include <cstdint>
 #include <vector>
 
+#include "common/dot.h"
+#include "orientation/mirrored_agreement.h"
+
 namespace segorient {
 namespace {
 
-// The mirrored normal's vote for equal signs; 0 where it says nothing.
+// The mirrored normal's vote for equal signs; the plain one's where the points coincide.
 float mirroredVote(const float* p, const float* np, const float* q, const float* nq) {
-  const std::array<float, 3> d{q[0] - p[0], q[1] - p[1], q[2] - p[2]};
-  const float length = d[0] * d[0] + d[1] * d[1] + d[2] * d[2];
-  const float plain = np[0] * nq[0] + np[1] * nq[1] + np[2] * nq[2];
-  if (!(length > 0.F)) return plain;
-  const float along_p = np[0] * d[0] + np[1] * d[1] + np[2] * d[2];
-  const float along_q = nq[0] * d[0] + nq[1] * d[1] + nq[2] * d[2];
-  return plain - 2.F * along_p * (along_q / length);
+  const std::array<float, 3> chord{q[0] - p[0], q[1] - p[1], q[2] - p[2]};
+  const float square = dot(chord.data(), chord.data());
+  return square > 0.F ? mirroredAgreement(np, nq, chord.data(), square) : dot(np, nq);
 }
 
 // The points still to be oriented, by evidence.

@@ -8,6 +8,7 @@
 #include <numeric>
 #include <vector>
 
+#include "common/dot.h"
 #include "orientation/paper/outward_components.h"
 
 namespace segorient {
@@ -22,10 +23,6 @@ struct Edge {
 bool operator<(const Edge& l, const Edge& r) {
   if (l.cost != r.cost) return l.cost < r.cost;
   return l.a != r.a ? l.a < r.a : l.b < r.b;
-}
-
-float dot(const float* a, const float* b) {
-  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
 // Sets of points with known relative signs.

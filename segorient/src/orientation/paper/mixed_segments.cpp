@@ -5,12 +5,10 @@
 #include <cmath>
 #include <cstddef>
 
+#include "common/at.h"
+
 namespace segorient {
 namespace {
-
-std::size_t at(std::int32_t i) {
-  return static_cast<std::size_t>(i);
-}
 
 // Border points that agree (positive) or not with the signs on both sides; 0 where one has none.
 float agreement(const SegmentLink& link, const BoundaryVote& vote,

@@ -11,14 +11,13 @@
 #include <utility>
 #include <vector>
 
+#include "common/at.h"
+#include "orientation/winding/winding_number.h"
+
 namespace segorient {
 namespace {
 
 using Rows = std::vector<pcl::index_t>;
-
-std::size_t at(std::int32_t i) {
-  return static_cast<std::size_t>(i);
-}
 
 std::vector<Rows> rowsByComponent(const OrientationResult& result) {
   std::vector<Rows> rows(result.components.size());
@@ -79,54 +78,21 @@ void turnOutward(const std::vector<ExtremalPoint>& extremal, float gamma,
   component.sign = balance < 0.F ? std::int8_t{-1} : std::int8_t{1};
 }
 
-// The part of the sphere of directions around x that an oriented component fills, seen from inside
-// its material: 1 in a closed body, 0 outside, -1 in a hollow one's cavity by its own wall.
-class SolidAngle {
- public:
-  SolidAngle(const PointView& points, const PointView& normals, const Neighborhoods& neighborhoods,
-             const OrientationResult& result)
-      : points_(points), normals_(normals), neighborhoods_(neighborhoods), result_(result) {}
-
-  double at(const float* x, const Rows& rows, double share, int component_sign) const {
-    double sum = 0.0;
-    for (const pcl::index_t row : rows) {
-      const auto i = static_cast<std::size_t>(row);
-      const float* p = points_[i];
-      const float* n = normals_[i];
-      double along = 0.0;
-      double squared = 0.0;
-      for (std::size_t a = 0; a < 3; ++a) {
-        const double d = static_cast<double>(p[a]) - x[a];
-        along += d * n[a];
-        squared += d * d;
-      }
-      if (squared > 0.0)
-        sum += result_.point_signs[i] * area(i) * along / (squared * std::sqrt(squared));
-    }
-    constexpr double kSphere = 12.566370614359172;
-    return component_sign * sum * share / kSphere;
+// What an oriented point stands for, as a dipole: its neighbours' disc, shared among them.
+void setDipole(const PointView& points, const PointView& normals,
+               const Neighborhoods& neighborhoods, std::size_t row, float weight, float* dipole) {
+  constexpr float kPi = 3.1415927F;
+  const int count = neighborhoods.count(row);
+  float squared = 0.F;
+  if (count >= 2) {
+    const float* p = points[row];
+    const float* q = points[static_cast<std::size_t>(neighborhoods.indices(row)[count - 1])];
+    for (std::size_t a = 0; a < 3; ++a) squared += (q[a] - p[a]) * (q[a] - p[a]);
   }
-
- private:
-  // What a point stands for: its neighbours' disc, shared among them.
-  double area(std::size_t row) const {
-    constexpr double kPi = 3.141592653589793;
-    const int count = neighborhoods_.count(row);
-    if (count < 2) return 0.0;
-    const float* p = points_[row];
-    const float* q = points_[static_cast<std::size_t>(neighborhoods_.indices(row)[count - 1])];
-    double squared = 0.0;
-    for (std::size_t a = 0; a < 3; ++a) {
-      squared += (static_cast<double>(q[a]) - p[a]) * (static_cast<double>(q[a]) - p[a]);
-    }
-    return kPi * squared / (count - 0.5);
-  }
-
-  const PointView& points_;
-  const PointView& normals_;
-  const Neighborhoods& neighborhoods_;
-  const OrientationResult& result_;
-};
+  dipole[3] = std::abs(weight) * kPi * squared / (static_cast<float>(count) - 0.5F);
+  const float signed_area = weight < 0.F ? -dipole[3] : dipole[3];
+  for (std::size_t a = 0; a < 3; ++a) dipole[a] = signed_area * normals[row][a];
+}
 
 // Whether larger components enclose others is asked for the largest ones only: for crumbs it
 // neither matters nor can be told.
@@ -135,46 +101,82 @@ constexpr std::size_t kProbes = 24;  // points of the inner component
 constexpr std::size_t kSources =
     4096;  // points of the outer one: 1 / 64 of the radius apart on a sphere
 
-void turnCavities(const PointView& points, const SolidAngle& solid_angle,
+// Components by how many others' boxes contain theirs: outer ones first.
+std::vector<std::size_t> outerFirst(const std::vector<Bounds>& bounds) {
+  std::vector<std::size_t> order(bounds.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::vector<std::ptrdiff_t> depth;
+  for (const Bounds& own : bounds) {
+    depth.push_back(std::count_if(bounds.begin(), bounds.end(),
+                                  [&](const Bounds& other) { return other.contains(own); }));
+  }
+  std::stable_sort(order.begin(), order.end(),
+                   [&](std::size_t l, std::size_t r) { return depth[l] < depth[r]; });
+  return order;
+}
+
+// How often a turned component winds around the points of another: 1 in a closed body, 0 outside,
+// -1 in a hollow one's cavity by its own wall.
+class Enclosure {
+ public:
+  Enclosure(const PointView& points, const PointView& normals, const Neighborhoods& neighborhoods,
+            const OrientationResult& result)
+      : points_(points), normals_(normals), neighborhoods_(neighborhoods), result_(result) {}
+
+  float around(const Rows& probes, const Rows& outer, int outer_sign) const {
+    const Rows chosen = sample(outer, kSources);
+    const float share = static_cast<float>(outer.size()) / static_cast<float>(chosen.size()) *
+                        static_cast<float>(outer_sign);
+    std::vector<float> places;
+    std::vector<float> dipoles(4 * chosen.size());
+    for (std::size_t i = 0; i < chosen.size(); ++i) {
+      const auto row = static_cast<std::size_t>(chosen[i]);
+      places.insert(places.end(), points_[row], points_[row] + 3);
+      setDipole(points_, normals_, neighborhoods_, row,
+                share * static_cast<float>(result_.point_signs[row]), &dipoles[4 * i]);
+    }
+    const PointView sources{places.data(), 3, chosen.size()};
+    WindingNumber field;
+    field.build(sources, dipoles, {});
+    float sum = 0.F;
+    // The probes are points of another component, and none of these.
+    for (const pcl::index_t probe : probes) {
+      sum += field.evaluate(points_[static_cast<std::size_t>(probe)], 0.F);
+    }
+    return sum / static_cast<float>(probes.size());
+  }
+
+ private:
+  const PointView& points_;
+  const PointView& normals_;
+  const Neighborhoods& neighborhoods_;
+  const OrientationResult& result_;
+};
+
+void turnCavities(const PointView& points, const Enclosure& enclosure,
                   const std::vector<Rows>& rows,
                   std::vector<ComponentOrientationResult>& components) {
   const std::size_t count = std::min(kMostNested, components.size());
   std::vector<Bounds> bounds;
   for (std::size_t c = 0; c < count; ++c) bounds.emplace_back(points, rows[c]);
-  // Outer ones first.
-  std::vector<std::size_t> order(count);
-  std::iota(order.begin(), order.end(), std::size_t{0});
-  std::vector<std::ptrdiff_t> depth(count);
-  for (std::size_t c = 0; c < count; ++c) {
-    depth[c] = std::count_if(bounds.begin(), bounds.end(),
-                             [&](const Bounds& other) { return other.contains(bounds[c]); });
-  }
-  std::stable_sort(order.begin(), order.end(),
-                   [&](std::size_t l, std::size_t r) { return depth[l] < depth[r]; });
+  const std::vector<std::size_t> order = outerFirst(bounds);
   for (std::size_t i = 0; i < count; ++i) {
     const std::size_t inner = order[i];
     const Rows probes = sample(rows[inner], kProbes);
-    double filled = 0.0;
+    float filled = 0.F;
     bool enclosed = false;
     for (std::size_t j = 0; j < i; ++j) {
       const std::size_t outer = order[j];
       if (!bounds[outer].contains(bounds[inner])) continue;
       enclosed = true;
-      const Rows sources = sample(rows[outer], kSources);
-      const double share =
-          static_cast<double>(rows[outer].size()) / static_cast<double>(sources.size());
-      for (const pcl::index_t probe : probes) {
-        filled += solid_angle.at(points[static_cast<std::size_t>(probe)], sources, share,
-                                 components[outer].sign) /
-                  static_cast<double>(probes.size());
-      }
+      filled += enclosure.around(probes, rows[outer], components[outer].sign);
     }
     if (!enclosed) continue;
     ComponentOrientationResult& component = components[inner];
-    if (filled > 0.5) component.sign = static_cast<std::int8_t>(-component.sign);
-    const double doubt = std::min(1.0, 2.0 * std::abs(filled - (filled > 0.5 ? 1.0 : 0.0)));
+    if (filled > 0.5F) component.sign = static_cast<std::int8_t>(-component.sign);
+    const float doubt = std::min(1.F, 2.F * std::abs(filled - (filled > 0.5F ? 1.F : 0.F)));
     component.by = DecidedBy::ENCLOSURE;
-    component.confidence *= static_cast<float>(1.0 - doubt);
+    component.confidence *= 1.F - doubt;
   }
 }
 
@@ -218,7 +220,7 @@ void orientComponents(const PointView& points, const PointView& normals,
                                            options.threads),
                 options.gamma, result.point_signs, result.components[c]);
   }
-  turnCavities(points, SolidAngle(points, normals, neighborhoods, result), rows, result.components);
+  turnCavities(points, Enclosure(points, normals, neighborhoods, result), rows, result.components);
 
   for (std::size_t i = 0; i < result.point_signs.size(); ++i) {
     const std::int32_t c = result.point_components[i];

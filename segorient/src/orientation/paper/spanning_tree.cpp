@@ -6,15 +6,13 @@
 #include <cmath>
 #include <numeric>
 
+#include "common/at.h"
+
 namespace segorient {
 namespace {
 
 // A guess is told from a decision by its confidence alone where the flag is not looked at.
 constexpr float kGuessConfidence = 0.25F;
-
-std::size_t at(std::int32_t i) {
-  return static_cast<std::size_t>(i);
-}
 
 // Angle between the two lines, in [0, pi/2].
 float lineAngle(float cosine) {
