@@ -16,6 +16,8 @@
 #include <string>
 #include <vector>
 
+#include "class_clouds.h"
+
 namespace segorient::test {
 
 /// What a class says of the points of a cloud, by row.
@@ -28,6 +30,23 @@ struct ClassResult {
 
 using XyzCloud = pcl::PointCloud<pcl::PointXYZ>;
 using NormalCloud = pcl::PointCloud<pcl::Normal>;
+
+/// A cube beside a sphere: edges, a round face, two components.
+inline XyzCloud shapes(std::size_t n = 1500) {
+  XyzCloud out = *toPcl(sample("sphere", {sphere({0, 0, 0}, 1)}, n, 3));
+  const XyzCloud::Ptr beside = toPcl(sample("cube", cube(), n, 4));
+  for (pcl::PointXYZ& p : *beside) p.x += 5.F;
+  out += *beside;
+  return out;
+}
+
+inline float dotOf(const pcl::Normal& a, const pcl::Normal& b) {
+  return a.normal_x * b.normal_x + a.normal_y * b.normal_y + a.normal_z * b.normal_z;
+}
+
+inline bool isSame(const pcl::Normal& a, const pcl::Normal& b) {
+  return a.normal_x == b.normal_x && a.normal_y == b.normal_y && a.normal_z == b.normal_z;
+}
 
 template <typename EstimationT>
 ClassResult runEstimation(const std::string& name, const XyzCloud::Ptr& cloud) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026, the segorient authors
 //
-// Points that are nowhere near the others, and units that nobody has: no class may mind.
+// Points that are nowhere near the others: no class may mind.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -9,20 +9,10 @@
 #include <utility>
 
 #include "bad_clouds.h"
-#include "class_clouds.h"
 #include "every_class.h"
 
 namespace segorient::test {
 namespace {
-
-// A cube beside a sphere: edges, a round face, two components.
-XyzCloud shapes(std::size_t n = 1500) {
-  XyzCloud out = *toPcl(sample("sphere", {sphere({0, 0, 0}, 1)}, n, 3));
-  const XyzCloud::Ptr beside = toPcl(sample("cube", cube(), n, 4));
-  for (pcl::PointXYZ& p : *beside) p.x += 5.F;
-  out += *beside;
-  return out;
-}
 
 struct Spoilt {
   XyzCloud::Ptr cloud;
@@ -39,14 +29,6 @@ Spoilt spoil(const XyzCloud& clean, std::size_t count, const pcl::PointXYZ& at) 
   }
   out.cloud->is_dense = false;
   return out;
-}
-
-float dotOf(const pcl::Normal& a, const pcl::Normal& b) {
-  return a.normal_x * b.normal_x + a.normal_y * b.normal_y + a.normal_z * b.normal_z;
-}
-
-bool isSame(const pcl::Normal& a, const pcl::Normal& b) {
-  return a.normal_x == b.normal_x && a.normal_y == b.normal_y && a.normal_z == b.normal_z;
 }
 
 // Beyond the reach of floats: all else is as if they were not there, and they have no normal.
@@ -201,55 +183,6 @@ TEST(Strays, WithinFloatsChangeNoSign) {
         other += !((expected[c].oriented ? along : std::abs(along)) > 0.999F);
       }
       EXPECT_EQ(other, 0U);
-    }
-  }
-}
-
-XyzCloud::Ptr inUnit(const XyzCloud& cloud, float unit) {
-  const auto out = cloud.makeShared();
-  for (pcl::PointXYZ& p : *out) {
-    for (float* v : {&p.x, &p.y, &p.z}) *v *= unit;
-  }
-  return out;
-}
-
-// Squares and cubes of such lengths are beyond floats. By a power of two nothing is rounded, so
-// that nothing at all may change.
-TEST(ExtremeUnits, OfPowersOfTwoChangeNothing) {
-  const QuietPcl quiet;
-  const XyzCloud clean = shapes();
-  const std::vector<ClassResult> expected = runEveryClass(clean.makeShared());
-  for (const int exponent : {-100, 100}) {
-    const std::vector<ClassResult> found = runEveryClass(inUnit(clean, std::ldexp(1.F, exponent)));
-    for (std::size_t c = 0; c < expected.size(); ++c) {
-      SCOPED_TRACE(expected[c].name + ", 2^" + std::to_string(exponent));
-      EXPECT_EQ(found[c].labels, expected[c].labels);
-      ASSERT_EQ(found[c].normals.size(), expected[c].normals.size());
-      std::size_t other = 0;
-      for (std::size_t i = 0; i < expected[c].normals.size(); ++i) {
-        other += !isSame(found[c].normals[i], expected[c].normals[i]);
-      }
-      EXPECT_EQ(other, 0U);
-    }
-  }
-}
-
-TEST(ExtremeUnits, GiveTheSameSigns) {
-  const QuietPcl quiet;
-  const XyzCloud clean = shapes();
-  const std::vector<ClassResult> expected = runEveryClass(clean.makeShared());
-  for (const float unit : {1e-30F, 1e30F}) {
-    const std::vector<ClassResult> found = runEveryClass(inUnit(clean, unit));
-    for (std::size_t c = 0; c < expected.size(); ++c) {
-      if (!expected[c].oriented) continue;
-      SCOPED_TRACE(expected[c].name + ", " + (unit < 1.F ? "1e-30" : "1e30"));
-      std::size_t reversed = 0;
-      ASSERT_EQ(found[c].normals.size(), expected[c].normals.size());
-      for (std::size_t i = 0; i < expected[c].normals.size(); ++i) {
-        // On an edge, rounding may choose another of its faces.
-        reversed += !(dotOf(found[c].normals[i], expected[c].normals[i]) > -0.1F);
-      }
-      EXPECT_EQ(reversed, 0U);
     }
   }
 }

@@ -85,10 +85,11 @@ std::vector<std::int8_t> conventionalSigns(const SheetSigns& sheets) {
   return signs;
 }
 
-// What decides the side of a component: the winding number, or what is known beforehand, or, where
-// nothing tells in from out, as in a plane or an isolated point, convention.
+// What decides the side of a component: the winding number, or what is known beforehand, or else
+// convention.
 ComponentOrientationResult sideOf(const SheetSigns& sheets, std::size_t component,
                                   std::int8_t conventional, const HintVotes& hints) {
+  // Nothing to tell in from out: a plane, or an isolated point.
   constexpr float kNoEvidence = 0.01F;
   const ComponentWinding& winding = sheets.windings[component];
   ComponentOrientationResult out = sheets.found.result.components[component];
