@@ -1,21 +1,21 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026, the segorient authors
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <iterator>
 
 #include "common/threads.h"
 #include "segmentation/distinct_points.h"
 #include "segmentation/growth_state.h"
+#include "segmentation/settling_candidate.h"
 
 namespace segorient::segmentation {
 namespace {
 
-/// Flat points of a segment that its plane near a point is taken from.
-constexpr std::size_t kWitnesses = 8;
+/// Flat points that a plane takes at least.
 constexpr std::size_t kLeastWitnesses = 3;
-/// Segments that are compared at one point; three meet at a corner.
-constexpr std::size_t kCandidates = 6;
 /// Neighbours of each row that are looked at, where the table has as many: the normals were taken
 /// from them, so that twice as far there are normals that an edge has no part in.
 constexpr int kReach = 24;
@@ -34,41 +34,6 @@ constexpr float kTie = 1e-3F;
 
 /// How many points earlier than it is looked at the memory is asked for a row.
 constexpr std::size_t kRowsAhead = 12;
-
-struct Vector {
-  float x = 0.F, y = 0.F, z = 0.F;
-  float dot(const Vector& o) const { return x * o.x + y * o.y + z * o.z; }
-  Vector operator-(const Vector& o) const { return {x - o.x, y - o.y, z - o.z}; }
-};
-
-/// A regular segment near a point, with its flattest points near there and their mean plane.
-struct Candidate {
-  std::int32_t label;
-  std::size_t count;
-  std::array<pcl::index_t, kWitnesses> points;
-  std::array<float, kWitnesses> curvature;  ///< ascending
-  Vector center;
-  Vector normal;
-
-  void start(std::int32_t of) {
-    label = of;
-    count = 0;
-  }
-  void offer(pcl::index_t point, float value) {
-    if (count == kWitnesses && !(value < curvature[kWitnesses - 1])) return;
-    for (std::size_t i = 0; i < count; ++i) {
-      if (points[i] == point) return;
-    }
-    std::size_t at = count < kWitnesses ? count++ : count - 1;
-    for (; at > 0 && value < curvature[at - 1]; --at) {
-      curvature[at] = curvature[at - 1];
-      points[at] = points[at - 1];
-    }
-    curvature[at] = value;
-    points[at] = point;
-  }
-};
-using Candidates = std::array<Candidate, kCandidates>;
 
 class Settler {
  public:

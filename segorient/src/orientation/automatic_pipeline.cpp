@@ -1,0 +1,111 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the segorient authors
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <iomanip>
+#include <memory>
+#include <optional>
+#include <sstream>
+#include <utility>
+
+#include "orientation/automatic/stages.h"
+#include "orientation/pipeline_stages.h"
+#include "orientation/sensors/point_hints.h"
+#include "orientation/sensors/sensor_hints.h"
+
+namespace segorient::detail {
+namespace {
+
+// What the default method chose, and why.
+std::string sheetChoice(const AutoStages& stages) {
+  std::ostringstream text;
+  text << std::setprecision(2) << "noise " << stages.noise << " of the spacing, "
+       << (stages.denoised ? "too much to see the surface by few points, so positions were smoothed"
+                           : "so positions stay as they are")
+       << "; planes of one sheet each, of as few of " << stages.k
+       << " neighbours as the noise allows";
+  if (stages.level > 0.F) {
+    text << "; points contradict each other as layers do that do not quite fit: signs from an even "
+            "subset, "
+         << stages.level << " spacings apart";
+  }
+  return text.str();
+}
+
+const OrientationHints& givenHints(const PipelineOptions& options) {
+  static const OrientationHints kNone;
+  return options.orientation.hints ? *options.orientation.hints : kNone;
+}
+
+// What the caller knows, and where nothing is known of sensors, what can be found. One place for
+// all points may be a guess of whoever gives it: densities that tell it for sure know better.
+PointHints findHints(const PointView& points, const PipelineOptions& options, PreparedCloud& cloud,
+                     PipelineReport& report) {
+  const OrientationHints& given = givenHints(options);
+  const std::optional<std::array<float, 3>> place = onlyPlace(given);
+  OrientationHints found = place ? withoutPlaces(given) : given;
+  if (!options.orientation.automatic.find_sensors || !lacksSensors(found)) {
+    return resolveHints(given, cloud);
+  }
+  if (place) found.suggested.push_back(*place);
+  SensorReport sensors = addFoundSensors(points, cloud, options.threads, found);
+  if (place && !contradictsPlace(points, sensors, *place)) {
+    return resolveHints(given, cloud);
+  }
+  if (place) {
+    KnownSensor refused;
+    for (std::size_t a = 0; a < 3; ++a) refused.position[a] = (*place)[a] / cloud.unit();
+    refused.points = static_cast<std::uint32_t>(cloud.size());
+    refused.used = false;
+    report.known_sensors.push_back(refused);
+  }
+  report.sensors = std::move(sensors);
+  return resolveHints(found, cloud);
+}
+
+// Whether places were given, and none of them is believed.
+bool refusesAll(const std::vector<KnownSensor>& sensors) {
+  return !sensors.empty() &&
+         std::none_of(sensors.begin(), sensors.end(), [](const KnownSensor& s) { return s.used; });
+}
+
+}  // namespace
+
+void runAutomatic(const PointView& points, const PipelineOptions& options, StageClock& clock,
+                  OrientedStages& work, PipelineReport& report) {
+  const PointHints hints = findHints(points, options, work.surface.cloud, report);
+  AutoStages result =
+      runAutoStages(work.surface.cloud, options, hints,
+                    [&clock](const char* stage, double fraction) { clock.begin(stage, fraction); });
+  std::vector<KnownSensor> refused = std::move(report.known_sensors);
+  if (refused.empty() && refusesAll(result.orientation.sensors)) {
+    // As if nothing had been said.
+    PipelineOptions without = options;
+    without.orientation.hints =
+        std::make_shared<OrientationHints>(withoutPlaces(givenHints(options)));
+    refused = std::move(result.orientation.sensors);
+    const PointHints rest = findHints(points, without, work.surface.cloud, report);
+    result = runAutoStages(
+        work.surface.cloud, options, rest,
+        [&clock](const char* stage, double fraction) { clock.begin(stage, fraction); });
+  }
+  report.k = result.k;
+  report.spacing = result.spacing;
+  report.noise = result.noise;
+  report.denoised = result.denoised;
+  report.normals_chosen = sheetChoice(result);
+  report.contradictions = std::move(result.orientation.contradictions);
+  report.clusters = std::move(result.orientation.clusters);
+  report.known_sensors = std::move(refused);
+  report.known_sensors.insert(report.known_sensors.end(), result.orientation.sensors.begin(),
+                              result.orientation.sensors.end());
+  work.surface.normals = std::move(result.normals);
+  work.surface.segmentation = std::move(result.segmentation);
+  work.orientation.segments = std::move(result.segments);
+  work.orientation.components = std::move(result.orientation.result.components);
+  work.orientation.point_confidences = std::move(result.confidences);
+  work.orientation.point_components = std::move(result.components);
+}
+
+}  // namespace segorient::detail
