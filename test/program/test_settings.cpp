@@ -65,6 +65,17 @@ TEST(Settings, OfOtherMethodsAreNamed) {
             (Names{"orientation.triangulation.kappa1", "orientation.automatic.denoise"}));
 }
 
+TEST(Settings, OfOneDoorOnlyAreNamedByTheOther) {
+  OrientationSettings settings;
+  settings.automatic.find_sensors = false;
+  EXPECT_EQ(settingsWithoutEffect(settings), Names{"automatic.find_sensors"});
+  PipelineOptions options;
+  options.orientation = settings;
+  EXPECT_EQ(settingsWithoutEffect(options), Names{});
+  options.orientation.turn_outward = false;
+  EXPECT_EQ(settingsWithoutEffect(options), Names{"orientation.turn_outward"});
+}
+
 TEST(Settings, OfStagesThatAreLeftOutAreNamed) {
   PipelineOptions options;
   options.segmentation.max_gap = 0.F;

@@ -93,9 +93,7 @@ bool saysSomething(const OrientationHints& hints) {
          !hints.seeds.empty() || !hints.normals.empty();
 }
 
-}  // namespace
-
-std::vector<std::string> settingsWithoutEffect(const OrientationSettings& settings) {
+std::vector<std::string> unusedByMethod(const OrientationSettings& settings) {
   using Method = OrientationMethod;
   const OrientationSettings standard;
   const Method method = settings.method;
@@ -126,11 +124,27 @@ std::vector<std::string> settingsWithoutEffect(const OrientationSettings& settin
   return out.names();
 }
 
+}  // namespace
+
+std::vector<std::string> settingsWithoutEffect(const OrientationSettings& settings) {
+  Changed out("");
+  out.addAll("", unusedByMethod(settings));
+  if (settings.method == OrientationMethod::AUTO) {  // sensors are looked for by orientCloud()
+    out.add("automatic.find_sensors", settings.automatic.find_sensors,
+            AutomaticOptions().find_sensors);
+  }
+  return out.names();
+}
+
 std::vector<std::string> settingsWithoutEffect(const PipelineOptions& options) {
   const PipelineOptions standard;
   Changed out("");
-  out.addAll("orientation.", settingsWithoutEffect(options.orientation));
+  out.addAll("orientation.", unusedByMethod(options.orientation));
   const bool automatic = options.orientation.method == OrientationMethod::AUTO;
+  if (automatic) {
+    out.add("orientation.turn_outward", options.orientation.turn_outward,
+            standard.orientation.turn_outward);
+  }
   const bool surfaces = options.normals.estimator == NormalEstimator::AWAS_QUADRATIC ||
                         options.normals.estimator == NormalEstimator::AWAS_CUBIC;
   const bool recomputes = !automatic && options.recomputations > 0;

@@ -40,7 +40,7 @@ std::vector<std::uint8_t> lookAround(const SheetNormals& sheets,
   for (std::size_t i = 0; i < out.size(); ++i) {
     const float residual = sheets.normals[4 * i + 3];
     unsigned bits = 0;
-    if (residual < kExact && agreement[i] > kSettled) bits |= ONE_PLANE;
+    if (residual < kExact && agreement[i] > kAllAgree) bits |= ONE_PLANE;
     if (residual < kWithoutNoise) bits |= ON_A_FACE;
     if (std::isfinite(sheets.below[i]) || std::isfinite(sheets.above[i])) bits |= SECOND_WALL;
     out[i] = static_cast<std::uint8_t>(bits);

@@ -215,7 +215,7 @@ FilteredNormals filterOrientedNormals(const PointView& points, const Neighborhoo
     next = out.normals;
 #pragma omp parallel for num_threads(t) schedule(dynamic, 2048)
     for (std::size_t p = 0; p < points.size; ++p) {
-      if (out.confidences[p] > kSettled) continue;
+      if (out.confidences[p] > kAllAgree) continue;
       const Mean mean = meanNormal(points, nb, out.normals, spacing[p], p, kernel, addBlock);
       const double l = mean.length();
       const auto total = static_cast<double>(mean.total);

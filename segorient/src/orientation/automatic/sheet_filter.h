@@ -12,7 +12,7 @@
 namespace segorient {
 
 /// Confidence where the normals around agree to some degrees: another round would change nothing.
-constexpr float kSettled = 0.999F;
+constexpr float kAllAgree = 0.999F;
 
 /// Final normals from the oriented normals around each point, that of the point itself being one of
 /// them.

@@ -53,14 +53,14 @@ WideVoter::WideVoter(const PointView& points, const Neighborhoods& neighborhoods
     : points_(points), nb_(neighborhoods), field_(field), segmentation_(segmentation) {}
 
 // The points of a segment that few steps lead to.
-SheetGroup WideVoter::spread(std::size_t from, std::int32_t label) {
+SheetGroup WideVoter::gather(std::size_t from, std::int32_t label) {
   SheetGroup group;
   group.label = label;
-  ++spreads_;
+  ++gatherings_;
   front_.clear();
   const auto take = [&](std::size_t q) {
-    if (segmentation_.labels[q] != label || seen_[q] == spreads_) return;
-    seen_[q] = spreads_;
+    if (segmentation_.labels[q] != label || seen_[q] == gatherings_) return;
+    seen_[q] = gatherings_;
     front_.push_back(static_cast<std::uint32_t>(q));
   };
   const auto takeNeighbors = [&](std::size_t q) {
@@ -98,8 +98,8 @@ float WideVoter::vote(const std::vector<pcl::index_t>& border, std::int32_t a, s
   const std::size_t asked = std::min(border.size(), kAsked);
   for (std::size_t i = 0; i < asked; ++i) {
     const auto p = static_cast<std::size_t>(border[i * border.size() / asked]);
-    SheetGroup first = spread(p, a);
-    SheetGroup second = spread(p, b);
+    SheetGroup first = gather(p, a);
+    SheetGroup second = gather(p, b);
     if (std::min(first.count, second.count) < kLeastPoints || isBent(first) || isBent(second)) {
       continue;
     }

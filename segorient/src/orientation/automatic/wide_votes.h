@@ -28,15 +28,15 @@ class WideVoter {
              bool wedges_only);
 
  private:
-  SheetGroup spread(std::size_t from, std::int32_t label);
+  SheetGroup gather(std::size_t from, std::int32_t label);
 
   const PointView& points_;
   const Neighborhoods& nb_;
   const SheetField& field_;
   const Segmentation& segmentation_;
   std::vector<std::uint32_t>
-      seen_;  // by point, empty before the first vote: the number of the spread that saw it last
-  std::uint32_t spreads_ = 0;
+      seen_;  // by point, empty before the first vote: the number of the gathering that saw it last
+  std::uint32_t gatherings_ = 0;
   std::vector<std::uint32_t> front_;
 };
 

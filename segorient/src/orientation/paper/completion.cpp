@@ -46,7 +46,7 @@ class Completion {
       component.by = DecidedBy::NOTHING;
       result_.point_components[row] = static_cast<std::int32_t>(result_.components.size());
       result_.components.push_back(component);
-      settle(row, 1, 0.F);
+      orient(row, 1, 0.F);
       drain();
     }
   }
@@ -139,7 +139,7 @@ class Completion {
     top_ = std::max(top_, static_cast<std::size_t>(level));
   }
 
-  void settle(std::size_t p, int sign, float confidence) {
+  void orient(std::size_t p, int sign, float confidence) {
     result_.point_signs[p] = static_cast<std::int8_t>(sign);
     result_.point_confidences[p] = confidence;
     forNeighbors(p, [&](std::size_t q) {
@@ -157,7 +157,7 @@ class Completion {
       if (result_.point_signs[p] != 0 || evidence.level != top_) continue;
       const float confidence =
           evidence.total > 0.F ? std::abs(evidence.balance) / evidence.total : 0.F;
-      settle(p, evidence.balance < 0.F ? -1 : 1, confidence);
+      orient(p, evidence.balance < 0.F ? -1 : 1, confidence);
     }
   }
 
