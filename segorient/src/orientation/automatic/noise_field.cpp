@@ -2,8 +2,6 @@
 // Copyright (c) 2026, the segorient authors
 #include "orientation/automatic/noise_field.h"
 
-#include <segorient/search/median_hash_index.h>
-
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
@@ -14,8 +12,7 @@
 #include "common/dot.h"
 #include "common/median.h"
 #include "features/sheet_fit.h"
-#include "features/sheet_normals.h"
-#include "orientation/automatic/blue_noise.h"
+#include "orientation/automatic/even_cells.h"
 #include "orientation/winding/dipole_fields.h"
 #include "orientation/winding/field_solver.h"
 
@@ -29,8 +26,6 @@ constexpr float kCell = 1.5F;
 constexpr float kSmooth = 2.F;  // noise of a spacing is no more to the field than to its cells
 // Less than that, as cells have averaged some of the noise, and fine parts are lost to a wide one.
 constexpr float kFinal = 1.5F;
-// Area per square of the mean distance to the six nearest of a blue-noise subset, see SignJudge.
-constexpr float kAreaPerSquare = 0.92F;
 
 float medianSpacing(const PointView& points, const Neighborhoods& table) {
   constexpr std::size_t kRows = 20000;  // a median of so many is known to a hundredth
@@ -40,55 +35,6 @@ float medianSpacing(const PointView& points, const Neighborhoods& table) {
     values.push_back(meanDistance(points, table, i, kSix));
   }
   return median(std::move(values));
-}
-
-// An even subset, with what its points stand for.
-struct Subset {
-  std::vector<float> places;   // 4 floats: means of the cells
-  std::vector<float> normals;  // 4 floats: means of the oriented normals; 0 where there is none
-  std::vector<float> areas;
-  Neighborhoods around;
-
-  std::size_t size() const { return areas.size(); }
-  PointView points() const { return {places.data(), 4, areas.size()}; }
-};
-
-Subset thinToCells(const PointView& points, const std::vector<float>& normals, float spacing,
-                   int threads) {
-  Subset out;
-  const BlueNoise cells = thinOut(points, kCell * spacing);
-  const std::size_t n = cells.kept.size();
-  if (n == 0) return out;
-  out.places.assign(4 * n, 0.F);
-  out.normals.assign(4 * n, 0.F);
-  std::vector<float> counts(n, 0.F);
-  for (std::size_t i = 0; i < points.size; ++i) {
-    const std::size_t c = cells.cell_of[i];
-    counts[c] += 1.F;
-    for (std::size_t a = 0; a < 3; ++a) out.places[4 * c + a] += points[i][a];
-    if (!isFinite(&normals[4 * i])) continue;
-    for (std::size_t a = 0; a < 3; ++a) out.normals[4 * c + a] += normals[4 * i + a];
-  }
-  for (std::size_t c = 0; c < n; ++c) {
-    float* m = &out.normals[4 * c];
-    const float length = std::sqrt(dot(m, m));
-    for (std::size_t a = 0; a < 3; ++a) {
-      out.places[4 * c + a] /= counts[c];
-      m[a] = length > 0.F ? m[a] / length : 0.F;
-    }
-  }
-  search::MedianHashIndex index;
-  search::MedianHashIndex::Options options;
-  options.threads = threads;
-  index.build({out.places.data(), 4, n}, nullptr, options);
-  constexpr int kAround = 9;  // the point itself and eight neighbours
-  index.nearestKAll(kAround, out.around, false);
-  out.areas.resize(n);
-  for (std::size_t c = 0; c < n; ++c) {
-    const float h = meanDistance(out.points(), out.around, c, kSix);
-    out.areas[c] = kAreaPerSquare * h * h;
-  }
-  return out;
 }
 
 struct Solution {
@@ -105,7 +51,7 @@ bool isAllowed(const FieldEnergy& e, const FieldEnergy& own) {
 }
 
 // Patches of neighbours where two solutions have opposed normals, by descending size.
-std::vector<std::vector<std::uint32_t>> patchesOfDissent(const Subset& subset,
+std::vector<std::vector<std::uint32_t>> patchesOfDissent(const EvenCells& subset,
                                                          const std::vector<float>& a,
                                                          const std::vector<float>& b) {
   constexpr std::size_t kLeast = 6;  // fewer are noise
@@ -135,7 +81,7 @@ std::vector<std::vector<std::uint32_t>> patchesOfDissent(const Subset& subset,
 }
 
 // Takes over those patches of another solution that lower the spread.
-void merge(const Subset& subset, const FieldSolver& solver, const std::vector<float>& other,
+void merge(const EvenCells& subset, const FieldSolver& solver, const std::vector<float>& other,
            Solution& best) {
   // What each of its points gains in the mean, of the 1/4 that one on the wrong side costs. -.02 to
   // .05 where closed clouds got worse, .07 to .8 where they got better.
@@ -174,7 +120,7 @@ void merge(const Subset& subset, const FieldSolver& solver, const std::vector<fl
 // The field where each point was measured tells its side, and has a say in its direction. How
 // steep it is, by that of a plane without noise, limits the confidence: the two sides of a wall,
 // and what is turned the wrong way around, take from it.
-void takeDirections(const PointView& points, const Subset& subset, const FieldSolver& solver,
+void takeDirections(const PointView& points, const EvenCells& subset, const FieldSolver& solver,
                     const std::vector<float>& normals, float radius, int threads,
                     AutoNormals& found) {
   // Noise makes the field less steep everywhere; where it is .7 of a plane's and more, one normal
@@ -212,7 +158,7 @@ void followField(const PointView& points, const Neighborhoods& neighborhoods, in
   constexpr int kFromBest = 3;
   constexpr float kLess = 0.97F;  // so that solutions that are equally good stay as they are
   const float spacing = medianSpacing(points, neighborhoods);
-  const Subset subset = thinToCells(points, found.normals, spacing, threads);
+  const EvenCells subset = gatherCells(points, found.normals, kCell * spacing, threads);
   if (subset.size() == 0) return;
   const FieldSolver solver(subset.points(), subset.around, subset.areas, kSmooth * spacing,
                            threads);

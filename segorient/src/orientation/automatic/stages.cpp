@@ -13,6 +13,7 @@
 #include "orientation/automatic/final_labels.h"
 #include "orientation/automatic/final_normals.h"
 #include "orientation/automatic/noise_field.h"
+#include "orientation/automatic/patch_signs.h"
 #include "orientation/automatic/sensor_normals.h"
 #include "segmentation/segmentation_rows.h"
 
@@ -111,9 +112,12 @@ AutoStages runAutoStages(PreparedCloud& cloud, const PipelineOptions& options,
       orientPoints(points, table, settings, hints, options.threads, begin, record, &finished);
   out.segmentation = std::move(finished.segmentation);
   // What sensors or the user know is better than what the field tells.
-  if (settings.winding_normals && record == nullptr && out.noise >= kFieldNoise &&
-      knowsNothing(hints)) {
-    followField(cloud.points(), cloud.neighborhoods(), options.threads, oriented);
+  if (settings.winding_normals && record == nullptr && knowsNothing(hints)) {
+    if (out.noise >= kFieldNoise) {
+      followField(cloud.points(), cloud.neighborhoods(), options.threads, oriented);
+    } else if (oriented.orientation.toward.empty()) {
+      solvePatchSigns(points, options.threads, oriented);
+    }
   }
   labelTheRest(table, oriented.normals, out.segmentation);
   if (settings.fit_normals && !out.denoised && !oriented.scan_scales) {

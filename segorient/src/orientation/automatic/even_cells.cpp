@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the segorient authors
+#include "orientation/automatic/even_cells.h"
+
+#include <segorient/search/median_hash_index.h>
+
+#include <cmath>
+#include <utility>
+
+#include "common/dot.h"
+#include "features/sheet_fit.h"
+#include "orientation/automatic/blue_noise.h"
+
+namespace segorient::detail {
+namespace {
+
+constexpr int kSix = 6;     // neighbours of the spacing
+constexpr int kAround = 9;  // the cell itself and eight neighbours
+// Area per square of the mean distance to the six nearest of a blue-noise subset, see SignJudge.
+constexpr float kAreaPerSquare = 0.92F;
+
+}  // namespace
+
+EvenCells gatherCells(const PointView& points, const std::vector<float>& normals, float radius,
+                      int threads) {
+  EvenCells out;
+  BlueNoise cells = thinOut(points, radius);
+  const std::size_t n = cells.kept.size();
+  if (n == 0) return out;
+  out.cell_of = std::move(cells.cell_of);
+  out.places.assign(4 * n, 0.F);
+  out.normals.assign(4 * n, 0.F);
+  std::vector<float> counts(n, 0.F);
+  for (std::size_t i = 0; i < points.size; ++i) {
+    const std::size_t c = out.cell_of[i];
+    counts[c] += 1.F;
+    for (std::size_t a = 0; a < 3; ++a) out.places[4 * c + a] += points[i][a];
+    if (!isFinite(&normals[4 * i])) continue;
+    for (std::size_t a = 0; a < 3; ++a) out.normals[4 * c + a] += normals[4 * i + a];
+  }
+  for (std::size_t c = 0; c < n; ++c) {
+    float* m = &out.normals[4 * c];
+    const float length = std::sqrt(dot(m, m));
+    for (std::size_t a = 0; a < 3; ++a) {
+      out.places[4 * c + a] /= counts[c];
+      m[a] = length > 0.F ? m[a] / length : 0.F;
+    }
+  }
+  search::MedianHashIndex index;
+  search::MedianHashIndex::Options options;
+  options.threads = threads;
+  index.build(out.points(), nullptr, options);
+  index.nearestKAll(kAround, out.around, false);
+  out.areas.resize(n);
+  for (std::size_t c = 0; c < n; ++c) {
+    const float h = meanDistance(out.points(), out.around, c, kSix);
+    out.areas[c] = kAreaPerSquare * h * h;
+  }
+  return out;
+}
+
+}  // namespace segorient::detail

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the segorient authors
+#pragma once
+
+#include <segorient/common/point_view.h>
+
+#include "orientation/automatic/orient_points.h"
+
+namespace segorient::detail {
+
+/// Where bodies touch or overlap, borders of segments lead astray: three sheets meet, each pair
+/// agrees on a side, and all three cannot. The winding number knows better.
+///
+/// On an even subset, small flat patches p get signs s_p between -1 and 1 that minimise
+///
+///   E(s) = sum over places x of a_x (sum over p of s_p w_p(x) - t_x)^2
+///        + sum over borders (p, q) of c_pq (s_p -+ s_q)^2
+///
+/// with a_x the area of x as a share of all, w_p the winding number of patch p, t_x = 1/2 (between
+/// the outside, 0, and the inside, 1), and c_pq how far p and q continue one another. That is
+/// convex: from nothing there is one solution. Faces in contact, with the inside on both sides, get
+/// signs near 0 and are left out of a second round. Where bodies overlap, the winding number goes
+/// from 1 to 2 and t_x is 3/2: which it is, is told by the solution before. Of these and of the
+/// normals as they are, the best by whole signs is taken if it is clearly better.
+///
+/// Nothing is done where the winding number is that of a closed surface already.
+///
+/// \param points finite, near ones side by side
+/// \param found normals and their confidences may change
+void solvePatchSigns(const PointView& points, int threads, AutoNormals& found);
+
+}  // namespace segorient::detail
