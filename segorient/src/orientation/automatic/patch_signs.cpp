@@ -8,6 +8,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <utility>
 #include <vector>
 
@@ -40,9 +41,9 @@ constexpr float kPairs = 3.F;         // as in SignEnergy: pairs of neighbours i
 constexpr float kUndecided = 0.125F;  // between the right side, 0, and the wrong one
 constexpr float kWorst = 0.25F;       // on the wrong side, or where the winding number says nothing
 // What is left undecided is in contact, with the inside around it: w is 1 there, not 0. Times the
-// share of the surface; .02 to .11 of open sheets that were folded to bodies, bodies in contact
-// have less than 0.
-constexpr float kOutside = 0.01F;
+// share of the surface: at most .02 of bodies in contact, .06 to .13 of open sheets that were
+// rolled up to bodies.
+constexpr float kOutside = 0.03F;
 // Bodies in contact have .01 to .045 (single patches across a joint), open sheets .06 and more.
 constexpr float kGood = 0.05F;
 // What cells see no plane of: bodies in contact .03 (edges), walls of half a spacing, layers and
@@ -240,36 +241,61 @@ Solution PatchEquations::judge(Signs signs) const {
   return out;
 }
 
-// The patch of the nearest cell whose normal is that of the point; -1 if there is none around.
-std::int32_t patchOf(const EvenCells& cells, const SignPatches& patches, const float* place,
-                     const float* normal, std::size_t cell) {
-  constexpr float kAlike = 0.7F;  // 45 degrees
-  std::int32_t nearest = -1;
-  float least = 0.F;
-  for (int j = 0; j < cells.around.count(cell); ++j) {
-    const auto c = static_cast<std::size_t>(cells.around.indices(cell)[j]);
-    if (patches.of[c] < 0 || dot(normal, &cells.normals[4 * c]) < kAlike) continue;
-    float d[3];
-    for (std::size_t a = 0; a < 3; ++a) d[a] = cells.places[4 * c + a] - place[a];
-    const float distance = dot(d, d);
-    if (nearest >= 0 && distance >= least) continue;
-    nearest = patches.of[c];
-    least = distance;
+// Of each cell, the sign of its patch. Half of an undecided patch may lie outside of the contact:
+// its cells look which way the field of all decided ones falls.
+std::vector<float> signsOfCells(const EvenCells& cells, const SignPatches& patches,
+                                const Signs& signs, float radius, int threads) {
+  std::vector<float> out(cells.size(), 0.F);
+  std::vector<float> dipoles(4 * cells.size(), 0.F);
+  std::vector<float> at;
+  std::vector<std::uint32_t> undecided;
+  for (std::size_t c = 0; c < cells.size(); ++c) {
+    if (patches.of[c] >= 0) out[c] = static_cast<float>(signs[patches.of[c]]);
+    const float* n = &cells.normals[4 * c];
+    if (std::fabs(out[c]) > kDecided) {
+      const float area = std::copysign(cells.areas[c], out[c]);
+      for (std::size_t a = 0; a < 3; ++a) dipoles[4 * c + a] = area * n[a];
+      dipoles[4 * c + 3] = cells.areas[c];
+    } else {
+      undecided.push_back(static_cast<std::uint32_t>(c));
+      at.insert(at.end(), &cells.places[4 * c], &cells.places[4 * c] + 4);
+    }
   }
-  return nearest;
+  const std::vector<float> field = steepestDescents({at.data(), 4, undecided.size()},
+                                                    {cells.points(), dipoles}, radius, threads);
+  for (std::size_t k = 0; k < undecided.size(); ++k) {
+    const std::size_t c = undecided[k];
+    // A plane's falls by 1 / (2 radius).
+    const float falls = 2.F * radius * dot(&field[4 * k], &cells.normals[4 * c]);
+    if (std::isfinite(falls)) out[c] = std::clamp(out[c] + falls, -kDecided, kDecided);
+  }
+  return out;
 }
 
-void takeSigns(const PointView& points, const EvenCells& cells, const SignPatches& patches,
-               const Signs& signs, AutoNormals& found) {
+// The sign of the nearest cell whose normal is that of the point; 0 if there is none around.
+float signOf(const EvenCells& cells, const std::vector<float>& signs, const float* place,
+             const float* normal, std::size_t cell) {
+  constexpr float kAlike = 0.7F;  // 45 degrees
+  float sign = 0.F;
+  float least = std::numeric_limits<float>::max();
+  for (int j = 0; j < cells.around.count(cell); ++j) {
+    const auto c = static_cast<std::size_t>(cells.around.indices(cell)[j]);
+    if (signs[c] == 0.F || dot(normal, &cells.normals[4 * c]) < kAlike) continue;
+    float d[3];
+    for (std::size_t a = 0; a < 3; ++a) d[a] = cells.places[4 * c + a] - place[a];
+    if (dot(d, d) >= least) continue;
+    least = dot(d, d);
+    sign = signs[c];
+  }
+  return sign;
+}
+
+void takeSigns(const PointView& points, const EvenCells& cells, const std::vector<float>& signs,
+               AutoNormals& found) {
   for (std::size_t i = 0; i < points.size; ++i) {
     float* n = &found.normals[4 * i];
     if (!std::isfinite(n[0])) continue;
-    const std::int32_t p = patchOf(cells, patches, points[i], n, cells.cell_of[i]);
-    if (p < 0) {
-      found.confidences[i] = 0.F;
-      continue;
-    }
-    const auto sign = static_cast<float>(signs[p]);
+    const float sign = signOf(cells, signs, points[i], n, cells.cell_of[i]);
     found.confidences[i] = std::min(found.confidences[i], std::fabs(sign));
     if (sign >= 0.F) continue;
     for (std::size_t a = 0; a < 3; ++a) n[a] = -n[a];
@@ -299,7 +325,9 @@ void solvePatchSigns(const PointView& points, int threads, AutoNormals& found) {
     if (found_signs.allowed && found_signs.energy < best.energy) best = std::move(found_signs);
   }
   if (!best.allowed) return;
-  takeSigns(points, cells, equations.patches(), best.signs, found);
+  takeSigns(points, cells,
+            signsOfCells(cells, equations.patches(), best.signs, kSmooth * found.spacing, threads),
+            found);
 }
 
 }  // namespace segorient::detail
