@@ -15,14 +15,13 @@
 #include "common/dot.h"
 #include "common/threads.h"
 #include "orientation/automatic/even_cells.h"
+#include "orientation/automatic/sheet_signs.h"
 #include "orientation/automatic/sign_patches.h"
 #include "orientation/winding/dipole_fields.h"
 
 namespace segorient::detail {
 namespace {
 
-// Mean square difference of the winding number from 1/2: clean closed clouds have .00 to .03.
-constexpr float kClosedResidual = 0.03F;
 // In mean distances to the six nearest points: every second point or so is a cell, and a wall of
 // two spacings keeps its sides apart.
 constexpr float kCell = 0.8F;
@@ -32,10 +31,10 @@ constexpr std::size_t kPlaces = 4000;
 // So that two patches of opposed signs pay as much for their border as one of them does for being
 // on the wrong side: a patch of 80 cells has some 13 pairs of neighbours across a border.
 constexpr double kSmoothness = 0.3;
-constexpr double kTie = 1e-3;  // of a patch's share: what no place sees stays 0
-constexpr int kSweeps = 200;
-constexpr double kSettled = 1e-3;
-constexpr int kRounds = 5;
+constexpr double kTie = 1e-3;         // of a patch's share: what no place sees stays 0
+constexpr int kSweeps = 200;          // at most
+constexpr double kSettled = 1e-3;     // of a whole sign
+constexpr int kRounds = 5;            // each leaves out what the last one left undecided
 constexpr float kDecided = 0.3F;      // a third of the way from "either" to "this side"
 constexpr float kPairs = 3.F;         // as in SignEnergy: pairs of neighbours in terms of a share
 constexpr float kUndecided = 0.125F;  // between the right side, 0, and the wrong one
@@ -49,7 +48,7 @@ constexpr float kGood = 0.05F;
 // What cells see no plane of: bodies in contact .03 (edges), walls of half a spacing, layers and
 // outliers .1 and more. There, cells mix what the signs should tell apart.
 constexpr float kNoSurface = 0.1F;
-constexpr float kClearly = 0.75F;  // of two equally good ones one has up to .1 less
+constexpr float kBetter = 0.75F;  // of two equally good ones one has up to .1 less
 
 bool isClosed(const AutoNormals& found) {
   double sum = 0.0;
@@ -176,7 +175,7 @@ Signs PatchEquations::descend(Signs signs, const Eigen::VectorXf& weights,
 }
 
 Solution PatchEquations::solve(Signs start, int rounds, bool layers) const {
-  constexpr float kLeast = 0.05F;  // of a patch's weight, so that it can come back
+  constexpr float kBack = 0.05F;  // of a patch's weight, so that it can come back
   Signs signs = std::move(start);
   const bool from_nothing = signs.isZero();
   for (int round = 0; round < rounds; ++round) {
@@ -189,7 +188,7 @@ Solution PatchEquations::solve(Signs start, int rounds, bool layers) const {
         if (p >= 0) {
           // Half a sign is enough to be asked.
           const auto sure = static_cast<float>(std::fabs(signs[p])) / 0.5F;
-          weights[k] *= std::min(1.F, kLeast + sure);
+          weights[k] *= std::min(1.F, kBack + sure);
         }
         if (layers && w[k] > 1.F) targets[k] = std::floor(w[k]) + 0.5F;
       }
@@ -318,7 +317,7 @@ void solvePatchSigns(const PointView& points, int threads, AutoNormals& found) {
   const Signs own = Signs::Constant(n, equations.side());
   const float now = equations.judge(own).energy;
   Solution best;
-  best.energy = kClearly * now;
+  best.energy = kBetter * now;
   for (Solution& found_signs :
        std::vector<Solution>{equations.solve(none, 1, false), equations.solve(none, kRounds, false),
                              equations.solve(own, kRounds, true)}) {
