@@ -80,8 +80,8 @@ struct AutomaticOptions {
   // The normals that are returned.
   int filter_rounds = 2;      ///< of averaging over neighbours that are on one sheet; 0 = off
   bool filter_wedges = true;  ///< its special care for narrow wedges
-  /// Where noise leaves two faces possible, the field of all oriented points decides; needs
-  /// filter_rounds.
+  /// Where noise leaves two faces possible, and where bodies touch or overlap, the field of all
+  /// oriented points decides; needs filter_rounds.
   bool winding_normals = true;
   /// Surfaces are fitted around each point at last, on one side of sharp edges, as
   /// NormalEstimator::AUTO does it; with noise, averaged with the above. Not for scans that
