@@ -43,7 +43,7 @@ struct Corner {
   }
   std::size_t size() const { return xyz.size() / 4; }
   void run(int threads = 1) {
-    detail::leanToSensors(viewOf(xyz), neighborsOf(xyz), toward, threads, normals);
+    detail::leanToSensors(viewOf(xyz), neighborsOf(xyz), toward, {}, threads, normals);
   }
 };
 

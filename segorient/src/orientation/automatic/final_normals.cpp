@@ -61,6 +61,7 @@ class FinalNormals {
     if (noise_ <= kEdgesHidden) recomputeAtEdges();
     if (known_ != nullptr) has_edges_ = known_->edges;
     traits_.edges = has_edges_;
+    if (noise_ < kClean) sure_.assign(points_.size, 0);
     const auto n = static_cast<std::ptrdiff_t>(points_.size);
 #pragma omp parallel for schedule(static) num_threads(resolveThreads(threads_, points_.size, 50.0))
     for (std::ptrdiff_t p = 0; p < n; ++p) {
@@ -74,6 +75,10 @@ class FinalNormals {
   }
   const FinalTraits& traits() const {
     return traits_;
+  }
+  /// See AutoNormals::sure.
+  std::vector<std::uint8_t> sure() {
+    return std::move(sure_);
   }
 
  private:
@@ -156,7 +161,7 @@ class FinalNormals {
     return true;
   }
 
-  void choose(std::size_t i, float* result) const {
+  void choose(std::size_t i, float* result) {
     const float* f = &fitted_[4 * i];
     if (!isFinite(f) || !isFinite(result)) return;
     const bool fits_one_side = fits_[i] == Fit::ONE_SIDED;
@@ -171,7 +176,7 @@ class FinalNormals {
     }
   }
 
-  void takeFit(std::size_t i, const float* f, float* result) const {
+  void takeFit(std::size_t i, const float* f, float* result) {
     // Points on the edges themselves keep the faces apart, and triangulations do not reach over.
     if (fits_[i] == Fit::UNEXPLAINED && !edges_sampled_) {
       if (has(i, ON_A_FACE)) return;
@@ -186,6 +191,7 @@ class FinalNormals {
     const float sure = fits_[i] == Fit::ONE_SIDED ? 0.F : has_edges_ ? kSameFace : kSureSide;
     if (along > sure) {
       std::copy_n(f, 3, result);
+      sure_[i] = fits_[i] == Fit::EXPLAINED || fits_[i] == Fit::ONE_SIDED ? 1 : 0;
     } else if (fits_[i] != Fit::ONE_SIDED) {
       addUnit(f, along, result);
     }
@@ -215,6 +221,7 @@ class FinalNormals {
   const std::vector<float>& toward_;
   std::vector<float> fitted_;
   std::vector<Fit> fits_;
+  std::vector<std::uint8_t> sure_;
   float noise_ = 0.F;
   int most_ = kFewest;          ///< neighbours of the largest surfaces
   bool has_edges_ = false;      ///< sharp ones
@@ -227,7 +234,10 @@ FinalTraits fitFinalNormals(PreparedCloud& cloud, const Segmentation& segments, 
                             int threads, const FinalTraits* known, AutoNormals& oriented) {
   FinalNormals final_normals(cloud, segments, threads, known, oriented);
   std::vector<float> normals = final_normals.run(only_known);
-  if (!normals.empty()) oriented.normals = std::move(normals);
+  if (!normals.empty()) {
+    oriented.normals = std::move(normals);
+    oriented.sure = final_normals.sure();
+  }
   return final_normals.traits();
 }
 

@@ -32,7 +32,10 @@ struct AutoNormals {
   std::vector<std::int32_t> components;  ///< -1 where there is no normal
   std::vector<std::uint8_t> around;      ///< what is around each point: bits of Around
   bool scan_scales = false;              ///< see SheetNormals
-  AutoOrientation orientation;           ///< of the sheets' segments
+  /// Whether a final normal is that of a surface that leaves no more of the points around than
+  /// rounding and a little noise do; empty where none is.
+  std::vector<std::uint8_t> sure;
+  AutoOrientation orientation;  ///< of the sheets' segments
   /// Whether a point's sensor decided its side; empty where no sensor is known.
   std::vector<std::uint8_t> by_sensor;
   float spacing = 0.F;       ///< median

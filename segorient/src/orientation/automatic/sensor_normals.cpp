@@ -88,8 +88,13 @@ class GrowingPlane {
 class Leaner {
  public:
   Leaner(const PointView& points, const Neighborhoods& nb, const std::vector<float>& toward,
-         int threads, std::vector<float>& normals)
-      : points_(points), nb_(nb), toward_(toward), threads_(threads), normals_(normals) {}
+         const std::vector<std::uint8_t>& sure, int threads, std::vector<float>& normals)
+      : points_(points),
+        nb_(nb),
+        toward_(toward),
+        sure_(sure),
+        threads_(threads),
+        normals_(normals) {}
 
   void run() {
     search::MedianHashIndex::Options options;
@@ -100,12 +105,12 @@ class Leaner {
     int t = resolveThreads(threads_, points_.size, kFitTime);
 #pragma omp parallel for num_threads(t) schedule(dynamic, 512)
     for (std::size_t i = 0; i < points_.size; ++i) {
-      if (isKnown(i)) leanOne(i);
+      if (isKnown(i)) isSure(i) ? leanSure(i) : leanOne(i);
     }
     t = resolveThreads(threads_, points_.size, kMeanTime);
 #pragma omp parallel for num_threads(t) schedule(dynamic, 1024)
     for (std::size_t i = 0; i < points_.size; ++i) {
-      if (isKnown(i)) followAround(i);
+      if (isKnown(i)) isSure(i) ? keep(i) : followAround(i);
     }
   }
 
@@ -115,6 +120,22 @@ class Leaner {
   }
   bool isKnown(std::size_t i) const {
     return dot(toward(i), toward(i)) > 0.F && std::isfinite(normals_[4 * i]);
+  }
+
+  bool isSure(std::size_t i) const {
+    return !sure_.empty() && sure_[i] != 0;
+  }
+
+  void leanSure(std::size_t i) {
+    float* n = &normals_[4 * i];
+    Vector mean{n[0], n[1], n[2]};
+    lean(toward(i), kLeast * kLeast, mean);
+    if (!scaleToUnit(mean)) return;
+    store(mean, &leaned_[4 * i]);
+  }
+
+  void keep(std::size_t i) {
+    std::copy_n(&leaned_[4 * i], 3, &normals_[4 * i]);
   }
 
   // With the planes around, in the first round.
@@ -221,6 +242,7 @@ class Leaner {
   const PointView& points_;
   const Neighborhoods& nb_;
   const std::vector<float>& toward_;
+  const std::vector<std::uint8_t>& sure_;
   int threads_;
   std::vector<float>& normals_;
   search::MedianHashIndex index_;
@@ -231,8 +253,9 @@ class Leaner {
 }  // namespace
 
 void leanToSensors(const PointView& points, const Neighborhoods& neighborhoods,
-                   const std::vector<float>& toward, int threads, std::vector<float>& normals) {
-  Leaner(points, neighborhoods, toward, threads, normals).run();
+                   const std::vector<float>& toward, const std::vector<std::uint8_t>& sure,
+                   int threads, std::vector<float>& normals) {
+  Leaner(points, neighborhoods, toward, sure, threads, normals).run();
 }
 
 }  // namespace segorient::detail

@@ -5,6 +5,7 @@
 #include <segorient/common/neighborhoods.h>
 #include <segorient/common/point_view.h>
 
+#include <cstdint>
 #include <vector>
 
 namespace segorient::detail {
@@ -20,8 +21,11 @@ namespace segorient::detail {
 ///
 /// \param neighborhoods of the points
 /// \param toward 3 a point: unit vector to its sensor; 0 = unknown, and the normal stays
+/// \param sure one a point, or none: normals that stay as far as their side allows, whatever the
+///        planes around say, which near an edge are of both faces
 /// \param normals 4 floats a point, oriented; changed but for the fourth
 void leanToSensors(const PointView& points, const Neighborhoods& neighborhoods,
-                   const std::vector<float>& toward, int threads, std::vector<float>& normals);
+                   const std::vector<float>& toward, const std::vector<std::uint8_t>& sure,
+                   int threads, std::vector<float>& normals);
 
 }  // namespace segorient::detail

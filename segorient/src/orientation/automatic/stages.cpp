@@ -127,7 +127,8 @@ AutoStages runAutoStages(PreparedCloud& cloud, const PipelineOptions& options,
                         record != nullptr ? &record->final_traits : nullptr, oriented);
   }
   if (!oriented.orientation.toward.empty()) {
-    leanToSensors(points, table, oriented.orientation.toward, options.threads, oriented.normals);
+    leanToSensors(points, table, oriented.orientation.toward, oriented.sure, options.threads,
+                  oriented.normals);
   }
   followFinalNormals(table, oriented.normals, options.threads, out.segmentation);
   turnSegments(oriented, out);
