@@ -24,6 +24,9 @@ namespace {
 constexpr int kDenoisingNeighbors = 48;
 // In spacings, as NoiseLevel::fine measures it. With less, borders tell enough.
 constexpr float kFieldNoise = 0.2F;
+// Of the residuals of 32 neighbours and of 8: noise of a surface makes them nearly the same, while
+// steps of depth, rings and rough ground hide from the few what they are to the many.
+constexpr float kSeenByFew = 2.F;
 
 // Finds the neighbours unless they are known, and those of smoothed positions where the noise asks
 // for that.
@@ -120,7 +123,9 @@ AutoStages runAutoStages(PreparedCloud& cloud, const PipelineOptions& options,
     }
   }
   labelTheRest(table, oriented.normals, out.segmentation);
-  if (settings.fit_normals && !out.denoised && !oriented.scan_scales) {
+  const NoiseLevel& noise = oriented.sheets.noise;
+  const bool few_tell = !oriented.scan_scales || noise.coarse < kSeenByFew * noise.fine;
+  if (settings.fit_normals && !out.denoised && few_tell) {
     begin("recomputation", 0.88);
     out.final_traits =
         fitFinalNormals(cloud, out.segmentation, options.k > 0, options.threads,
