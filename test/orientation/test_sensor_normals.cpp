@@ -42,8 +42,8 @@ struct Corner {
     normals = truth;
   }
   std::size_t size() const { return xyz.size() / 4; }
-  void run(int threads = 1) {
-    detail::leanToSensors(viewOf(xyz), neighborsOf(xyz), toward, {}, threads, normals);
+  void run(int threads = 1, const std::vector<std::uint8_t>& sure = {}) {
+    detail::leanToSensors(viewOf(xyz), neighborsOf(xyz), toward, sure, threads, normals);
   }
 };
 
@@ -58,6 +58,21 @@ TEST(SensorNormals, WhatIsSureStaysAtGrazingAngles) {
     EXPECT_GT(dot3(&corner.normals[4 * i], &corner.truth[4 * i]), std::cos(2.0 * M_PI / 180)) << i;
   }
   EXPECT_GT(inner, 500U);
+}
+
+TEST(SensorNormals, WhatOneSurfaceExplainsStaysBesideAnEdge) {
+  Corner corner(0.F);
+  corner.run(1, std::vector<std::uint8_t>(corner.size(), 1));
+  for (std::size_t i = 0; i < corner.size(); ++i) {
+    EXPECT_GT(dot3(&corner.normals[4 * i], &corner.truth[4 * i]), std::cos(1.0 * M_PI / 180)) << i;
+  }
+  // Unless it turns its back to its sensor.
+  for (std::size_t i = 0; i < corner.size(); ++i) {
+    for (std::size_t a = 0; a < 3; ++a) corner.normals[4 * i + a] = -corner.toward[3 * i + a];
+  }
+  corner.normals[0] += 0.2F;
+  corner.run(1, std::vector<std::uint8_t>(corner.size(), 1));
+  EXPECT_GT(dot3(&corner.normals[0], &corner.toward[0]), 0.F);
 }
 
 TEST(SensorNormals, PointsThatTookTheOtherFacesNormalBesideAnEdgeKeepTheirSide) {

@@ -191,7 +191,8 @@ class FinalNormals {
     const float sure = fits_[i] == Fit::ONE_SIDED ? 0.F : has_edges_ ? kSameFace : kSureSide;
     if (along > sure) {
       std::copy_n(f, 3, result);
-      sure_[i] = fits_[i] == Fit::EXPLAINED || fits_[i] == Fit::ONE_SIDED ? 1 : 0;
+      const bool fits = fits_[i] == Fit::EXPLAINED || fits_[i] == Fit::ONE_SIDED;
+      sure_[i] = fits && along > kSameFace ? 1 : 0;
     } else if (fits_[i] != Fit::ONE_SIDED) {
       addUnit(f, along, result);
     }

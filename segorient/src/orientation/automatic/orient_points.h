@@ -33,7 +33,7 @@ struct AutoNormals {
   std::vector<std::uint8_t> around;      ///< what is around each point: bits of Around
   bool scan_scales = false;              ///< see SheetNormals
   /// Whether a final normal is that of a surface that leaves no more of the points around than
-  /// rounding and a little noise do; empty where none is.
+  /// rounding and a little noise do, and agrees with the filtered one; empty where none is.
   std::vector<std::uint8_t> sure;
   AutoOrientation orientation;  ///< of the sheets' segments
   /// Whether a point's sensor decided its side; empty where no sensor is known.

@@ -17,8 +17,8 @@
 namespace segorient::detail {
 namespace {
 
-// Neighbours whose normals are compared, and those of two planes; the largest one only where the
-// other contradicts the normal by more than 6 degrees.
+// Neighbours whose normals are compared, and those of planes; the largest one only where the one
+// before contradicts the normal by more than 6 degrees.
 constexpr int kNearest = 8;
 constexpr int kNear = 16;
 constexpr int kWide = 32;
@@ -27,10 +27,17 @@ constexpr float kAgree = 0.995F;
 // Of the variances across a plane and along its shorter side: a third of the plane's weight. 30
 // points on two faces of an edge have .1 and more.
 constexpr float kFlat = 0.05F;
+// A larger plane that leaves more than this times the variance that few neighbours leave is bent,
+// or of two faces: it counts less in proportion. Of one surface with noise, such estimates differ
+// by half.
+constexpr float kSameNoise = 2.F;
 // Radians: what is left where all agree.
 constexpr float kLeast = 0.02F;
 // A neighbour's plane counts while the point is within a tenth of a spacing of it, and noise.
 constexpr float kOffset = 0.1F;
+// Surfaces seen at a smaller cosine are sampled by a third of the density of what is seen face on:
+// beside an edge, a normal that says so is more likely the other face's.
+constexpr float kSeldom = 1.F / 3.F;
 // ns a point, see resolveThreads().
 constexpr double kFitTime = 1500.0;
 constexpr double kMeanTime = 300.0;
@@ -123,7 +130,7 @@ class Leaner {
   }
 
   bool isSure(std::size_t i) const {
-    return !sure_.empty() && sure_[i] != 0;
+    return !sure_.empty() && sure_[i] != 0 && dot(&normals_[4 * i], toward(i)) > kSeldom;
   }
 
   void leanSure(std::size_t i) {
@@ -141,35 +148,35 @@ class Leaner {
   // With the planes around, in the first round.
   void leanOne(std::size_t i) {
     const pcl::index_t* row = nb_.indices(i);
-    const int count = nb_.count(i);
+    const int end = std::min(nb_.count(i), kWide + 1);
     const float h = meanDistance(points_, nb_, i, 6);
     if (!(h > 0.F)) return;
     const float* n = &normals_[4 * i];
     GrowingPlane sum(points_, i, 1.F / h);
+    float nearest = std::numeric_limits<float>::infinity();
+    float few = nearest;
     Vector around;
     float used = 0.F;
-    float variance = std::numeric_limits<float>::infinity();
-    for (int j = 0; j < std::min(count, kWide + 1); ++j) {
+    for (int j = 0; j < end; ++j) {
       sum.add(row[j]);
-      if (j > kNear) continue;
+      if (j == kNearest) nearest = varianceOf(sum.plane());
+      if (j == kNear) few = varianceOf(sum.plane());
       const float* other = &normals_[4 * static_cast<std::size_t>(row[j])];
-      if (std::isfinite(other[0])) {
-        around.add(other, 1.F);
-        used += 1.F;
-      }
-      if (j == kNearest || j == kNear) variance = std::min(variance, varianceOf(sum.plane()));
+      if (j > kNear || !std::isfinite(other[0])) continue;
+      around.add(other, 1.F);
+      used += 1.F;
     }
     Vector mean{n[0], n[1], n[2]};
     const Plane wide = sum.plane();
-    variance = std::min(variance, varianceOf(wide));
+    float variance = std::min({nearest, few, varianceOf(wide)});
     float agreement = 1.F;
     if (wide.valid) {
       agreement = std::min(1.F, std::fabs(dot(wide.normal.data(), n)));
-      addPlane(wide, i, mean);
+      addPlane(wide, i, few, mean);
       if (agreement < kAgree) {
         const Plane widest = planeAround(i, 1.F / h);
         variance = std::min(variance, varianceOf(widest));
-        addPlane(widest, i, mean);
+        addPlane(widest, i, few, mean);
       }
     }
     tolerance_[i] = h * h * (kOffset * kOffset + (std::isfinite(variance) ? variance : 0.F));
@@ -193,10 +200,12 @@ class Leaner {
     return sum.plane();
   }
 
-  // Flat planes count as much as the normal itself.
-  void addPlane(const Plane& plane, std::size_t i, Vector& mean) const {
+  // Flat planes that leave no more than few neighbours do count as much as the normal itself.
+  void addPlane(const Plane& plane, std::size_t i, float few, Vector& mean) const {
     if (!plane.valid || !(plane.lambda[1] > 0.F)) return;
-    const float weight = 1.F / (1.F + plane.lambda[0] / (kFlat * plane.lambda[1]));
+    const float across = plane.lambda[0];
+    const float same = across > kSameNoise * few ? kSameNoise * few / across : 1.F;
+    const float weight = same / (1.F + across / (kFlat * plane.lambda[1]));
     const float* p = plane.normal.data();
     mean.add(p, dot(p, toward(i)) < 0.F ? -weight : weight);
   }
