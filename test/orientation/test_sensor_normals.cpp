@@ -63,9 +63,13 @@ TEST(SensorNormals, WhatIsSureStaysAtGrazingAngles) {
 TEST(SensorNormals, WhatOneSurfaceExplainsStaysBesideAnEdge) {
   Corner corner(0.F);
   corner.run(1, std::vector<std::uint8_t>(corner.size(), 1));
+  std::size_t seen = 0;
   for (std::size_t i = 0; i < corner.size(); ++i) {
+    if (dot3(&corner.truth[4 * i], &corner.toward[3 * i]) < 0.35F) continue;  // grazing
+    ++seen;
     EXPECT_GT(dot3(&corner.normals[4 * i], &corner.truth[4 * i]), std::cos(1.0 * M_PI / 180)) << i;
   }
+  EXPECT_GT(seen, corner.size() / 2);
   // Unless it turns its back to its sensor.
   for (std::size_t i = 0; i < corner.size(); ++i) {
     for (std::size_t a = 0; a < 3; ++a) corner.normals[4 * i + a] = -corner.toward[3 * i + a];
