@@ -43,8 +43,8 @@ TileTraits measureTileTraits(const PointView& points, int k, const OrientationHi
 bool needsFinishing(const TileTraits& traits, const TileShare& share, const TileSigns& signs) {
   // Of sensors, the whole knows which are to be believed.
   if (!signs.toward.empty() || traits.level > 0.F) return true;
-  // A point of a border has about eight neighbours across it: four of 100,000 points, less than half
-  // of the one in 10,000 by which tiles may differ from the whole.
+  // A point of a border has about eight neighbours across it: four of 100,000 points, less than
+  // half of the one in 10,000 by which tiles may differ from the whole.
   constexpr double kMost = 3e-4;
   std::uint64_t points = 0;
   std::uint64_t wrong = 0;
