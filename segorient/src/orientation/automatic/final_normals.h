@@ -17,7 +17,7 @@ namespace segorient::detail {
 /// belongs to each (OneSidedNormal::EXPECTED). With noise it gets the mean of that and of the
 /// filtered one, which err in different ways: the one by noise, the other by what the surface
 /// bends. The filtered normal stays where neighbours are of another wall, at what cannot be fitted
-/// beside sharp edges, and on scans whose points chose the scale of their planes themselves.
+/// beside sharp edges, and on scans whose noise only many neighbours show (see runAutoStages()).
 ///
 /// \param cloud whose neighbours are known; more are sought where the noise asks for them, unless
 ///        `only_known`
