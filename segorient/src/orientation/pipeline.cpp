@@ -149,7 +149,7 @@ std::size_t expectedMemory(std::size_t points, const PipelineOptions& options) {
   // The table of neighbours, with distances where the paper's methods want them, and all else, as
   // measured on clouds of one to ten million points.
   const std::size_t entry = automatic ? sizeof(pcl::index_t) : sizeof(pcl::index_t) + sizeof(float);
-  constexpr std::size_t kElse = 180;
+  constexpr std::size_t kElse = 165;
   // Automatic normals of noisy clouds have neighbours of their own for a while.
   const bool wider =
       !automatic && options.k <= 0 && options.normals.estimator == NormalEstimator::AUTO;
