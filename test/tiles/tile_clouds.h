@@ -14,18 +14,25 @@
 
 namespace segorient::test {
 
-/// A sphere of radius 1 with a cavity of radius 1/2, closed, around a place.
+/// A sphere of radius 1 with a cavity of radius 1/2, closed, around a place. Every fifth point is
+/// on the cavity.
 inline std::vector<double> hollowSphere(std::size_t n, double x, double y, double z) {
   std::vector<double> out;
-  for (std::size_t i = 0; i < n; ++i) {
-    const bool cavity = i % 5 == 4;
-    const double radius = cavity ? 0.5 : 1.0;
-    const double h = 1.0 - 2.0 * (static_cast<double>(i) + 0.5) / static_cast<double>(n);
+  const auto add = [&](std::size_t i, std::size_t count, double radius) {
+    const double h = 1.0 - 2.0 * (static_cast<double>(i) + 0.5) / static_cast<double>(count);
     const double r = std::sqrt(1.0 - h * h);
     const double angle = 2.399963229728653 * static_cast<double>(i);
     out.push_back(x + radius * r * std::cos(angle));
     out.push_back(y + radius * r * std::sin(angle));
     out.push_back(z + radius * h);
+  };
+  const std::size_t in_cavity = n / 5;
+  for (std::size_t i = 0; i < n; ++i) {
+    if (i % 5 == 4) {
+      add(i / 5, in_cavity, 0.5);
+    } else {
+      add(i - i / 5, n - in_cavity, 1.0);
+    }
   }
   return out;
 }
