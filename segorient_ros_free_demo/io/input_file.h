@@ -32,8 +32,8 @@ class InputFile {
   /// Exactly so many bytes; throws if the file ends before.
   void read(void* out, std::size_t bytes);
   void skip(std::uint64_t bytes);
-  /// Goes on at any byte of the file; line numbers then mean nothing. From there on, what is read is
-  /// read as it is, and nothing ahead.
+  /// Goes on at any byte of the file; line numbers then mean nothing. From there on, what is read
+  /// is read as it is, and nothing ahead.
   void seek(std::uint64_t position);
 
   [[noreturn]] void fail(const std::string& reason) const { throw FileError(path_, reason); }
