@@ -28,8 +28,9 @@ constexpr float kCell = 0.8F;
 constexpr float kSmooth = 1.F;  // a cell and its neighbours, so that no single dipole stands out
 // Places where the winding number is asked: eight and more for each sign.
 constexpr std::size_t kPlaces = 4000;
-// So that two patches of opposed signs pay as much for their border as one of them does for being
-// on the wrong side: a patch of 80 cells has some 13 pairs of neighbours across a border.
+// So that smoothness and the winding number weigh alike: a patch of 80 cells has some 27 pairs of
+// neighbours across each of four sides. Opposed across one side it pays for 32 cells, on the wrong
+// side of its surface for 80.
 constexpr double kSmoothness = 0.3;
 constexpr double kTie = 1e-3;         // of a patch's share: what no place sees stays 0
 constexpr int kSweeps = 200;          // at most
