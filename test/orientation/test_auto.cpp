@@ -94,6 +94,24 @@ TEST(Auto, PlaneIsTurnedUpOrToTheViewpoint) {
   for (std::size_t i = 0; i < 2000; ++i) ASSERT_LT(down.normals[4 * i + 2], -0.99F);
 }
 
+// Ground that bulges and ground that is hollow: the winding number would turn the latter down.
+TEST(Auto, OpenGroundFacesUp) {
+  for (const float bend : {-0.15F, 0.15F}) {
+    std::mt19937 rng(48);
+    std::uniform_real_distribution<float> unit(-1.F, 1.F);
+    std::vector<float> xyz;
+    for (int i = 0; i < 4000; ++i) {
+      const float x = unit(rng);
+      const float y = unit(rng);
+      xyz.insert(xyz.end(), {x, y, bend * (x * x + y * y), 0.F});
+    }
+    const OrientedCloud ground = orient(xyz);
+    for (std::size_t i = 0; i < 4000; ++i) ASSERT_GT(ground.normals[4 * i + 2], 0.F) << bend;
+    ASSERT_EQ(ground.report.components.size(), 1U);
+    EXPECT_EQ(ground.report.components[0].by, DecidedBy::NOTHING);
+  }
+}
+
 TEST(Auto, MoebiusStripIsReported) {
   std::mt19937 rng(44);
   std::uniform_real_distribution<double> unit(0, 1);

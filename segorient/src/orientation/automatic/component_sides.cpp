@@ -59,8 +59,13 @@ void turnLooseParts(SheetSigns& sheets) {
   if (turnLooseParts(sheets, part_of, clean, {0.1, kClosedResidual})) sheets.windComponents();
 }
 
+struct Convention {
+  std::int8_t sign = 1;
+  bool lies = false;  // an upward or downward sheet: ground, or what is seen from above
+};
+
 // By convention +z, then +y, then +x.
-std::vector<std::int8_t> conventionalSigns(const SheetSigns& sheets) {
+std::vector<Convention> conventions(const SheetSigns& sheets) {
   const std::size_t count = sheets.windings.size();
   std::vector<std::array<double, 3>> sum(count, {0.0, 0.0, 0.0});
   std::vector<double> points(count, 0.0);
@@ -74,27 +79,31 @@ std::vector<std::int8_t> conventionalSigns(const SheetSigns& sheets) {
     }
     points[c] += 1.0;
   }
-  std::vector<std::int8_t> signs;
+  constexpr double kLies = 0.5;  // mean of a hemisphere's normals along its axis
+  std::vector<Convention> out(count);
   for (std::size_t c = 0; c < count; ++c) {
     const double least = 1e-6 * points[c];
     double direction = sum[c][2];
     if (std::fabs(direction) <= least) direction = sum[c][1];
     if (std::fabs(direction) <= least) direction = sum[c][0];
-    signs.push_back(direction < 0.0 ? -1 : 1);
+    out[c].sign = direction < 0.0 ? std::int8_t{-1} : std::int8_t{1};
+    out[c].lies = std::fabs(sum[c][2]) > kLies * points[c];
   }
-  return signs;
+  return out;
 }
 
 // What decides the side of a component: the winding number, or what is known beforehand, or else
 // convention.
 ComponentOrientationResult sideOf(const SheetSigns& sheets, std::size_t component,
-                                  std::int8_t conventional, const HintVotes& hints) {
+                                  const Convention& convention, const HintVotes& hints) {
   // Nothing to tell in from out: a plane, or an isolated point.
   constexpr float kNoEvidence = 0.01F;
   const ComponentWinding& winding = sheets.windings[component];
   ComponentOrientationResult out = sheets.found.result.components[component];
-  const bool unknown = winding.evidence < kNoEvidence;
-  out.sign = unknown ? conventional : winding.sign;
+  // Of open ground the winding number tells bulge from hollow, not outside from inside.
+  const bool ground = convention.lies && !sheets.isClosed(component, kOpenResidual);
+  const bool unknown = ground || winding.evidence < kNoEvidence;
+  out.sign = unknown ? convention.sign : winding.sign;
   out.by = unknown ? DecidedBy::NOTHING : DecidedBy::GLOBAL;
   out.evidence = winding.evidence;
   out.confidence = unknown ? 0.F : winding.evidence;
@@ -115,7 +124,7 @@ void turnComponentsOut(SheetSigns& sheets) {
     sheets.windComponents();
     if (sheets.options.turn_loose_parts) turnLooseParts(sheets);
   }
-  const std::vector<std::int8_t> conventional = conventionalSigns(sheets);
+  const std::vector<Convention> conventional = conventions(sheets);
   std::vector<HintVotes> hinted(sheets.windings.size());
   for (std::size_t s = 0; s < sheets.signs.size(); ++s) {
     hinted[at(sheets.component_of[s])].add(sheets.hint_votes[s], sheets.signs[s]);
