@@ -28,6 +28,10 @@ XyzCloud::Ptr inUnit(const XyzCloud& cloud, float unit) {
 }
 
 // By a power of two nothing is rounded, so that nothing at all may change.
+std::string nameOf(float unit) {
+  return unit < 1.F ? "1e-30" : "1e30";
+}
+
 TEST(ExtremeUnits, OfPowersOfTwoChangeNothing) {
   const QuietPcl quiet;
   const XyzCloud clean = shapes();
@@ -55,7 +59,7 @@ TEST(ExtremeUnits, GiveTheSameSigns) {
     const std::vector<ClassResult> found = runEveryClass(inUnit(clean, unit));
     for (std::size_t c = 0; c < expected.size(); ++c) {
       if (!expected[c].oriented) continue;
-      SCOPED_TRACE(expected[c].name + ", " + (unit < 1.F ? "1e-30" : "1e30"));
+      SCOPED_TRACE(expected[c].name + ", " + nameOf(unit));
       std::size_t reversed = 0;
       ASSERT_EQ(found[c].normals.size(), expected[c].normals.size());
       for (std::size_t i = 0; i < expected[c].normals.size(); ++i) {
@@ -65,10 +69,6 @@ TEST(ExtremeUnits, GiveTheSameSigns) {
       EXPECT_EQ(reversed, 0U);
     }
   }
-}
-
-std::string nameOf(float unit) {
-  return unit < 1.F ? "1e-30" : "1e30";
 }
 
 TEST(ExtremeUnits, UnorientedNormalsStayTheSame) {

@@ -38,6 +38,7 @@ PatchEquations::PatchEquations(const EvenCells& cells, float radius, int threads
   const std::size_t stride = std::max<std::size_t>(1, cells.size() / kPlaces);
   for (std::size_t c = 0; c < cells.size(); c += stride) {
     places_.push_back(static_cast<std::uint32_t>(c));
+    patch_at_.push_back(patches_.of[c]);
   }
   areas_.resize(static_cast<Eigen::Index>(places_.size()));
   for (Eigen::Index k = 0; k < areas_.size(); ++k) {
@@ -121,7 +122,7 @@ PatchSolution PatchEquations::solve(Signs start, int rounds, bool layers) const 
     if (round > 0 || !from_nothing) {
       const Eigen::VectorXf w = fields_ * signs.cast<float>();
       for (Eigen::Index k = 0; k < w.size(); ++k) {
-        const std::int32_t p = patches_.of[places_[static_cast<std::size_t>(k)]];
+        const std::int32_t p = patch_at_[static_cast<std::size_t>(k)];
         if (p >= 0) {
           // Half a sign is enough to be asked.
           const auto sure = static_cast<float>(std::fabs(signs[p])) / 0.5F;
@@ -131,7 +132,7 @@ PatchSolution PatchEquations::solve(Signs start, int rounds, bool layers) const 
       }
     }
     for (Eigen::Index k = 0; k < weights.size(); ++k) {
-      if (patches_.of[places_[static_cast<std::size_t>(k)]] < 0) weights[k] = 0.F;
+      if (patch_at_[static_cast<std::size_t>(k)] < 0) weights[k] = 0.F;
     }
     signs = descend(std::move(signs), weights, targets);
   }
@@ -151,7 +152,7 @@ PatchSolution PatchEquations::judge(Signs signs) const {
   float outside = 0.F;
   float asked = 0.F;
   for (Eigen::Index k = 0; k < w.size(); ++k) {
-    const std::int32_t p = patches_.of[places_[static_cast<std::size_t>(k)]];
+    const std::int32_t p = patch_at_[static_cast<std::size_t>(k)];
     if (p < 0) continue;
     asked += areas_[k];
     if (whole[p] == 0.F) {

@@ -48,9 +48,10 @@ class PatchEquations {
 
   const EvenCells& cells_;
   SignPatches patches_;
-  std::vector<std::uint32_t> places_;  // cells
-  Eigen::VectorXf areas_;              // of places, as shares of all
-  Eigen::MatrixXf fields_;             // winding number of each patch (column) at each place (row)
+  std::vector<std::uint32_t> places_;   // cells
+  std::vector<std::int32_t> patch_at_;  // patch of each place, -1 where there is none
+  Eigen::VectorXf areas_;               // of places, as shares of all
+  Eigen::MatrixXf fields_;              // winding number of each patch (column) at each place (row)
 };
 
 }  // namespace segorient::detail
