@@ -11,6 +11,8 @@
 #include <limits>
 #include <vector>
 
+#include "common/parts.h"
+
 namespace segorient {
 
 /// Where points are, axis by axis.
@@ -29,6 +31,13 @@ struct Bounds {
       high[a] = std::max(high[a], p[a]);
     }
     ++points;
+  }
+  void add(const Bounds& other) {
+    for (std::size_t a = 0; a < 3; ++a) {
+      low[a] = std::min(low[a], other.low[a]);
+      high[a] = std::max(high[a], other.high[a]);
+    }
+    points += other.points;
   }
   bool contains(const std::array<double, 3>& p) const {
     bool inside = true;
@@ -79,32 +88,50 @@ SEGORIENT_SEARCH_EXPORT Bounds fenceAround(std::array<std::vector<double>, 3>& c
 
 /// Bounds of all finite points but strays.
 /// \param position of each of `size` points, an array of three
+/// \param threads see resolveThreads()
 template <typename Position>
-Bounds bulkBounds(std::size_t size, const Position& position) {
+Bounds bulkBounds(std::size_t size, const Position& position, int threads = 1) {
+  constexpr double kPointTime = 10.0;  // nanoseconds
+  const Parts parts(size, threads, kPointTime);
   const auto isFinitePoint = [](const std::array<double, 3>& p) {
     return std::isfinite(p[0]) && std::isfinite(p[1]) && std::isfinite(p[2]);
   };
+  std::vector<Bounds> bounds(parts.count());
+  parts.forEach([&](std::size_t part) {
+    Bounds own;
+    for (std::size_t i = parts.begin(part); i < parts.end(part); ++i) {
+      const std::array<double, 3> p = position(i);
+      if (isFinitePoint(p)) own.add(p);
+    }
+    bounds[part] = own;
+  });
   Bounds all;
-  for (std::size_t i = 0; i < size; ++i) {
-    const std::array<double, 3> p = position(i);
-    if (isFinitePoint(p)) all.add(p);
-  }
+  for (const Bounds& own : bounds) all.add(own);
   if (all.points == 0) return all;
   // Strays matter only if they are farther away than the bulk is wide: then all of that is in a few
   // of these slots along the longest side. The others may be no longer than without strays.
   constexpr std::size_t kSlots = 64;
-  std::array<std::size_t, kSlots> slots{};
   std::size_t a = 0;
   for (std::size_t b = 1; b < 3; ++b) {
     if (all.high[b] / 2.0 - all.low[b] / 2.0 > all.high[a] / 2.0 - all.low[a] / 2.0) a = b;
   }
-  for (std::size_t i = 0; i < size; ++i) {
-    const std::array<double, 3> p = position(i);
-    if (!isFinitePoint(p)) continue;
-    // Halves, since the extent itself may overflow.
-    const double range = all.high[a] / 2.0 - all.low[a] / 2.0;
-    const double at = range > 0.0 ? (p[a] / 2.0 - all.low[a] / 2.0) / range : 0.0;
-    ++slots[static_cast<std::size_t>(std::min(at * kSlots, kSlots - 1.0))];
+  // Halves, since the extent itself may overflow.
+  const double range = all.high[a] / 2.0 - all.low[a] / 2.0;
+  using Slots = std::array<std::size_t, kSlots>;
+  std::vector<Slots> slots_of(parts.count());
+  parts.forEach([&](std::size_t part) {
+    Slots own{};
+    for (std::size_t i = parts.begin(part); i < parts.end(part); ++i) {
+      const std::array<double, 3> p = position(i);
+      if (!isFinitePoint(p)) continue;
+      const double at = range > 0.0 ? (p[a] / 2.0 - all.low[a] / 2.0) / range : 0.0;
+      ++own[static_cast<std::size_t>(std::min(at * kSlots, kSlots - 1.0))];
+    }
+    slots_of[part] = own;
+  });
+  Slots slots{};
+  for (const Slots& own : slots_of) {
+    for (std::size_t s = 0; s < kSlots; ++s) slots[s] += own[s];
   }
   std::size_t fullest = 0;
   for (std::size_t s = 0; s + 1 < kSlots; ++s) fullest = std::max(fullest, slots[s] + slots[s + 1]);

@@ -8,10 +8,11 @@
 #include <cstdint>
 #include <limits>
 #include <numeric>
+#include <segorient/common/impl/fast_vector.hpp>
 
 #include "common/bulk_bounds.h"
 #include "common/compiler.h"
-#include "common/threads.h"
+#include "common/parts.h"
 
 namespace segorient {
 namespace {
@@ -31,31 +32,57 @@ std::uint64_t spreadBits(std::uint64_t v) {
   return (v | v << 2) & 0x1249249249249249ULL;
 }
 
-// Least significant digit first; digits in which all keys agree are skipped.
-void radixSort(std::vector<Keyed>& items) {
-  constexpr int kBits = 11;
-  constexpr int kDigits = 6;
-  constexpr std::size_t kSize = std::size_t{1} << kBits;
-  std::vector<std::array<std::size_t, kSize>> histogram(kDigits);
-  for (auto& h : histogram) h.fill(0);
-  for (const Keyed& item : items) {
-    for (int d = 0; d < kDigits; ++d) {
-      ++histogram[static_cast<std::size_t>(d)][(item.key >> (d * kBits)) & (kSize - 1)];
+using Items = FastVector<Keyed>;
+
+constexpr double kItemTime = 20.0;  // nanoseconds, of each pass
+
+constexpr int kDigitBits = 11;
+constexpr std::size_t kDigits = 6;
+constexpr std::size_t kValues = std::size_t{1} << kDigitBits;
+using Histogram = std::array<std::uint32_t, kValues>;
+
+std::size_t digitOf(const Keyed& item, std::size_t digit) {
+  return (item.key >> (digit * kDigitBits)) & (kValues - 1);
+}
+
+bool isConstant(const Items& items, const Parts& parts, std::size_t digit,
+                const std::vector<Histogram>& histograms) {
+  const std::size_t value = digitOf(items.front(), digit);
+  std::size_t count = 0;
+  for (std::size_t part = 0; part < parts.count(); ++part) count += histograms[part][value];
+  return count == items.size();
+}
+
+// Least significant digit first; digits in which all keys agree are skipped. Each part of the items
+// has places of its own for each value of a digit.
+void radixSort(Items& items, int threads) {
+  if (items.empty()) return;
+  const Parts parts(items.size(), threads, kItemTime);
+  std::vector<Histogram> histograms(parts.count());
+  Items other(items.size());
+  for (std::size_t digit = 0; digit < kDigits; ++digit) {
+    parts.forEach([&](std::size_t part) {
+      Histogram& h = histograms[part];
+      h.fill(0);
+      for (std::size_t i = parts.begin(part); i < parts.end(part); ++i) {
+        ++h[digitOf(items[i], digit)];
+      }
+    });
+    if (isConstant(items, parts, digit, histograms)) continue;
+    std::uint32_t sum = 0;
+    for (std::size_t value = 0; value < kValues; ++value) {
+      for (Histogram& h : histograms) {
+        const std::uint32_t count = h[value];
+        h[value] = sum;
+        sum += count;
+      }
     }
-  }
-  std::vector<Keyed> other(items.size());
-  for (int d = 0; d < kDigits; ++d) {
-    auto& h = histogram[static_cast<std::size_t>(d)];
-    const bool constant =
-        std::any_of(h.begin(), h.end(), [&](std::size_t c) { return c == items.size(); });
-    if (constant) continue;
-    std::size_t sum = 0;
-    for (auto& c : h) {
-      const std::size_t count = c;
-      c = sum;
-      sum += count;
-    }
-    for (const Keyed& item : items) other[h[(item.key >> (d * kBits)) & (kSize - 1)]++] = item;
+    parts.forEach([&](std::size_t part) {
+      Histogram& h = histograms[part];
+      for (std::size_t i = parts.begin(part); i < parts.end(part); ++i) {
+        other[h[digitOf(items[i], digit)]++] = items[i];
+      }
+    });
     items.swap(other);
   }
 }
@@ -99,35 +126,72 @@ std::array<double, 3> inDouble(const float* p) {
   return {static_cast<double>(p[0]), static_cast<double>(p[1]), static_cast<double>(p[2])};
 }
 
-std::vector<Keyed> zOrder(const Source& source) {
-  constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
-  // Strays must not make one cell of all others: what lies outside goes into the outermost cells.
-  const Bounds bulk = bulkBounds(source.size(), [&](std::size_t i) -> std::array<double, 3> {
-    const float* p = source.at(i);
-    if (p == nullptr) return {kNone, kNone, kNone};
-    return inDouble(p);
-  });
-  // One scale for all axes, so that cells are cubes.
-  constexpr double kLastCell = (1 << 21) - 1;
-  const double scale = bulk.extent() > 0.0 ? kLastCell / bulk.extent() : 0.0;
-  std::vector<Keyed> items;
-  items.reserve(source.size());
-  for (std::size_t i = 0; i < source.size(); ++i) {
-    const float* p = source.at(i);
-    if (p == nullptr || bulk.isBeyondFloats(inDouble(p))) continue;
-    items.push_back({0, static_cast<pcl::index_t>(i)});
-    for (std::size_t a = 0; a < 3; ++a) {
-      const double cell = (static_cast<double>(p[a]) - bulk.low[a]) * scale;
-      items.back().key |= spreadBits(static_cast<std::uint64_t>(std::clamp(cell, 0.0, kLastCell)))
-                          << a;
-    }
+/// The cell of each point along a curve through a fine grid.
+class ZOrder {
+ public:
+  ZOrder(const Source& source, int threads)
+      : source_(source), bulk_(boundsOf(source, threads)), extent_(bulk_.extent()) {
+    if (extent_ > 0.0) scale_ = kLastCell / extent_;
   }
-  return items;
-}
+
+  Items items(int threads) const {
+    const Parts parts(source_.size(), threads, kItemTime);
+    Items items(source_.size());
+    std::vector<std::size_t> ends(parts.count());
+    parts.forEach([&](std::size_t part) {
+      std::size_t at = parts.begin(part);
+      for (std::size_t i = at; i < parts.end(part); ++i) {
+        const float* p = source_.at(i);
+        if (p == nullptr || bulk_.isBeyondFloats(inDouble(p))) continue;
+        items[at++] = {keyOf(p), static_cast<pcl::index_t>(i)};
+      }
+      ends[part] = at;
+    });
+    // Together again where points were left out.
+    auto end = items.begin();
+    for (std::size_t part = 0; part < parts.count(); ++part) {
+      const auto first = items.begin() + static_cast<std::ptrdiff_t>(parts.begin(part));
+      const auto last = items.begin() + static_cast<std::ptrdiff_t>(ends[part]);
+      end = first == end ? last : std::move(first, last, end);
+    }
+    items.erase(end, items.end());
+    return items;
+  }
+
+ private:
+  static constexpr double kLastCell = (1 << 21) - 1;
+
+  // Strays must not make one cell of all others: what lies outside goes into the outermost cells.
+  static Bounds boundsOf(const Source& source, int threads) {
+    constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+    return bulkBounds(
+        source.size(),
+        [&](std::size_t i) -> std::array<double, 3> {
+          const float* p = source.at(i);
+          if (p == nullptr) return {kNone, kNone, kNone};
+          return inDouble(p);
+        },
+        threads);
+  }
+
+  std::uint64_t keyOf(const float* p) const {
+    std::uint64_t key = 0;
+    for (std::size_t a = 0; a < 3; ++a) {
+      const double cell = (static_cast<double>(p[a]) - bulk_.low[a]) * scale_;
+      key |= spreadBits(static_cast<std::uint64_t>(std::clamp(cell, 0.0, kLastCell))) << a;
+    }
+    return key;
+  }
+
+  const Source& source_;
+  Bounds bulk_;
+  double extent_;
+  double scale_ = 0.0;  ///< one for all axes, so that cells are cubes
+};
 
 // Points of one cell by coordinates, equal ones by row: a total order that the input order cannot
 // change, and duplicates stand side by side.
-void sortWithinCells(const Source& source, std::vector<Keyed>& items) {
+void sortWithinCells(const Source& source, Items& items) {
   for (std::size_t i = 0; i < items.size();) {
     std::size_t j = i + 1;
     while (j < items.size() && items[j].key == items[i].key) ++j;
@@ -144,38 +208,56 @@ void sortWithinCells(const Source& source, std::vector<Keyed>& items) {
   }
 }
 
+// Whether an item is the first one of its place.
+bool isFirst(const Source& source, const Items& items, std::size_t i) {
+  return i == 0 || !equalXyz(source.known(items[i].row), source.known(items[i - 1].row));
+}
+
 }  // namespace
 
 CompactCloud compactCloud(const PointView& points, const std::vector<pcl::index_t>* indices,
-                          int /*threads*/) {
+                          int threads) {
   const Source source(points, indices);
-  std::vector<Keyed> items = zOrder(source);
-  radixSort(items);
+  Items items = ZOrder(source, threads).items(threads);
+  radixSort(items, threads);
   sortWithinCells(source, items);
+
+  const Parts parts(items.size(), threads, kItemTime);
+  // The input may be in any order.
+  constexpr std::size_t kAhead = 16;
+  std::vector<std::size_t> first_of(parts.count() + 1, 0);
+  parts.forEach([&](std::size_t part) {
+    std::size_t distinct = 0;
+    for (std::size_t i = parts.begin(part); i < parts.end(part); ++i) {
+      if (i + kAhead < items.size()) prefetch(source.known(items[i + kAhead].row));
+      if (isFirst(source, items, i)) ++distinct;
+    }
+    first_of[part + 1] = distinct;
+  });
+  std::partial_sum(first_of.begin(), first_of.end(), first_of.begin());
 
   CompactCloud out;
   out.row_of.assign(source.size(), -1);
-  out.source.reserve(items.size());
-  out.xyz.reserve(4 * items.size());
-  const float* last = nullptr;
-  // The input may be in any order.
-  constexpr std::size_t kAhead = 16;
-  for (std::size_t i = 0; i < items.size(); ++i) {
-    if (i + kAhead < items.size()) {
-      const pcl::index_t next = items[i + kAhead].row;
-      prefetch(source.known(next));
-      prefetchToWrite(&out.row_of[static_cast<std::size_t>(next)]);
+  out.source.resize(first_of.back());
+  out.xyz.resize(4 * first_of.back());
+  parts.forEach([&](std::size_t part) {
+    std::size_t next = first_of[part];
+    for (std::size_t i = parts.begin(part); i < parts.end(part); ++i) {
+      if (i + kAhead < items.size()) {
+        const pcl::index_t row = items[i + kAhead].row;
+        prefetch(source.known(row));
+        prefetchToWrite(&out.row_of[static_cast<std::size_t>(row)]);
+      }
+      const pcl::index_t row = items[i].row;
+      if (isFirst(source, items, i)) {
+        out.source[next] = row;
+        std::copy_n(source.known(row), 3, &out.xyz[4 * next]);
+        out.xyz[4 * next + 3] = 0.F;
+        ++next;
+      }
+      out.row_of[static_cast<std::size_t>(row)] = static_cast<pcl::index_t>(next - 1);
     }
-    const Keyed& item = items[i];
-    const float* p = source.known(item.row);
-    if (last == nullptr || !equalXyz(p, last)) {
-      out.source.push_back(item.row);
-      out.xyz.insert(out.xyz.end(), {p[0], p[1], p[2], 0.0F});
-      last = p;
-    }
-    out.row_of[static_cast<std::size_t>(item.row)] =
-        static_cast<pcl::index_t>(out.source.size() - 1);
-  }
+  });
   return out;
 }
 

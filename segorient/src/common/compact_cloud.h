@@ -4,6 +4,7 @@
 
 #include <pcl/types.h>
 #include <segorient/common/point_view.h>
+#include <segorient/common/impl/fast_vector.hpp>
 
 #include <vector>
 
@@ -17,7 +18,7 @@ namespace segorient {
 /// the input. Points near each other in space are near each other in memory (Z-order), which is
 /// what the stages after the search spend their time on.
 struct CompactCloud {
-  std::vector<float> xyz;            ///< 4 floats a point, the fourth is 0
+  FastVector<float> xyz;             ///< 4 floats a point, the fourth is 0
   std::vector<pcl::index_t> row_of;  ///< for each input row its compact row, -1 where left out
   std::vector<pcl::index_t> source;  ///< for each compact row the first input row that holds it
 

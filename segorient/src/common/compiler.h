@@ -90,6 +90,13 @@ SEGORIENT_INLINE void prefetchToWrite(const void* address) {
 #endif
 }
 
+/// How many bits are set.
+SEGORIENT_INLINE int countBits(std::uint32_t bits) {
+  bits -= bits >> 1 & 0x55555555U;
+  bits = (bits & 0x33333333U) + (bits >> 2 & 0x33333333U);
+  return static_cast<int>(((bits + (bits >> 4)) & 0x0f0f0f0fU) * 0x01010101U >> 24);
+}
+
 /// Number of the lowest bit that is set. \param bits not 0
 SEGORIENT_INLINE unsigned int lowestBit(std::uint32_t bits) {
 #if SEGORIENT_GNU_COMPILER

@@ -9,6 +9,7 @@
 #include <limits>
 #include <numeric>
 #include <sstream>
+#include <utility>
 
 #include "features/cloud_noise.h"
 
@@ -165,6 +166,7 @@ class Estimation {
 
  private:
   int available() const { return table_.k() - 1; }
+  float* normalOf(pcl::index_t row) const { return normals_ + 4 * static_cast<std::size_t>(row); }
 
   /// Closes the points that a condition holds for. \return how many
   template <typename Condition>
@@ -187,10 +189,7 @@ class Estimation {
 
   void takeQuadratics() {
     for (const int k : sizesFor(in_spacings_, available())) {
-      quadratics_.fit(points_, table_, k, threads_, open_);
-      for (const pcl::index_t o : open_) {
-        quadratics_.copyNormal(static_cast<std::size_t>(o), normals_);
-      }
+      quadratics_.fitInto(normals_, points_, table_, k, threads_, open_);
       report_.surfaces.emplace_back(
           k, closeExplained(k + 1 - 6, [&](std::size_t i) { return quadratics_.residuals[i]; }));
       report_.edge_k = k;
@@ -200,23 +199,38 @@ class Estimation {
   /// Leaves open only what looks like an edge: where points are few for how much the surface bends,
   /// the quadratic surfaces are the best there is.
   void keepEdges() {
-    const int k = report_.edge_k;
-    Surfaces planes(NormalEstimator::PLANE);
-    planes.fit(points_, table_, k, threads_, open_);
-    report_.surfaces.back().second += close([&](std::size_t row) {
-      const double plane = planeResidual(points_, table_, row, k, &planes.normals[4 * row]);
-      return static_cast<double>(quadratics_.residuals[row]) < kBend * plane;
-    });
+    // Planes take the quadratic surfaces' place for a moment: an array of their own would be as
+    // long as the cloud.
+    std::vector<float> quadratic(4 * open_.size());
+    for (std::size_t o = 0; o < open_.size(); ++o)
+      std::copy_n(normalOf(open_[o]), 4, &quadratic[4 * o]);
+    LocalNormalOptions options;
+    options.k = report_.edge_k;
+    options.threads = threads_;
+    estimateNormals(points_, points_, table_, options, normals_, nullptr, &open_);
+    std::vector<pcl::index_t> left;
+    for (std::size_t o = 0; o < open_.size(); ++o) {
+      const auto row = static_cast<std::size_t>(open_[o]);
+      const double plane = planeResidual(points_, table_, row, options.k, normals_ + 4 * row);
+      std::copy_n(&quadratic[4 * o], 4, normals_ + 4 * row);
+      const bool bends = static_cast<double>(quadratics_.residuals[row]) < kBend * plane;
+      if (!bends) left.push_back(open_[o]);
+    }
+    report_.surfaces.back().second += open_.size() - left.size();
+    open_ = std::move(left);
   }
 
   /// Whether cubic surfaces leave less than a share of what quadratic ones do of most rows.
-  bool areCubic(const std::vector<pcl::index_t>& rows, const Surfaces& cubics, double share) const {
-    const auto nearer = std::count_if(rows.begin(), rows.end(), [&](pcl::index_t r) {
-      const auto row = static_cast<std::size_t>(r);
-      return static_cast<double>(cubics.residuals[row]) <
-             share * static_cast<double>(quadratics_.residuals[row]);
-    });
-    return 2 * static_cast<std::size_t>(nearer) > rows.size();
+  /// \param cubic of each row
+  bool areCubic(const std::vector<pcl::index_t>& rows, const std::vector<float>& cubic,
+                double share) const {
+    std::size_t nearer = 0;
+    for (std::size_t r = 0; r < rows.size(); ++r) {
+      const float quadratic = quadratics_.residuals[static_cast<std::size_t>(rows[r])];
+      const bool less = static_cast<double>(cubic[r]) < share * static_cast<double>(quadratic);
+      nearer += less ? 1 : 0;
+    }
+    return 2 * nearer > rows.size();
   }
 
   /// Whether the cloud is of a surface without noise and smooth nearly everywhere, as a formula
@@ -225,9 +239,10 @@ class Estimation {
     if (available() < kCubicNeighbors) return false;
     if (known_ != nullptr) return known_->analytic;
     const std::vector<pcl::index_t> rows = detail::sampleRows(rows_);
-    Surfaces cubics(NormalEstimator::AWAS_CUBIC);
-    cubics.fit(points_, table_, kCubicNeighbors, threads_, rows);
-    return areCubic(rows, cubics, kNextTerm);
+    return areCubic(rows,
+                    detail::sampleResiduals(NormalEstimator::AWAS_CUBIC, points_, table_,
+                                            kCubicNeighbors, threads_, rows),
+                    kNextTerm);
   }
 
   /// Cubic surfaces wherever they leave less than the quadratic ones, and where only they fit.
@@ -273,7 +288,10 @@ class Estimation {
     Surfaces cubics(NormalEstimator::AWAS_CUBIC);
     quadratics_.fit(points_, table_, k, threads_, open_);
     cubics.fit(points_, table_, k, threads_, open_);
-    const bool better = known_ != nullptr ? known_->cubic_edges : areCubic(open_, cubics, kBetter);
+    std::vector<float> left;
+    for (const pcl::index_t o : open_)
+      left.push_back(cubics.residuals[static_cast<std::size_t>(o)]);
+    const bool better = known_ != nullptr ? known_->cubic_edges : areCubic(open_, left, kBetter);
     if (!better) return;
     report_.traits.cubic_edges = true;
     for (const pcl::index_t o : open_) cubics.copyNormal(static_cast<std::size_t>(o), normals_);

@@ -44,17 +44,47 @@ double spacingAt(const PointView& points, const Neighborhoods& table, std::size_
 
 void Surfaces::fit(const PointView& points, const Neighborhoods& table, int k, int threads,
                    const std::vector<pcl::index_t>& rows) {
+  if (normals == nullptr) normals.reset(new float[4 * points.size]);
+  fitInto(normals.get(), points, table, k, threads, rows);
+}
+
+void Surfaces::fitInto(float* all, const PointView& points, const Neighborhoods& table, int k,
+                       int threads, const std::vector<pcl::index_t>& rows) {
   LocalNormalOptions options;
   options.estimator = estimator;
   options.k = k;
   options.threads = threads;
-  normals.resize(4 * points.size);
-  residuals.resize(points.size);
-  estimateNormals(points, points, table, options, normals.data(), nullptr, residuals.data(), &rows);
+  if (residuals == nullptr) residuals.reset(new float[points.size]);
+  estimateNormals(points, points, table, options, all, nullptr, residuals.get(), &rows);
 }
 
 void Surfaces::copyNormal(std::size_t row, float* all) const {
   std::copy_n(&normals[4 * row], 4, all + 4 * row);
+}
+
+std::vector<float> sampleResiduals(NormalEstimator estimator, const PointView& points,
+                                   const Neighborhoods& table, int k, int threads,
+                                   const std::vector<pcl::index_t>& rows) {
+  const int entries = std::min(table.k(), k + 1);
+  Neighborhoods sample;
+  sample.reset(rows.size(), entries, false);
+  std::vector<float> queries(3 * rows.size());
+  for (std::size_t r = 0; r < rows.size(); ++r) {
+    const auto row = static_cast<std::size_t>(rows[r]);
+    const int count = std::min(table.count(row), entries);
+    std::copy_n(table.indices(row), count, sample.mutableIndices(r));
+    sample.setCount(r, count);
+    std::copy_n(points[row], 3, &queries[3 * r]);
+  }
+  LocalNormalOptions options;
+  options.estimator = estimator;
+  options.k = k;
+  options.threads = threads;
+  std::vector<float> normals(4 * rows.size());
+  std::vector<float> residuals(rows.size());
+  estimateNormals({queries.data(), 3, rows.size()}, points, sample, options, normals.data(),
+                  nullptr, residuals.data(), nullptr);
+  return residuals;
 }
 
 std::vector<pcl::index_t> sampleRows(std::size_t size) {
@@ -73,13 +103,13 @@ std::vector<pcl::index_t> sampleRows(const std::vector<pcl::index_t>& of) {
 CloudNoise sampleNoise(const PointView& points, const Neighborhoods& neighborhoods, int threads) {
   if (points.size < kFewestPoints || neighborhoods.size() != points.size) return {};
   const std::vector<pcl::index_t> rows = sampleRows(points.size);
-  Surfaces surfaces;
-  surfaces.fit(points, neighborhoods, kNoiseNeighbors, threads, rows);
+  const std::vector<float> residuals = sampleResiduals(
+      NormalEstimator::AWAS_QUADRATIC, points, neighborhoods, kNoiseNeighbors, threads, rows);
   std::vector<float> lengths;
   std::vector<float> ratios;
-  for (const pcl::index_t r : rows) {
-    const auto row = static_cast<std::size_t>(r);
-    const float length = surfaces.residuals[row];
+  for (std::size_t r = 0; r < rows.size(); ++r) {
+    const auto row = static_cast<std::size_t>(rows[r]);
+    const float length = residuals[r];
     const auto ratio =
         static_cast<float>(static_cast<double>(length) / spacingAt(points, neighborhoods, row));
     if (!std::isfinite(ratio)) continue;

@@ -4,9 +4,9 @@
 
 #include <segorient/common/neighborhoods.h>
 #include <segorient/common/point_view.h>
-#include <segorient/common/impl/fast_vector.hpp>
 
 #include <cstddef>
+#include <memory>
 #include <vector>
 
 #include "features/local_normals.h"
@@ -17,15 +17,24 @@ namespace segorient::detail {
 struct Surfaces {
   NormalEstimator estimator;
   // Of a cloud's many rows perhaps a few: the others' memory is never touched.
-  FastVector<float> normals;    ///< 4 a row
-  FastVector<float> residuals;  ///< standard deviations of the neighbours
+  std::unique_ptr<float[]> normals;    ///< 4 a row
+  std::unique_ptr<float[]> residuals;  ///< standard deviations of the neighbours
 
   explicit Surfaces(NormalEstimator e = NormalEstimator::AWAS_QUADRATIC) : estimator(e) {}
   void fit(const PointView& points, const Neighborhoods& table, int k, int threads,
            const std::vector<pcl::index_t>& rows);
+  /// The same with the normals where the caller wants them.
+  void fitInto(float* all, const PointView& points, const Neighborhoods& table, int k, int threads,
+               const std::vector<pcl::index_t>& rows);
   /// Gives a row its normal.
   void copyNormal(std::size_t row, float* all) const;
 };
+
+/// What surfaces at some rows leave of their neighbourhoods: a standard deviation for each of
+/// `rows`. Takes memory for these only.
+std::vector<float> sampleResiduals(NormalEstimator estimator, const PointView& points,
+                                   const Neighborhoods& table, int k, int threads,
+                                   const std::vector<pcl::index_t>& rows);
 
 /// Noise of a cloud.
 struct CloudNoise {

@@ -61,6 +61,7 @@ PointHints findHints(const PointView& points, const PipelineOptions& options, Pr
     report.known_sensors.push_back(refused);
   }
   report.sensors = std::move(sensors);
+  if (report.sensors.sensors.empty()) report.sensors.sensor_of = {};
   return resolveHints(found, cloud);
 }
 

@@ -116,7 +116,8 @@ void MedianHashIndex::Impl::nearestOfRegion(std::size_t region, GroupTask& task,
     searchSelf(point, task.k, task.epsilon, out.mutableIndices(row),
                distances != nullptr ? distances : unwanted.data());
   }
-  for (std::size_t i = r.begin; i < r.end; ++i) {
+  // Otherwise all rows have as many, see nearestKAll().
+  for (std::size_t i = r.begin; layout.size() < rows && i < r.end; ++i) {
     out.setCount(view.row[i], static_cast<int>(task.k));
   }
 }
@@ -126,7 +127,11 @@ void MedianHashIndex::nearestKAll(int k, Neighborhoods& out, bool with_distances
   const Impl& self = *impl_;
   const std::size_t wanted = std::min(static_cast<std::size_t>(std::max(k, 0)), size());
   try {
-    out.reset(self.rows, k, with_distances);
+    if (size() == self.rows) {
+      out.resetFull(self.rows, k, static_cast<int>(wanted), with_distances);
+    } else {
+      out.reset(self.rows, k, with_distances);
+    }
     if (wanted > 0) self.nearestOfAll(wanted, epsilon, out);
   } catch (...) {
     out = Neighborhoods();

@@ -15,6 +15,7 @@ namespace segorient::segmentation {
 
 /// By distances and tangent planes, as PairLimits has them.
 struct LimitedEdges {
+  static constexpr bool kLooksAtRows = false;  ///< of candidates, before these are accepted
   PairLimits limits;
 
   std::uint32_t among(std::size_t /*p*/) const { return ~0U; }
@@ -28,6 +29,7 @@ struct LimitedEdges {
 
 /// Within single sheets, by SheetEdges.
 struct ListedEdges {
+  static constexpr bool kLooksAtRows = true;
   const GrowthState& state;
   std::vector<std::uint32_t> masks;  ///< see SheetEdges::list()
   const std::uint8_t* reliable;      ///< null = all points are
@@ -43,15 +45,15 @@ struct ListedEdges {
     const int wanted = size <= kYoung ? 0 : state.support;
     const pcl::index_t* row = state.neighborhoods->indices(q) + 1;
     const int last = state.rowSize(q) - 1;
-    int good = 0;
-    int bad = 0;
-    // Most points have one sheet around them, so that nothing can speak against it.
-    const bool one_sheet = state.support == 0 || masks[q] == (1U << last) - 1U;
-    for (int j = 0; j < last && !(one_sheet && good >= wanted); ++j) {
-      if (state.labels[static_cast<std::size_t>(row[j])] != label) continue;
-      ((masks[q] >> j & 1U) != 0 ? good : bad) += 1;
+    // Which of them are in the segment is nothing that a processor could guess: no branches.
+    std::uint32_t members = 0;
+    for (int j = 0; j < last; ++j) {
+      const bool member = state.labels[static_cast<std::size_t>(row[j])] == label;
+      members |= static_cast<std::uint32_t>(member) << j;
     }
-    return one_sheet ? good >= wanted : bad <= good && good >= wanted;
+    const int good = countBits(members & masks[q]);
+    const int bad = countBits(members & ~masks[q]);
+    return good >= wanted && (state.support == 0 || bad <= good);
   }
 };
 

@@ -11,6 +11,7 @@
 #include <limits>
 #include <vector>
 
+#include "common/threads.h"
 #include "segmentation/growth_state.h"
 
 namespace segorient::segmentation {
@@ -21,16 +22,15 @@ namespace segorient::segmentation {
 class SeedOrder {
  public:
   /// \param allowed not 0 at the points that may be seeds; null = all
-  explicit SeedOrder(const GrowthState& state, const std::uint8_t* allowed = nullptr)
+  SeedOrder(const GrowthState& state, int threads, const std::uint8_t* allowed = nullptr)
       : nodes_(state.nodes),
         labels_(state.labels),
         allowed_(allowed),
         blocks_(nodes_.size() / kBlock + 1) {
-    firsts_.reserve(blocks_.size());
-    for (std::size_t block = 0; block < blocks_.size(); ++block) {
-      const std::uint64_t key = leastOf(block);
-      if (key != kNone) firsts_.push_back(key);
-    }
+    firsts_.resize(blocks_.size());
+#pragma omp parallel for schedule(static) num_threads(resolveThreads(threads, nodes_.size(), 10.0))
+    for (std::size_t block = 0; block < blocks_.size(); ++block) firsts_[block] = leastOf(block);
+    firsts_.erase(std::remove(firsts_.begin(), firsts_.end(), kNone), firsts_.end());
     std::make_heap(firsts_.begin(), firsts_.end(), std::greater<>());
   }
 

@@ -63,6 +63,11 @@ class Grower {
         const pcl::index_t* row = hood_.indices(p);
         for (int j = row_size_ / 2, end = rowSize(p); j < end; ++j) {
           prefetch(nodes_ + row[j]);
+          if constexpr (Edges::kLooksAtRows) {
+            const pcl::index_t* of_candidate = hood_.indices(static_cast<std::size_t>(row[j]));
+            prefetch(of_candidate);
+            prefetch(of_candidate + row_size_ - 1);
+          }
         }
       }
       spread(static_cast<std::size_t>(queue_[head]));
@@ -216,7 +221,7 @@ std::vector<std::uint8_t> start(GrowthState& state) {
 
 void grow(const SegmentationOptions& options, GrowthState& state) {
   std::vector<std::uint8_t> on_border = start(state);
-  SeedOrder seeds(state);
+  SeedOrder seeds(state, options.threads);
   const LimitedEdges edges{state.limits};
   Grower<LimitedEdges> grower(options, edges, state, on_border);
   for (std::size_t seed = 0; seeds.next(seed);) grower.grow(seed);
@@ -229,11 +234,11 @@ void growSheets(const SegmentationOptions& options, GrowthState& state) {
   ListedEdges edges{state, sheets.list(*state.neighborhoods, options.threads),
                     sheets.field().reliable};
   Grower<ListedEdges> grower(options, edges, state, on_border);
-  SeedOrder sure(state, edges.reliable);
+  SeedOrder sure(state, options.threads, edges.reliable);
   for (std::size_t seed = 0; sure.next(seed);) grower.grow(seed);
   edges.reliable = nullptr;
   grower.growOn(state.nodes.size());
-  SeedOrder rest(state);
+  SeedOrder rest(state, options.threads);
   for (std::size_t seed = 0; rest.next(seed);) grower.grow(seed);
   end(on_border, state);
 }

@@ -26,12 +26,16 @@ class Neighborhoods {
   /// Makes room for `rows` rows of at most `k` entries; every row is empty afterwards.
   /// \param with_distances false saves 4 bytes an entry; sqrDistances() is then null
   void reset(std::size_t rows, int k, bool with_distances = true) {
-    rows_ = rows;
-    k_ = k < 0 ? 0 : k;
-    const std::size_t entries = rows_ * static_cast<std::size_t>(k_);
-    indices_.resize(entries);
-    distances_.resize(with_distances ? entries : 0);
+    makeRoom(rows, k, with_distances);
     counts_.assign(rows_, 0);
+  }
+
+  /// The same where the search is going to fill all rows with `count` entries: setCount() must not
+  /// be called then.
+  void resetFull(std::size_t rows, int k, int count, bool with_distances = true) {
+    makeRoom(rows, k, with_distances);
+    counts_.clear();
+    count_ = count;
   }
 
   std::size_t size() const { return rows_; }  ///< number of rows
@@ -39,7 +43,9 @@ class Neighborhoods {
   bool hasDistances() const { return !distances_.empty(); }
 
   /// Entries in a row; less than k() only where there are fewer points.
-  int count(std::size_t row) const { return static_cast<int>(counts_[row]); }
+  int count(std::size_t row) const {
+    return counts_.empty() ? count_ : static_cast<int>(counts_[row]);
+  }
 
   /// The row's neighbours, indices into the cloud.
   const pcl::index_t* indices(std::size_t row) const {
@@ -67,8 +73,17 @@ class Neighborhoods {
   }
 
  private:
+  void makeRoom(std::size_t rows, int k, bool with_distances) {
+    rows_ = rows;
+    k_ = k < 0 ? 0 : k;
+    const std::size_t entries = rows_ * static_cast<std::size_t>(k_);
+    indices_.resize(entries);
+    distances_.resize(with_distances ? entries : 0);
+  }
+
   std::size_t rows_ = 0;
   int k_ = 0;
+  int count_ = 0;  ///< of every row, where `counts_` is empty
   FastVector<pcl::index_t> indices_;
   FastVector<float> distances_;
   std::vector<std::uint32_t> counts_;

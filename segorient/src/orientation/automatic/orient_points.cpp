@@ -5,8 +5,10 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "common/median.h"
+#include "common/threads.h"
 #include "features/sheet_normals.h"
 #include "orientation/automatic/coarse_levels.h"
 #include "orientation/automatic/grazing_normals.h"
@@ -31,16 +33,16 @@ void dropCutOff(const PointView& points, const Neighborhoods& nb, const std::vec
   }
 }
 
-std::vector<std::uint8_t> lookAround(const SheetNormals& sheets,
-                                     const std::vector<float>& agreement) {
+std::vector<std::uint8_t> lookAround(const SheetNormals& sheets, int threads) {
   // Residuals in spacings: what rounding leaves of a plane, and what curvature does.
   constexpr float kExact = 1e-4F;
   constexpr float kWithoutNoise = 0.01F;
-  std::vector<std::uint8_t> out(agreement.size());
+  std::vector<std::uint8_t> out(sheets.spacing.size());
+#pragma omp parallel for schedule(static) num_threads(resolveThreads(threads, out.size(), 5.0))
   for (std::size_t i = 0; i < out.size(); ++i) {
     const float residual = sheets.normals[4 * i + 3];
     unsigned bits = 0;
-    if (residual < kExact && agreement[i] > kAllAgree) bits |= ONE_PLANE;
+    if (residual < kExact) bits |= ONE_PLANE;
     if (residual < kWithoutNoise) bits |= ON_A_FACE;
     if (std::isfinite(sheets.below[i]) || std::isfinite(sheets.above[i])) bits |= SECOND_WALL;
     out[i] = static_cast<std::uint8_t>(bits);
@@ -91,14 +93,17 @@ AutoNormals orientAtOneScale(const PointView& points, const Neighborhoods& neigh
     }
   }
   if (begin) begin("recomputation", 0.7);
-  const OrientationResult& result = out.orientation.result;
+  OrientationResult& result = out.orientation.result;
+  const int workers = resolveThreads(threads, points.size, 5.0);
+#pragma omp parallel for schedule(static) num_threads(workers)
   for (std::size_t i = 0; i < points.size; ++i) {
     const auto sign = static_cast<float>(result.point_signs[i]);
     for (std::size_t a = 0; a < 3; ++a) sheets.normals[4 * i + a] *= sign;
   }
-  FilteredNormals filtered =
-      filterOrientedNormals(points, neighborhoods, sheets.normals, sheets.spacing, sheets.residual,
-                            settings.filter_rounds, settings.filter_wedges, threads);
+  out.around = lookAround(sheets, threads);
+  FilteredNormals filtered = filterOrientedNormals(
+      points, neighborhoods, std::move(sheets.normals), sheets.spacing, sheets.residual,
+      settings.filter_rounds, settings.filter_wedges, threads);
   if (settings.winding_normals && settings.filter_rounds > 0) {
     refineByWinding(points, sheets.spacing, sheets.residual, threads, filtered);
   }
@@ -109,24 +114,27 @@ AutoNormals orientAtOneScale(const PointView& points, const Neighborhoods& neigh
     }
   }
   out.normals = std::move(filtered.normals);
+#pragma omp parallel for schedule(static) num_threads(workers)
   for (std::size_t i = 0; i < points.size; ++i) {
     const bool has_normal = std::isfinite(out.normals[4 * i]);
     const float curvature =
         has_normal && !std::isfinite(sheets.curvature[i]) ? 0.F : sheets.curvature[i];
     out.normals[4 * i + 3] = has_normal ? curvature : out.normals[4 * i];
+    const bool plane_around = filtered.confidences[i] > kAllAgree;
+    if (!plane_around) out.around[i] = static_cast<std::uint8_t>(out.around[i] & ~ONE_PLANE);
   }
-  out.around = lookAround(sheets, filtered.confidences);
   out.confidences = std::move(filtered.confidences);
   out.scan_scales = sheets.traits.scan_scales;
   out.sheets = sheets.traits;
-  out.components = result.point_components;
+  out.components = std::move(result.point_components);
   // The less of both: do the normals around agree, and is their segment sure? Of a part of a cloud
   // only the first is known yet.
   for (std::size_t i = 0; record == nullptr && i < points.size; ++i) {
-    if (result.point_components[i] >= 0) {
+    if (out.components[i] >= 0) {
       out.confidences[i] = std::min(out.confidences[i], result.point_confidences[i]);
     }
   }
+  result.point_confidences = {};
   return out;
 }
 

@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <cstring>
+#include <utility>
 
 #include "common/compiler.h"
 #include "common/instruction_set.h"
@@ -199,7 +200,7 @@ Mean meanNormal(const PointView& points, const Neighborhoods& nb, const std::vec
 }  // namespace
 
 FilteredNormals filterOrientedNormals(const PointView& points, const Neighborhoods& nb,
-                                      const std::vector<float>& oriented,
+                                      std::vector<float> oriented,
                                       const std::vector<float>& spacing, float residual, int rounds,
                                       bool wedges, int threads) {
   // A tenth of a spacing is what curvature explains at one spacing's distance, beside the noise.
@@ -207,7 +208,7 @@ FilteredNormals filterOrientedNormals(const PointView& points, const Neighborhoo
   const Kernel kernel{1.F / std::sqrt(0.01F + residual * residual), 1.F / half_fit};
   const AddBlock addBlock = chooseAddBlock();
   FilteredNormals out;
-  out.normals = oriented;
+  out.normals = std::move(oriented);
   out.confidences.assign(points.size, 0.F);
   std::vector<float> next;
   const int t = resolveThreads(threads, points.size, 500.0);

@@ -31,7 +31,7 @@ constexpr float kAllAgree = 0.999F;
 /// \param residual median residual of the cloud, in spacings
 /// \param wedges what is said of wedges; without noise of more than about a tenth of a spacing
 FilteredNormals filterOrientedNormals(const PointView& points, const Neighborhoods& neighborhoods,
-                                      const std::vector<float>& oriented,
+                                      std::vector<float> oriented,
                                       const std::vector<float>& spacing, float residual,
                                       int rounds = 2, bool wedges = true, int threads = 0);
 

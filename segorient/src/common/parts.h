@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the segorient authors
+#pragma once
+
+#include <segorient/common/export.h>
+
+#include <cstddef>
+#include <functional>
+
+namespace segorient {
+
+/// Parts of a range, one for each thread that it is worth; nothing that is made of them may depend
+/// on how many there are.
+class SEGORIENT_SEARCH_EXPORT Parts {
+ public:
+  /// \param size of the range \param threads and \param nanoseconds see resolveThreads()
+  Parts(std::size_t size, int threads, double nanoseconds);
+
+  std::size_t count() const { return count_; }
+  std::size_t begin(std::size_t part) const { return size_ * part / count_; }
+  std::size_t end(std::size_t part) const { return begin(part + 1); }
+
+  /// Calls work(part) for each of them, on a thread of its own.
+  void forEach(const std::function<void(std::size_t)>& work) const;
+
+ private:
+  std::size_t size_;
+  std::size_t count_;
+};
+
+}  // namespace segorient
