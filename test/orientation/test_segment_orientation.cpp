@@ -5,9 +5,11 @@
 #include <pcl/search/kdtree.h>
 #include <segorient/orientation/segment_orientation.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <memory>
+#include <random>
 
 #include "class_clouds.h"
 
@@ -150,6 +152,31 @@ TEST_F(SegmentOrientationTest, TakesSegmentsOfOthers) {
   segments->labels[17] = 8;  // no such segment
   orientation.compute(out);
   EXPECT_TRUE(out.empty());
+}
+
+// Noise of three spacings: positions are smoothed and the field decides, whoever made the segments.
+TEST_F(SegmentOrientationTest, SegmentsOfOthersDoNotChangeTheSignsOfAuto) {
+  LabelledCloud ring = test::sample("torus", {test::torus(1, 0.4)}, 6000, 77);
+  std::mt19937 generator(78);
+  std::normal_distribution<float> noise(0.F, 0.1F);
+  for (std::size_t i = 0; i < ring.size(); ++i) {
+    for (std::size_t a = 0; a < 3; ++a) ring.xyz[4 * i + a] += noise(generator);
+  }
+  orientation.setInputCloud(test::toPcl(ring));
+  orientation.setInputNormals(test::toPclNormals(test::scrambledNormals(ring, 79)));
+  Normals own;
+  orientation.compute(own);
+  ASSERT_EQ(own.size(), ring.size());
+  EXPECT_GT(orientation.getResult().segments.size(), 1U);
+
+  auto segments = std::make_shared<Segmentation>(orientation.getUsedSegmentation());
+  std::fill(segments->labels.begin(), segments->labels.end(), 0);
+  segments->segments.resize(1);
+  orientation.setSegmentation(segments);
+  Normals given;
+  orientation.compute(given);
+  ASSERT_EQ(given.size(), own.size());
+  for (std::size_t i = 0; i < own.size(); ++i) EXPECT_EQ(given[i].normal_x, own[i].normal_x);
 }
 
 TEST_F(SegmentOrientationTest, CopesWithHolesAndRepeatedPoints) {

@@ -8,7 +8,6 @@
 #include <cstdint>
 #include <limits>
 #include <numeric>
-#include <segorient/common/impl/fast_vector.hpp>
 
 #include "common/bulk_bounds.h"
 #include "common/compiler.h"
@@ -129,9 +128,9 @@ std::array<double, 3> inDouble(const float* p) {
 /// The cell of each point along a curve through a fine grid.
 class ZOrder {
  public:
-  ZOrder(const Source& source, int threads)
-      : source_(source), bulk_(boundsOf(source, threads)), extent_(bulk_.extent()) {
-    if (extent_ > 0.0) scale_ = kLastCell / extent_;
+  ZOrder(const Source& source, int threads) : source_(source), bulk_(boundsOf(source, threads)) {
+    const double extent = bulk_.extent();
+    if (extent > 0.0) scale_ = kLastCell / extent;
   }
 
   Items items(int threads) const {
@@ -185,7 +184,6 @@ class ZOrder {
 
   const Source& source_;
   Bounds bulk_;
-  double extent_;
   double scale_ = 0.0;  ///< one for all axes, so that cells are cubes
 };
 

@@ -11,7 +11,7 @@ namespace {
 
 // Of x86 and of most ARM systems.
 constexpr std::size_t kLargePage = std::size_t{1} << 21;
-// The last page may be used in part only: an eighth at most is lost.
+// Of less, small pages serve as well.
 constexpr std::size_t kLeastLarge = 4 * kLargePage;
 // Rows of 16 numbers then lie in one line of the cache each.
 constexpr std::align_val_t kCacheLine{64};
@@ -25,8 +25,8 @@ std::align_val_t alignmentFor(std::size_t bytes) {
 void* allocateTable(std::size_t bytes) {
   void* at = ::operator new(bytes, alignmentFor(bytes));
 #if defined(__linux__) && defined(MADV_HUGEPAGE)
-  // Where the system has none to give, it does as it always does. Whole pages only: what lies
-  // behind belongs to others.
+  // A wish: where there are none to give, pages are small. Whole ones only, as the last one may be
+  // shared with other memory.
   if (bytes >= kLeastLarge) madvise(at, bytes / kLargePage * kLargePage, MADV_HUGEPAGE);
 #endif
   return at;

@@ -208,26 +208,23 @@ class Estimation {
     options.k = report_.edge_k;
     options.threads = threads_;
     estimateNormals(points_, points_, table_, options, normals_, nullptr, &open_);
-    std::vector<pcl::index_t> left;
-    for (std::size_t o = 0; o < open_.size(); ++o) {
-      const auto row = static_cast<std::size_t>(open_[o]);
+    const std::vector<pcl::index_t> rows = open_;
+    report_.surfaces.back().second += close([&](std::size_t row) {
       const double plane = planeResidual(points_, table_, row, options.k, normals_ + 4 * row);
-      std::copy_n(&quadratic[4 * o], 4, normals_ + 4 * row);
-      const bool bends = static_cast<double>(quadratics_.residuals[row]) < kBend * plane;
-      if (!bends) left.push_back(open_[o]);
-    }
-    report_.surfaces.back().second += open_.size() - left.size();
-    open_ = std::move(left);
+      return static_cast<double>(quadratics_.residuals[row]) < kBend * plane;
+    });
+    for (std::size_t r = 0; r < rows.size(); ++r)
+      std::copy_n(&quadratic[4 * r], 4, normalOf(rows[r]));
   }
 
   /// Whether cubic surfaces leave less than a share of what quadratic ones do of most rows.
-  /// \param cubic of each row
-  bool areCubic(const std::vector<pcl::index_t>& rows, const std::vector<float>& cubic,
-                double share) const {
+  /// \param cubic what the cubic surface of rows[r] leaves, by r
+  template <typename Residual>
+  bool areCubic(const std::vector<pcl::index_t>& rows, const Residual& cubic, double share) const {
     std::size_t nearer = 0;
     for (std::size_t r = 0; r < rows.size(); ++r) {
       const float quadratic = quadratics_.residuals[static_cast<std::size_t>(rows[r])];
-      const bool less = static_cast<double>(cubic[r]) < share * static_cast<double>(quadratic);
+      const bool less = static_cast<double>(cubic(r)) < share * static_cast<double>(quadratic);
       nearer += less ? 1 : 0;
     }
     return 2 * nearer > rows.size();
@@ -239,10 +236,10 @@ class Estimation {
     if (available() < kCubicNeighbors) return false;
     if (known_ != nullptr) return known_->analytic;
     const std::vector<pcl::index_t> rows = detail::sampleRows(rows_);
-    return areCubic(rows,
-                    detail::sampleResiduals(NormalEstimator::AWAS_CUBIC, points_, table_,
-                                            kCubicNeighbors, threads_, rows),
-                    kNextTerm);
+    const std::vector<float> cubic = detail::sampleResiduals(
+        NormalEstimator::AWAS_CUBIC, points_, table_, kCubicNeighbors, threads_, rows);
+    return areCubic(
+        rows, [&](std::size_t r) { return cubic[r]; }, kNextTerm);
   }
 
   /// Cubic surfaces wherever they leave less than the quadratic ones, and where only they fit.
@@ -288,10 +285,10 @@ class Estimation {
     Surfaces cubics(NormalEstimator::AWAS_CUBIC);
     quadratics_.fit(points_, table_, k, threads_, open_);
     cubics.fit(points_, table_, k, threads_, open_);
-    std::vector<float> left;
-    for (const pcl::index_t o : open_)
-      left.push_back(cubics.residuals[static_cast<std::size_t>(o)]);
-    const bool better = known_ != nullptr ? known_->cubic_edges : areCubic(open_, left, kBetter);
+    const auto cubic = [&](std::size_t o) {
+      return cubics.residuals[static_cast<std::size_t>(open_[o])];
+    };
+    const bool better = known_ != nullptr ? known_->cubic_edges : areCubic(open_, cubic, kBetter);
     if (!better) return;
     report_.traits.cubic_edges = true;
     for (const pcl::index_t o : open_) cubics.copyNormal(static_cast<std::size_t>(o), normals_);

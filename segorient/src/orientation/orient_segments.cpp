@@ -7,13 +7,10 @@
 #include <utility>
 #include <vector>
 
-#include "common/dot.h"
-#include "orientation/automatic/stages.h"
 #include "orientation/paper/completion.h"
 #include "orientation/paper/hoppe_tree.h"
 #include "orientation/paper/outward_components.h"
 #include "orientation/paper/regular_segments.h"
-#include "segmentation/segmentation_rows.h"
 
 namespace segorient {
 namespace {
@@ -40,8 +37,8 @@ void spreadToPoints(const Segmentation& segmentation, OrientationResult& result)
   }
 }
 
-// Connected and isolated segments, or all where points were oriented one by one: what the majority
-// of a segment's points says.
+}  // namespace
+
 void summarizeSegments(const Segmentation& segmentation, DecidedBy by, OrientationResult& result) {
   result.segments.resize(segmentation.segments.size());
   for (std::size_t s = 0; s < result.segments.size(); ++s) {
@@ -60,97 +57,13 @@ void summarizeSegments(const Segmentation& segmentation, DecidedBy by, Orientati
   }
 }
 
-// Signs for normals that the segments were not made from; points without one are in no segment.
-void giveSigns(const PointView& normals, Segmentation& segmentation) {
-  for (std::size_t i = 0; i < normals.size; ++i) {
-    std::int32_t& label = segmentation.labels[i];
-    if (!isFinite(normals[i])) label = -1;
-    if (label < 0) continue;
-    const float* reference =
-        segmentation.segments[static_cast<std::size_t>(label)].reference_normal.data();
-    segmentation.signs[i] = dot(normals[i], reference) < 0.F ? std::int8_t{-1} : std::int8_t{1};
-  }
-  segmentation::collectMembers(segmentation);
-}
-
-/// What the default method found out about the points.
-struct FoundNormals {
-  const std::vector<float>& normals;  // 4 floats a point
-  const std::vector<float>& confidences;
-  const std::vector<std::int32_t>& components;
-};
-
-// Each given point takes the sign that turns its normal to the oriented one there.
-void followNormals(const PointView& normals, const FoundNormals& found, OrientationResult& result) {
-  result.point_signs.assign(normals.size, 0);
-  result.point_confidences.assign(normals.size, 0.F);
-  result.point_components.assign(normals.size, -1);
-  for (std::size_t i = 0; i < normals.size; ++i) {
-    const float* m = &found.normals[4 * i];
-    const float* n = normals[i];
-    if (!isFinite(n) || !isFinite(m) || found.components[i] < 0) continue;
-    result.point_signs[i] = dot(n, m) < 0.F ? std::int8_t{-1} : std::int8_t{1};
-    result.point_confidences[i] = found.confidences[i];
-    result.point_components[i] = found.components[i];
-  }
-}
-
-// The default method brings its own segments; each given one takes the sign of most of its points.
-OrientationResult orientAutomatically(const PointView& points, const PointView& normals,
-                                      const Neighborhoods& neighborhoods,
-                                      const Segmentation& segmentation,
-                                      const OrientationOptions& options, const PointHints& hints,
-                                      detail::AutoStages* own) {
-  OrientationResult result;
-  if (own != nullptr) {
-    result.components = own->orientation.result.components;
-    followNormals(normals, {own->normals, own->confidences, own->components}, result);
-    giveSigns(normals, own->segmentation);
-  } else {
-    detail::AutoNormals found =
-        detail::orientPoints(points, neighborhoods, options.automatic, hints, options.threads);
-    result.components = std::move(found.orientation.result.components);
-    followNormals(normals, {found.normals, found.confidences, found.components}, result);
-  }
-  completeOrientation(points, normals, neighborhoods, result);
-  summarizeSegments(own != nullptr ? own->segmentation : segmentation, DecidedBy::GLOBAL, result);
-  return result;
-}
-
-// Turns each component so that its largest segment keeps its sign.
-void keepLargestSegments(const Segmentation& segmentation, OrientationResult& result) {
-  std::vector<std::int8_t> turn(result.components.size(), 0);
-  std::vector<std::uint32_t> largest(result.components.size(), 0);
-  for (std::size_t i = 0; i < result.segments.size(); ++i) {
-    const SegmentOrientationResult& s = result.segments[i];
-    if (s.component < 0) continue;
-    const auto c = static_cast<std::size_t>(s.component);
-    if (segmentation.segments[i].size <= largest[c]) continue;
-    largest[c] = segmentation.segments[i].size;
-    turn[c] = s.sign;
-  }
-  for (SegmentOrientationResult& s : result.segments) {
-    if (s.component < 0 || turn[static_cast<std::size_t>(s.component)] >= 0) continue;
-    s.sign = static_cast<std::int8_t>(-s.sign);
-  }
-  for (std::size_t i = 0; i < segmentation.labels.size(); ++i) {
-    const std::int32_t c = result.point_components[i];
-    if (c < 0 || turn[static_cast<std::size_t>(c)] >= 0) continue;
-    result.point_signs[i] = static_cast<std::int8_t>(-result.point_signs[i]);
-  }
-}
-
-}  // namespace
-
 OrientationResult orientSegments(const PointView& points, const PointView& normals,
                                  const Neighborhoods& neighborhoods,
                                  const Segmentation& segmentation, const SegmentGraph& graph,
-                                 const OrientationOptions& options, const PointHints& hints,
-                                 detail::AutoStages* own) {
+                                 const OrientationOptions& options) {
   OrientationResult result;
-  const bool automatic = options.method == OrientationMethod::AUTO;
   if (normals.size != points.size || neighborhoods.size() != points.size ||
-      (!(automatic && own != nullptr) && segmentation.labels.size() != points.size)) {
+      segmentation.labels.size() != points.size) {
     result.point_signs.assign(points.size, 0);
     result.point_confidences.assign(points.size, 0.F);
     result.point_components.assign(points.size, -1);
@@ -159,13 +72,6 @@ OrientationResult orientSegments(const PointView& points, const PointView& norma
   if (options.method == OrientationMethod::HOPPE) {
     result = orientByPointTree(points, normals, neighborhoods);
     summarizeSegments(segmentation, DecidedBy::PROPAGATION, result);
-    return result;
-  }
-  if (automatic) {
-    result = orientAutomatically(points, normals, neighborhoods, segmentation, options, hints, own);
-    if (!options.turn_outward) {
-      keepLargestSegments(own != nullptr ? own->segmentation : segmentation, result);
-    }
     return result;
   }
 

@@ -10,6 +10,7 @@
 #include "common/unit_vector.h"
 #include "features/sheet_normals.h"
 #include "orientation/automatic/stages.h"
+#include "orientation/follow_normals.h"
 #include "orientation/orient_segments.h"
 #include "search/prepared_cloud.h"
 #include "segmentation/region_growing.h"
@@ -98,32 +99,35 @@ OrientedSegmentation orientSegmentation(const PointView& points, const NormalVie
   findNeighbors(cloud, k > 0 ? k : defaultNeighbors(options), search);
   const Neighborhoods& neighborhoods = cloud.neighborhoods();
 
-  PointHints hints;
-  if (options.hints) hints = resolveHints(*options.hints, cloud);
+  const bool automatic = options.method == OrientationMethod::AUTO;
   detail::AutoStages stages;
-  const bool own = segmentation == nullptr && options.method == OrientationMethod::AUTO;
-  Segmentation of_points;
-  if (segmentation != nullptr) {
-    of_points = segmentation::gather(cloud, point_normals, *segmentation);
-  } else if (own) {
+  if (automatic) {
     PipelineOptions settings;
     settings.k = k > 0 ? neighborhoods.k() - 1 : 0;
     settings.threads = options.threads;
     settings.segmentation = segmentation_options;
     settings.orientation = options;
+    PointHints hints;
+    if (options.hints) hints = resolveHints(*options.hints, cloud);
     stages = detail::runAutoStages(cloud, settings, hints, [](const char*, double) {});
+  }
+  Segmentation of_points;
+  if (segmentation != nullptr) {
+    of_points = segmentation::gather(cloud, point_normals, *segmentation);
+  } else if (automatic) {
+    of_points = std::move(stages.segmentation);
+    giveSigns(normal_view, of_points);
   } else {
     SegmentationOptions cuts = segmentation::inUnitOf(cloud, segmentation_options);
     cuts.threads = options.threads;
     of_points = segmentByNormals(cloud.points(), normal_view, neighborhoods, cuts);
   }
-  SegmentGraph graph;  // the default method does without
-  if (options.method != OrientationMethod::AUTO)
-    graph = buildSegmentGraph(of_points, neighborhoods);
-  out.orientation = scatter(cloud, normals,
-                            orientSegments(cloud.points(), normal_view, neighborhoods, of_points,
-                                           graph, options, hints, own ? &stages : nullptr));
-  if (own) of_points = std::move(stages.segmentation);
+  const OrientationResult of_distinct =
+      automatic ? followNormals(cloud.points(), normal_view, neighborhoods, of_points,
+                                options.turn_outward, stages)
+                : orientSegments(cloud.points(), normal_view, neighborhoods, of_points,
+                                 buildSegmentGraph(of_points, neighborhoods), options);
+  out.orientation = scatter(cloud, normals, of_distinct);
   out.segmentation =
       segmentation != nullptr ? *segmentation : segmentation::scatter(cloud, of_points, &normals);
   invertTurned(out.orientation.segments, out.segmentation);

@@ -116,10 +116,6 @@ void MedianHashIndex::Impl::nearestOfRegion(std::size_t region, GroupTask& task,
     searchSelf(point, task.k, task.epsilon, out.mutableIndices(row),
                distances != nullptr ? distances : unwanted.data());
   }
-  // Otherwise all rows have as many, see nearestKAll().
-  for (std::size_t i = r.begin; layout.size() < rows && i < r.end; ++i) {
-    out.setCount(view.row[i], static_cast<int>(task.k));
-  }
 }
 
 void MedianHashIndex::nearestKAll(int k, Neighborhoods& out, bool with_distances,
@@ -130,7 +126,12 @@ void MedianHashIndex::nearestKAll(int k, Neighborhoods& out, bool with_distances
     if (size() == self.rows) {
       out.resetFull(self.rows, k, static_cast<int>(wanted), with_distances);
     } else {
+      // Rows that are not finite stay empty.
       out.reset(self.rows, k, with_distances);
+      const LayoutView view(self.layout);
+      for (std::size_t i = 0; i < size(); ++i) {
+        out.setCount(view.row[i], static_cast<int>(wanted));
+      }
     }
     if (wanted > 0) self.nearestOfAll(wanted, epsilon, out);
   } catch (...) {

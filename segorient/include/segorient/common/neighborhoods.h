@@ -57,7 +57,8 @@ class Neighborhoods {
     return distances_.empty() ? nullptr : distances_.data() + row * static_cast<std::size_t>(k_);
   }
 
-  /// For the search that fills the table; after reset() each row from a thread of its own.
+  /// For the search that fills the table; each row from a thread of its own, but setCount() after
+  /// resetFull() from one thread at a time.
   pcl::index_t* mutableIndices(std::size_t row) {
     return indices_.data() + row * static_cast<std::size_t>(k_);
   }

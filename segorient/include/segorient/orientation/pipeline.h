@@ -122,7 +122,8 @@ struct PipelineReport {
   std::vector<Contradiction> contradictions;
   std::vector<ClusterOrientationResult> clusters;  ///< of AUTO
   std::vector<KnownSensor> known_sensors;          ///< of AUTO: what became of known sensors
-  /// What AUTO found where no sensor was given; empty otherwise. sensor_of is by input row.
+  /// What AUTO found where no sensor was given; empty otherwise. sensor_of is by input row, and
+  /// empty where no sensor was found.
   SensorReport sensors;
   std::vector<StageTime> stages;
   double seconds = 0.0;                                ///< all stages

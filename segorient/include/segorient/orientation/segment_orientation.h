@@ -29,9 +29,9 @@ namespace segorient {
 /// Settings that the method does not look at, see settingsWithoutEffect(), are named by a PCL_WARN.
 ///
 /// Segments are those of setSegmentation(), such as NormalSegmentation finds them, or made anew.
-/// AUTO orients by segments and normals of its own, which keep the sides of thin walls apart, and
-/// brings the result over to these: the settings of segments and of the paper's methods do not
-/// change its signs. It does not smooth noisy positions, as OrientedNormalEstimation does.
+/// AUTO orients normals of its own, by segments that keep the sides of thin walls apart, as
+/// OrientedNormalEstimation does, and brings their signs over to these: the given segments do not
+/// change them. It does not look for sensors, as that class does; where known, they decide.
 ///
 /// Every point that has a normal is oriented. NaN stays NaN, and a point that is nowhere, with NaN
 /// coordinates or farther from the bulk of the points than 2^24 times its extent, gets NaN whatever

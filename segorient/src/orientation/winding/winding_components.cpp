@@ -209,8 +209,8 @@ class Solver {
               [](const Reach& a, const Reach& b) { return a.sample < b.sample; });
     // Nanoseconds: some nodes of each level of the tree are opened.
     constexpr double kLevel = 2000.0;
-    const double levels = std::log2(static_cast<double>(rows_[c].size()) + 1.0);
-#pragma omp parallel for num_threads(resolveThreads(threads_, reach.size(), kLevel* levels)) \
+    const double time = kLevel * std::log2(static_cast<double>(rows_[c].size()) + 1.0);
+#pragma omp parallel for num_threads(resolveThreads(threads_, reach.size(), time)) \
     schedule(dynamic, 64)
     for (std::size_t r = 0; r < reach.size(); ++r) {
       const std::uint32_t i = samples_[reach[r].sample];
