@@ -60,44 +60,61 @@ class BitReader {
 /// How many bits a number takes.
 inline unsigned bitsOf(std::uint64_t number) {
   unsigned bits = 0;
-  for (; number != 0; number >>= 1) ++bits;
-  return bits;
+  for (const unsigned half : {32U, 16U, 8U, 4U, 2U, 1U}) {
+    if (number >> half == 0) continue;
+    bits += half;
+    number >>= half;
+  }
+  return number != 0 ? bits + 1 : 0;
 }
 
-/// Ascending numbers by what each adds to the one before, less one bit each than by as many bits as
-/// the mean has (Rice 1979): what is above that counts in single bits, and what is far above is
-/// written as it is.
-class RiceCode {
+/// Numbers most of which are small, without any limit (Golomb codes of exponential size, Teuhola
+/// 1978): how many bits they have beyond some, in single bits, and the bits.
+class GolombCode {
  public:
-  /// \param span last number less the first \param count of numbers
-  RiceCode(std::uint64_t span, std::size_t count)
-      : bits_(std::min(kMostBits, bitsOf(span / std::max<std::size_t>(1, count) / 2))) {}
+  explicit GolombCode(unsigned bits = 0) : bits_(bits) {}
+  /// That takes the fewest bits for these numbers. \param most bits looked at
+  static GolombCode best(const std::vector<std::uint32_t>& numbers, unsigned most);
+  unsigned bits() const { return bits_; }
 
-  void put(std::uint64_t step, BitWriter& out) const {
-    const std::uint64_t above = step >> bits_;
-    if (above >= kFar) {
-      out.put((std::uint64_t{1} << kFar) - 1, kFar);
-      out.put(step & 0xffffffffU, 32);
-      out.put(step >> 32, 32);
-      return;
-    }
-    out.put((std::uint64_t{1} << above) - 1, static_cast<unsigned>(above) + 1);
-    out.put(step & ((std::uint64_t{1} << bits_) - 1), bits_);
+  void put(std::uint32_t number, BitWriter& out) const {
+    const std::uint64_t shifted = number + (std::uint64_t{1} << bits_);
+    const unsigned more = bitsOf(shifted >> bits_) - 1;
+    out.put((std::uint64_t{1} << more) - 1, more + 1);
+    out.put(shifted & ((std::uint64_t{1} << (bits_ + more)) - 1), bits_ + more);
   }
-  std::uint64_t get(BitReader& in) const {
-    std::uint64_t above = 0;
-    while (above < kFar && in.get(1) != 0) ++above;
-    if (above == kFar) {
-      const std::uint64_t low = in.get(32);
-      return in.get(32) << 32 | low;
-    }
-    return above << bits_ | in.get(bits_);
+  std::uint32_t get(BitReader& in) const {
+    unsigned more = 0;
+    while (more < kMost && in.get(1) != 0) ++more;
+    const std::uint64_t low = in.get(bits_ + more);
+    const std::uint64_t shifted = low | std::uint64_t{1} << (bits_ + more);
+    return static_cast<std::uint32_t>(shifted - (std::uint64_t{1} << bits_));
   }
 
  private:
-  static constexpr unsigned kMostBits = 40;
-  static constexpr unsigned kFar = 24;
+  static constexpr unsigned kMost = 32;  // of bits that a number of 32 bits can have more
   unsigned bits_;
 };
+
+inline GolombCode GolombCode::best(const std::vector<std::uint32_t>& numbers, unsigned most) {
+  GolombCode best;
+  std::uint64_t least = ~std::uint64_t{0};
+  for (unsigned bits = 0; bits <= most; ++bits) {
+    std::uint64_t sum = 0;
+    for (const std::uint32_t n : numbers) sum += 2 * bitsOf((n >> bits) + 1);
+    sum += numbers.size() * bits;
+    if (sum < least) best = GolombCode(bits);
+    least = std::min(least, sum);
+  }
+  return best;
+}
+
+/// Whole numbers that may be negative as ones that are not: those near 0 stay small.
+inline std::uint32_t foldSign(std::int32_t x) {
+  return static_cast<std::uint32_t>(x) << 1U ^ (x < 0 ? ~std::uint32_t{0} : 0U);
+}
+inline std::int32_t unfoldSign(std::uint32_t x) {
+  return static_cast<std::int32_t>(x >> 1U ^ ((x & 1U) != 0 ? ~std::uint32_t{0} : 0U));
+}
 
 }  // namespace segorient::program

@@ -22,6 +22,7 @@ void forEachNumber(P& p, const Visit& visit) {
   visit(p.traits);
   visit(p.k);
   visit(p.patch_points);
+  visit(p.chunk_rows);
   visit(p.has_viewpoints);
   visit(p.has_viewpoint);
   visit(p.viewpoint);

@@ -80,7 +80,8 @@ struct Plan {
   TileTraits traits;
   std::int32_t k = 0;
   std::uint32_t patch_points = 1;
-  bool has_viewpoints = false;  ///< whether points carry where they were seen from
+  std::uint64_t chunk_rows = 1;  ///< rows of an output that plan and write hold at once
+  bool has_viewpoints = false;   ///< whether points carry where they were seen from
   bool has_viewpoint = false;
   std::array<double, 3> viewpoint{0, 0, 0};
   bool up = false;
@@ -105,6 +106,11 @@ using StepProgress = std::function<void(double)>;
 
 Plan loadPlan(const std::string& folder);
 void savePlan(const Plan& plan, const std::string& folder);
+
+/// How many rows of an output may follow its first `done` ones in the same chunk.
+inline std::uint64_t restOfChunk(const Plan& plan, std::uint64_t done) {
+  return plan.chunk_rows - done % plan.chunk_rows;
+}
 
 /// A finite place as tiles have it: its owner is the tile of that.
 std::array<double, 3> storedPlace(const Plan& plan, const std::array<double, 3>& place);

@@ -10,6 +10,7 @@
 #include "io/cloud_stream.h"
 #include "support/command_line.h"
 #include "tiles/plan_inputs.h"
+#include "tiles/plan_probe.h"
 #include "tiles/plan_sensors.h"
 #include "tiles/planned_input.h"
 #include "tiles/point_files.h"
@@ -26,34 +27,38 @@ bool isFinite(const Place& p) {
   return std::isfinite(p[0]) && std::isfinite(p[1]) && std::isfinite(p[2]);
 }
 
-std::array<float, 3> near(const Place& p, const Place& origin) {
-  std::array<float, 3> out{};
-  for (std::size_t a = 0; a < 3; ++a) out[a] = static_cast<float>(p[a] - origin[a]);
-  return out;
-}
-
-// Calls visit(row, place, block, row in block) for all points of all inputs, and begin(block) for
-// the first of each input. Numbers their scans.
-template <typename Begin, typename Visit>
+// Calls visit(row, place, block, row in block) for all points of all inputs, begin(block) for the
+// first of each input, and end(output) behind each chunk. Numbers their scans.
+template <typename Begin, typename Visit, typename End>
 void forEachPoint(const StepProgress& progress, double from, double to, const Begin& begin,
-                  const Visit& visit, Plan& plan) {
+                  const Visit& visit, const End& end, Plan& plan) {
   const Trajectory trajectory = trajectoryOf(plan);
   std::uint64_t scans = 0;
-  for (PlanInput& in : plan.inputs) {
+  std::uint64_t done = 0;  // rows of the output
+  std::uint32_t output = 0;
+  for (std::size_t i = 0; i < plan.inputs.size(); ++i) {
+    PlanInput& in = plan.inputs[i];
+    if (output + 1 < plan.outputs.size() && i == plan.outputs[output + 1].first_input) {
+      end(output++);
+      done = 0;
+    }
     in.first_scan = scans;
     PlannedInput stream(plan, in, trajectory);
     CloudTable block;
     std::uint64_t row = in.first_row;
-    while (stream.next(block)) {
+    while (stream.next(block, restOfChunk(plan, done))) {
       if (row == in.first_row) begin(block);
       const auto xyz = block.xyz();
-      for (std::size_t i = 0; i < block.size; ++i) visit(row++, block.triple(xyz, i), block, i);
+      for (std::size_t j = 0; j < block.size; ++j) visit(row++, block.triple(xyz, j), block, j);
+      done += block.size;
+      if (done % plan.chunk_rows == 0) end(output);
       if (progress) {
         progress(from + (to - from) * static_cast<double>(row) / static_cast<double>(plan.rows));
       }
     }
     scans += stream.scans();
   }
+  end(output);
 }
 
 // Draws a sample of all inputs: of those that are small enough all points are looked at, of others
@@ -104,41 +109,6 @@ Place tileOrigin(const Bounds& bounds) {
   return origin;
 }
 
-// Small parts all over the cloud, with their surroundings, as dense as they are; a small cloud as a
-// whole.
-class Probe {
- public:
-  Probe(const std::vector<Place>& sample, double points_each, const Place& origin)
-      : tree_(sample, points_each, kPart), origin_(origin), chosen_(tree_.tiles(), 0) {
-    const std::size_t parts = std::min(tree_.tiles(), kParts);
-    for (std::size_t p = 0; p < parts; ++p) chosen_[p * tree_.tiles() / parts] = 1;
-  }
-  /// \param seen_from relative to the origin; null where no point carries that
-  void add(const Place& place, const float* seen_from) {
-    double reach = 0.0;
-    bool wanted = chosen_[tree_.owner(place, reach)] != 0;
-    if (!wanted)
-      tree_.forEachWithin(place, reach, [&](auto t, double) { wanted |= chosen_[t] != 0; });
-    if (!wanted) return;
-    const std::array<float, 3> p = near(place, origin_);
-    points_.insert(points_.end(), p.begin(), p.end());
-    if (seen_from != nullptr) viewpoints_.insert(viewpoints_.end(), seen_from, seen_from + 3);
-  }
-  PointView points() const { return {points_.data(), 3, points_.size() / 3}; }
-  const std::vector<float>& viewpoints() const { return viewpoints_; }
-
- private:
-  // Together half a million points: traits are medians and shares, and their surroundings are
-  // known.
-  static constexpr double kPart = 20000.0;
-  static constexpr std::size_t kParts = 26;
-  TileTree tree_;
-  Place origin_;
-  std::vector<std::uint8_t> chosen_;
-  std::vector<float> points_;
-  std::vector<float> viewpoints_;
-};
-
 // Where points are said to have been seen from, or where that was found.
 class Viewpoints {
  public:
@@ -178,26 +148,18 @@ double roundingStep(const TileTree& tree) {
 }
 
 // The second pass: each point to its tile.
-void distribute(const TileRequest& request, const std::string& folder, const StepProgress& progress,
-                const PlanSensors& sensors, Probe& probe, Plan& plan) {
-  constexpr std::uint64_t kLeast = std::uint64_t{1} << 26;
-  const auto waiting = static_cast<std::size_t>(std::max(kLeast, request.memory / 4));
-  PointFiles files(folder, plan.run, plan.tree.tiles(),
-                   {plan.has_viewpoints, plan.keep_orientation}, waiting);
+void distribute(const std::string& folder, const StepProgress& progress, const PlanSensors& sensors,
+                Probe& probe, Plan& plan) {
+  PointFiles files(folder, plan.run, plan.tree, {plan.has_viewpoints, plan.keep_orientation});
   plan.tile_points.assign(plan.tree.tiles(), 0);
   Viewpoints viewpoints(sensors);
   plan.step = roundingStep(plan.tree);
-  std::uint32_t output = 0;
   forEachPoint(
       progress, 0.4, 0.95, [&](const CloudTable& block) { viewpoints.begin(block); },
       [&](std::uint64_t row, const Place& place, const CloudTable& block, std::size_t i) {
         if (!isFinite(place)) return;
         StoredPoint point;
         point.place = storedPlace(plan, place);
-        while (output + 1 < plan.outputs.size() &&
-               row >= plan.inputs[plan.outputs[output + 1].first_input].first_row) {
-          ++output;
-        }
         if (plan.has_viewpoints) {
           point.seen_from = viewpoints.of(block, i, row, place, plan.origin);
         }
@@ -210,13 +172,21 @@ void distribute(const TileRequest& request, const std::string& folder, const Ste
         if (plan.keep_orientation) {
           point.normal = near(block.triple(block.normals(), i), {0.0, 0.0, 0.0});
         }
-        files.add(owner, output, point);
+        files.add(point);
       },
-      plan);
+      [&](std::uint32_t output) { files.endChunk(output); }, plan);
   if (plan.finite == 0) {
     throw FileError(plan.inputs[0].path, "has no point with finite coordinates");
   }
   files.commit();
+}
+
+// What takes a quarter of the memory: a point as it is stored and its place in the order, and in
+// writing the row with what is added to it.
+std::uint64_t chunkRows(const TileRequest& request, std::size_t row_bytes) {
+  constexpr std::size_t kAdded = 24;
+  const std::size_t each = sizeof(StoredPoint) + sizeof(std::uint32_t) + kAdded + row_bytes;
+  return std::max<std::uint64_t>(1, request.memory / (4 * each));
 }
 
 double mostPoints(const TileRequest& request, double points_each) {
@@ -263,9 +233,11 @@ Plan planStep(const TileRequest& request, const std::string& folder, const StepP
   addSeeds(request.seeds, plan);
   PointSample sample;
   std::size_t image_width = 0;
+  std::size_t row_bytes = 0;
   drawSample(
       plan, progress,
       [&](const CloudTable& layout) {
+        row_bytes = std::max(row_bytes, layout.row_bytes);
         const bool image = layout.height > 1 && layout.width * layout.height == plan.rows;
         image_width = image ? layout.width : 0;
       },
@@ -281,14 +253,13 @@ Plan planStep(const TileRequest& request, const std::string& folder, const StepP
   double reach = 0.0;
   for (const Place& p : places) bounds[tree.owner(p, reach)].add(p);
   for (const Bounds& b : bounds) plan.tile_origins.push_back(tileOrigin(b));
-  const std::uint64_t most_patches =
-      std::max<std::uint64_t>(kSamplePoints, request.memory / kBytesPerPatch);
-  plan.patch_points = static_cast<std::uint32_t>((plan.rows + most_patches - 1) / most_patches);
+  plan.chunk_rows = chunkRows(request, row_bytes);
+  plan.patch_points = static_cast<std::uint32_t>((plan.rows + kSamplePoints - 1) / kSamplePoints);
   Probe probe(places, points_each, plan.origin);
   const PlanSensors sensors(plan, sample, image_width, request.threads);
   plan.found_sensors = static_cast<std::uint32_t>(sensors.found());
   plan.has_viewpoints = plan.has_viewpoints || sensors.found() > 0;
-  distribute(request, folder, progress, sensors, probe, plan);
+  distribute(folder, progress, sensors, probe, plan);
   OrientationHints hints = hintsOf(plan, plan.origin);
   hints.viewpoints = probe.viewpoints();
   plan.traits = measureTileTraits(probe.points(), plan.k, hints, request.threads);

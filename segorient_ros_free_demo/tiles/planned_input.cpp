@@ -21,8 +21,9 @@ constexpr double kMostScan = 2147483647.0;
 PlannedInput::PlannedInput(const Plan& plan, const PlanInput& input, const Trajectory& trajectory)
     : plan_(plan), input_(input), trajectory_(trajectory), stream_(input.streamed) {}
 
-bool PlannedInput::next(CloudTable& block) {
-  if (!stream_.next(read_)) return false;
+bool PlannedInput::next(CloudTable& block, std::uint64_t most) {
+  constexpr std::uint64_t kBlock = std::uint64_t{1} << 16;
+  if (!stream_.next(read_, static_cast<std::size_t>(std::min(kBlock, most)))) return false;
   block = read_;
   if (plan_.adds_scans) addScan(block);
   if (trajectory_.size() > 0) addViewpoints(trajectory_, input_.path, block);

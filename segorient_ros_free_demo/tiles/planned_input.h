@@ -18,8 +18,8 @@ class PlannedInput {
   /// \param trajectory may have no poses
   PlannedInput(const Plan& plan, const PlanInput& input, const Trajectory& trajectory);
   const CloudTable& layout() const { return stream_.layout(); }
-  /// \return false behind the last block
-  bool next(CloudTable& block);
+  /// \param most points of the block \return false behind the last one
+  bool next(CloudTable& block, std::uint64_t most);
   /// How many scans the blocks so far are of.
   std::uint64_t scans() const { return scans_; }
 

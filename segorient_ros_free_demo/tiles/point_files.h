@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "tiles/point_packets.h"
+#include "tiles/chunk_order.h"
 #include "tiles/tile_parts.h"
 #include "tiles/tile_records.h"
 
@@ -27,36 +27,34 @@ struct PointPacket {
 /// of it for their halos.
 class PointFiles {
  public:
-  /// \param memory for all that waits to be written
-  PointFiles(std::string folder, std::uint64_t run, std::size_t tiles, const PointFields& fields,
-             std::size_t memory);
+  PointFiles(std::string folder, std::uint64_t run, const TileTree& tree,
+             const PointFields& fields);
   ~PointFiles();  ///< removes what was not committed
   PointFiles(const PointFiles&) = delete;
   PointFiles& operator=(const PointFiles&) = delete;
 
-  /// \param point its number is given to it here
-  /// \param output that it will be part of; they come one after the other
-  void add(std::size_t tile, std::uint32_t output, StoredPoint& point);
+  /// Of a chunk.
+  void add(const StoredPoint& point) { chunk_.push_back(point); }
+  /// After the last point of a chunk. \param output that its points will be part of; those of one
+  /// come one after the other
+  void endChunk(std::uint32_t output);
   void commit();
 
  private:
   struct File {
-    std::vector<StoredPoint> waiting;
     std::vector<PointPacket> packets;
     std::vector<OutputStart> starts;
     std::uint64_t points = 0;
     std::uint64_t offset = 0;
   };
   std::string aside(std::size_t tile) const;
-  void flush(std::size_t tile);
   void append(std::size_t tile, const void* data, std::size_t bytes);
 
   std::string folder_;
   PointFields fields_;
-  std::size_t most_waiting_;  // points
+  ChunkOrder order_;
+  std::vector<StoredPoint> chunk_;
   std::vector<File> files_;
-  std::vector<std::uint8_t> bytes_;
-  std::vector<std::uint8_t> packet_;
   bool committed_ = false;
 };
 

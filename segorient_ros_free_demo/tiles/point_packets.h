@@ -7,14 +7,16 @@
 #include <cstdint>
 #include <vector>
 
+#include "tiles/place_order.h"
+
 namespace segorient::program {
 
 /// A point as it is in the input.
 struct StoredPoint {
-  std::uint32_t number = 0;  ///< among those of its tile, in the order of the inputs
   std::array<double, 3> place{0, 0, 0};
   std::array<float, 3> seen_from{0, 0, 0};  ///< where points carry that, see Plan
   std::array<float, 3> normal{0, 0, 0};     ///< the same; 0 = unknown
+  std::uint32_t number = 0;                 ///< of its row among those of a chunk; not stored
   std::uint32_t cell = 0;                   ///< of the tree; not stored
 };
 
@@ -24,11 +26,9 @@ struct PointFields {
   bool normals = false;
 };
 
-/// Points near each other in few bytes: numbers by their steps, coordinates as whole numbers of the
-/// largest power of two that they are multiples of. They are exact unless that takes more than the
-/// 52 bits of a double.
-/// \param points ascending by number
-void packPoints(const StoredPoint* points, std::size_t count, const PointFields& fields,
+/// Points near each other in few bytes, in the order that PlaceOrder gives them.
+/// \param order of their places, which were added to it in the order of the points
+void packPoints(const StoredPoint* points, PlaceOrder& order, const PointFields& fields,
                 std::vector<std::uint8_t>& out);
 /// Appends the points. \return false if the bytes are no packet of so many
 bool unpackPoints(const std::vector<std::uint8_t>& packet, std::size_t count,

@@ -10,8 +10,8 @@
 
 namespace segorient::program {
 
-/// Writes what is known of a tile's points, all of them in the order of the inputs: normals and
-/// curvatures as packed_values.h has them, labels and pieces as the number of their pair.
+/// Writes what is known of a tile's points, all of them in the order of its points' file: normals
+/// and curvatures as packed_values.h has them, labels and pieces as the number of their pair.
 void saveRows(const std::vector<RowRecord>& rows, const std::vector<OutputStart>& starts,
               const std::string& path, std::uint64_t run, std::uint32_t tile);
 

@@ -49,11 +49,9 @@ void writeStep(const Plan& plan, const std::string& folder, std::size_t output, 
 /// vote on each other, red where two tiles have points of both. For clouds that fit in memory.
 void drawStep(const Plan& plan, const std::string& folder, const std::string& out);
 
-/// Bytes that a step takes for each point of its tile (395 were measured), and for each patch in
-/// joining (180, and as much again for pieces and votes where the surface is rough); beside what
-/// the program takes anyway.
+/// Bytes that a step takes for each point of its tile (395 were measured), beside what the program
+/// takes anyway.
 constexpr std::uint64_t kBytesPerPoint = 450;
-constexpr std::uint64_t kBytesPerPatch = 1000;
 constexpr std::uint64_t kBytesAnyway = 150'000'000;
 
 }  // namespace segorient::program

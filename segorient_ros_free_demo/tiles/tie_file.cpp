@@ -40,10 +40,16 @@ void pack(const SharedPoints& shared, const std::vector<TileTie>& ties,
                       static_cast<std::uint8_t>(bitsOf(most_label))};
   out.assign({widths.piece, widths.label});
   BitWriter bits(out);
+  TileTie last;
   for (const std::uint32_t row : shared.points) {
     const TileTie& tie = tieOf(ties, row);
-    bits.put(static_cast<std::uint64_t>(tie.piece + 1), widths.piece);
-    bits.put(static_cast<std::uint64_t>(tie.label + 1), widths.label);
+    const bool same = tie.piece == last.piece && tie.label == last.label;
+    bits.put(same ? 1 : 0, 1);
+    if (!same) {
+      bits.put(static_cast<std::uint64_t>(tie.piece + 1), widths.piece);
+      bits.put(static_cast<std::uint64_t>(tie.label + 1), widths.label);
+    }
+    last = tie;
     if (tie.piece >= 0) bits.put(packNormal(tie.normal, kTieNormalBits), kTieNormalBits);
   }
   bits.flush();
@@ -82,9 +88,14 @@ std::vector<TileTie> TieReader::about(std::uint32_t other, std::uint32_t owner) 
   const Widths widths{bytes[0], bytes[1]};
   BitReader bits(bytes.data() + 2, bytes.size() - 2);
   out.resize(static_cast<std::size_t>(slice->count));
+  TileTie last;
   for (TileTie& tie : out) {
-    tie.piece = static_cast<std::int32_t>(bits.get(widths.piece)) - 1;
-    tie.label = static_cast<std::int32_t>(bits.get(widths.label)) - 1;
+    if (bits.get(1) == 0) {
+      last.piece = static_cast<std::int32_t>(bits.get(widths.piece)) - 1;
+      last.label = static_cast<std::int32_t>(bits.get(widths.label)) - 1;
+    }
+    tie.piece = last.piece;
+    tie.label = last.label;
     if (tie.piece < 0) continue;
     unpackNormal(static_cast<std::uint32_t>(bits.get(kTieNormalBits)), kTieNormalBits, tie.normal);
   }

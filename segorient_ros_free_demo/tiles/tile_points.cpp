@@ -23,28 +23,16 @@ class Reader {
     for (std::uint32_t t = 0; t < plan_.tiles(); ++t) {
       if (t == tile_ || has_wanted_[t] != 0) readFile(t);
     }
-    sortByNumber();
+    listShared();
     return std::move(out_);
   }
 
  private:
-  // What a point is to this tile.
-  struct Entry {
-    std::uint32_t owner;
-    std::uint32_t number;
-    std::uint32_t place;  // in the arrays, as they were read
-  };
-  struct Tie {
-    std::uint32_t other;
-    std::uint32_t owner;
-    std::uint32_t place;
-  };
-
   void findCells();
   void readFile(std::uint32_t owner);
   void addPoint(const StoredPoint& p, std::uint32_t owner);
   void push(const StoredPoint& p, TileRole role, double whole);
-  void sortByNumber();
+  void listShared();
 
   const Plan& plan_;
   const std::string& folder_;
@@ -53,8 +41,8 @@ class Reader {
   // tile is.
   std::vector<std::uint8_t> is_near_;
   std::vector<std::uint8_t> has_wanted_;  // by tile
-  std::vector<Tie> ties_;
-  std::vector<Entry> order_;
+  // By the other tile and the owner.
+  std::map<std::pair<std::uint32_t, std::uint32_t>, std::vector<std::uint32_t>> shared_;
   TilePoints out_;
 };
 
@@ -102,17 +90,16 @@ void Reader::readFile(std::uint32_t owner) {
 void Reader::addPoint(const StoredPoint& p, std::uint32_t owner) {
   const std::uint32_t cell = plan_.tree.cellOf(p.place);
   const double reach = plan_.tree.nodes()[cell].reach;
-  const auto place = static_cast<std::uint32_t>(order_.size());
+  const auto place = static_cast<std::uint32_t>(out_.roles.size());
   if (owner == tile_) {
     bool shared = false;
     if (is_near_[cell] != 0) {
       plan_.tree.forEachWithin(p.place, reach, [&](std::uint32_t t, double) {
         if (t == tile_) return;
         shared = true;
-        ties_.push_back({t, tile_, place});
+        shared_[{t, tile_}].push_back(place);
       });
     }
-    order_.push_back({owner, p.number, place});
     push(p, shared ? TileRole::SHARED : TileRole::OWN, reach);
     return;
   }
@@ -121,8 +108,7 @@ void Reader::addPoint(const StoredPoint& p, std::uint32_t owner) {
     if (t == tile_) distance = d;
   });
   if (distance < 0.0) return;
-  ties_.push_back({owner, owner, place});
-  order_.push_back({owner, p.number, place});
+  shared_[{owner, owner}].push_back(place);
   push(p, TileRole::HALO,
        distance > 0.0 ? plan_.tree.wholeRadius(p.place, reach, distance) : reach);
 }
@@ -142,36 +128,8 @@ void Reader::push(const StoredPoint& p, TileRole role, double whole) {
   }
 }
 
-// The entries of an array, `width` numbers each, in another order.
-template <typename T, typename Order>
-void reorder(const Order& order, std::size_t width, std::vector<T>& values) {
-  if (values.empty()) return;
-  std::vector<T> sorted;
-  sorted.reserve(values.size());
-  for (const auto& entry : order) {
-    const auto from = values.begin() + static_cast<std::ptrdiff_t>(width * entry.place);
-    sorted.insert(sorted.end(), from, from + static_cast<std::ptrdiff_t>(width));
-  }
-  values.swap(sorted);
-}
-
-void Reader::sortByNumber() {
-  std::vector<Entry>& order = order_;
-  std::sort(order.begin(), order.end(), [](const Entry& a, const Entry& b) {
-    return a.owner != b.owner ? a.owner < b.owner : a.number < b.number;
-  });
-  reorder(order, 3, out_.xyz);
-  reorder(order, 1, out_.roles);
-  reorder(order, 1, out_.whole);
-  reorder(order, 3, out_.viewpoints);
-  reorder(order, 3, out_.normals);
-  std::vector<std::uint32_t> now(order.size());
-  for (std::size_t i = 0; i < order.size(); ++i)
-    now[order[i].place] = static_cast<std::uint32_t>(i);
-  std::map<std::pair<std::uint32_t, std::uint32_t>, std::vector<std::uint32_t>> shared;
-  for (const Tie& tie : ties_) shared[{tie.other, tie.owner}].push_back(now[tie.place]);
-  for (auto& [between, points] : shared) {
-    std::sort(points.begin(), points.end());
+void Reader::listShared() {
+  for (auto& [between, points] : shared_) {
     out_.shared.push_back({between.first, between.second, std::move(points)});
   }
 }

@@ -13,16 +13,16 @@
 namespace segorient::program {
 
 /// Points that a tile and one of its neighbours both have: those of one of the two that are in the
-/// halo of the other, by the number that they have here, in the order of the input. The neighbour
-/// finds the same ones.
+/// halo of the other, by the number that they have here, as their tile's file has them. The
+/// neighbour finds the same ones.
 struct SharedPoints {
   std::uint32_t other = 0;  ///< the neighbour
   std::uint32_t owner = 0;  ///< which of the two they belong to
   std::vector<std::uint32_t> points;
 };
 
-/// A tile's own points, and those of others in its halo: by the tile that owns them, and in the
-/// order of the inputs.
+/// A tile's own points, and those of others in its halo: by the tile that owns them, and as its
+/// file has them.
 struct TilePoints {
   std::vector<OutputStart> starts;  ///< of outputs, among its own points
   std::vector<float> xyz;           ///< 3 each, relative to the tile's origin

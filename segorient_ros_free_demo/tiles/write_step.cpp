@@ -10,6 +10,7 @@
 #include "io/cloud_writer.h"
 #include "io/file_endings.h"
 #include "support/colors.h"
+#include "tiles/chunk_order.h"
 #include "tiles/planned_input.h"
 #include "tiles/row_file.h"
 #include "tiles/steps.h"
@@ -24,7 +25,9 @@ constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
 class Results {
  public:
   Results(const Plan& plan, const std::string& folder, std::uint32_t output)
-      : plan_(plan), labels_(loadLabels(labelsPath(folder), plan.run, plan.tiles())) {
+      : plan_(plan),
+        order_(plan.tree),
+        labels_(loadLabels(labelsPath(folder), plan.run, plan.tiles())) {
     for (std::size_t t = 0; t < plan.tiles(); ++t) {
       const auto tile = static_cast<std::uint32_t>(t);
       SignsFile file = loadSigns(tilePath(folder, t, "signs"), plan.run, tile);
@@ -34,22 +37,31 @@ class Results {
     }
   }
 
-  // Of the next rows; NaN and no label for those that no tile knows.
-  void take(const CloudTable& block) {
-    normals.assign(4 * block.size, kNaN);
-    labels.assign(block.size, kNoSegment);
-    const auto xyz = block.xyz();
-    for (std::size_t i = 0; i < block.size; ++i) {
-      const std::array<double, 3> place = block.triple(xyz, i);
-      if (!std::isfinite(place[0]) || !std::isfinite(place[1]) || !std::isfinite(place[2])) {
-        continue;
+  // Of the rows of a chunk; NaN and no label for those that no tile knows.
+  void take(const std::vector<CloudTable>& blocks, std::size_t size) {
+    normals.assign(4 * size, kNaN);
+    labels.assign(size, kNoSegment);
+    points_.clear();
+    StoredPoint point;
+    for (const CloudTable& block : blocks) {
+      const auto xyz = block.xyz();
+      for (std::size_t i = 0; i < block.size; ++i, ++point.number) {
+        const std::array<double, 3> place = block.triple(xyz, i);
+        if (!std::isfinite(place[0]) || !std::isfinite(place[1]) || !std::isfinite(place[2])) {
+          continue;
+        }
+        point.place = storedPlace(plan_, place);
+        point.cell = plan_.tree.cellOf(point.place);
+        points_.push_back(point);
       }
-      double reach = 0.0;
-      const std::uint32_t tile = plan_.tree.owner(storedPlace(plan_, place), reach);
-      if (rows_[tile]->done()) continue;
-      copy(tile, rows_[tile]->row(), i);
-      rows_[tile]->next();
     }
+    order_.forEachPacket(points_, [&](ChunkPacket& packet) {
+      packet.order.order(nullptr);
+      RowReader& rows = *rows_[packet.tile];
+      for (std::size_t i = 0; i < packet.points.size() && !rows.done(); ++i, rows.next()) {
+        copy(packet.tile, rows.row(), packet.points[packet.order.at(i)].number);
+      }
+    });
   }
 
   std::vector<float> normals;  // 4 a row, with the curvature
@@ -66,41 +78,47 @@ class Results {
   }
 
   const Plan& plan_;
+  ChunkOrder order_;
+  std::vector<StoredPoint> points_;
   LabelFile labels_;
   std::vector<std::vector<std::int8_t>> signs_;  // of each tile's pieces
   std::vector<std::unique_ptr<RowReader>> rows_;
 };
 
-// Calls visit(columns, block's first row) for each block of the points of an output.
-template <typename Visit>
-void forEachBlock(const Plan& plan, const PlanOutput& output, const Visit& visit) {
+// Calls visit(block) for each block of the points of an output, and end() behind each chunk.
+template <typename Visit, typename End>
+void forEachBlock(const Plan& plan, const PlanOutput& output, const Visit& visit, const End& end) {
   const Trajectory trajectory = trajectoryOf(plan);
+  std::uint64_t done = 0;
   for (std::size_t i = output.first_input; i < output.first_input + output.inputs; ++i) {
     PlannedInput stream(plan, plan.inputs[i], trajectory);
     CloudTable block;
-    std::uint64_t row = plan.inputs[i].first_row;
-    while (stream.next(block)) {
-      visit(block, row);
-      row += block.size;
+    while (stream.next(block, restOfChunk(plan, done))) {
+      visit(block);
+      done += block.size;
+      if (done % plan.chunk_rows == 0) end();
     }
   }
+  end();
 }
 
-void addBlock(const CloudTable& block, const Results& results, bool colors, std::uint64_t size,
-              CloudWriter& writer) {
+// \param first row of the block among those of the results
+void addBlock(const CloudTable& block, const Results& results, std::size_t first, bool colors,
+              std::uint64_t size, CloudWriter& writer) {
   OutputCloud out(block);
-  const float* n = results.normals.data();
+  const float* n = &results.normals[4 * first];
+  const std::uint32_t* labels = &results.labels[first];
   out.add("normal_x", n, 4);
   out.add("normal_y", n + 1, 4);
   out.add("normal_z", n + 2, 4);
   out.add("curvature", n + 3, 4);
   std::vector<std::uint32_t> rgb;
   if (colors && block.find("rgb") == nullptr) {
-    for (const std::uint32_t label : results.labels) rgb.push_back(segmentColor(label));
+    for (std::size_t i = 0; i < block.size; ++i) rgb.push_back(segmentColor(labels[i]));
     out.columns.push_back(
         {{"rgb", 'F', 4, 1, 0}, reinterpret_cast<const std::uint8_t*>(rgb.data()), 4});
   }
-  out.add("label", results.labels.data());
+  out.add("label", labels);
   out.addRest(block);
   writer.add(out, size);
 }
@@ -119,22 +137,40 @@ void writeStep(const Plan& plan, const std::string& folder, std::size_t output, 
   for (std::size_t i = to.first_input; i < to.first_input + to.inputs; ++i) {
     size += plan.inputs[i].rows;
   }
-  const std::uint64_t first_row = plan.inputs[to.first_input].first_row;
   if (writer.needsSummary()) {
-    forEachBlock(plan, to, [&](const CloudTable& block, std::uint64_t) {
-      OutputCloud columns(block);
-      columns.addRest(block);
-      writer.sumUp(columns);
-    });
+    forEachBlock(
+        plan, to,
+        [&](const CloudTable& block) {
+          OutputCloud columns(block);
+          columns.addRest(block);
+          writer.sumUp(columns);
+        },
+        [] {});
   }
   // As of a cloud in memory: LAS has room for a camera's colours only in some of its formats.
   const bool colors = fileEnding(to.path) != ".las";
   Results results(plan, folder, static_cast<std::uint32_t>(output));
-  forEachBlock(plan, to, [&](const CloudTable& block, std::uint64_t row) {
-    results.take(block);
-    addBlock(block, results, colors, size, writer);
-    if (progress) progress(static_cast<double>(row - first_row) / static_cast<double>(size));
-  });
+  std::vector<CloudTable> chunk;
+  std::size_t rows = 0;
+  std::uint64_t written = 0;
+  forEachBlock(
+      plan, to,
+      [&](const CloudTable& block) {
+        chunk.push_back(block);
+        rows += block.size;
+      },
+      [&] {
+        results.take(chunk, rows);
+        std::size_t first = 0;
+        for (const CloudTable& block : chunk) {
+          addBlock(block, results, first, colors, size, writer);
+          first += block.size;
+        }
+        written += rows;
+        if (progress) progress(static_cast<double>(written) / static_cast<double>(size));
+        chunk.clear();
+        rows = 0;
+      });
   writer.end();
   file.commit();
 }
