@@ -184,6 +184,10 @@ void followField(const PointView& points, const Neighborhoods& neighborhoods, in
     }
   }
   takeDirections(points, subset, solver, best.normals, kFinal * spacing, threads, found);
+  // The signs as they came contradict the field by more than noise explains: the surface may be
+  // open, or a wall whose two sides came out as one sheet, and which of them cannot be told.
+  const float most = kSure / std::max(kSure, own.energy.spread);
+  for (float& c : found.confidences) c = std::min(c, most);
 }
 
 }  // namespace segorient::detail
