@@ -417,37 +417,6 @@ TEST(Viewpoint, IsFoundForARoomSeenFromInside) {
     EXPECT_GE(c, -0.01F);
     EXPECT_LE(c, 1.01F);
   }
-  ASSERT_FALSE(fit.others.empty());
-  for (const Viewpoint& other : fit.others) {
-    EXPECT_EQ(other.facing, -1);
-    for (const float c : other.position) {
-      EXPECT_GE(c, -0.1F);
-      EXPECT_LE(c, 1.1F);
-    }
-  }
-}
-
-// All places above see its front, all below its back.
-TEST(Viewpoint, OfAPlaneManyPlacesSeeAsMuch) {
-  std::vector<float> xyz;
-  std::vector<float> normals;
-  for (int i = 0; i < 2500; ++i) {
-    const auto x = 0.02F * static_cast<float>(i / 50);
-    const auto y = 0.02F * static_cast<float>(i % 50);
-    xyz.insert(xyz.end(), {x, y, 5.F, 0.F});
-    normals.insert(normals.end(), {0.F, 0.F, 1.F, 0.F});
-  }
-  const ViewpointFit fit = fitViewpoint(viewOf(xyz), normals, allRows(2500));
-  EXPECT_EQ(fit.agreement, 1.F);
-  ASSERT_GE(fit.others.size(), 4U);
-  bool left = false;
-  bool right = false;
-  for (const Viewpoint& other : fit.others) {
-    EXPECT_EQ(other.facing, other.position[2] > 5.F ? 1 : -1);
-    left = left || other.position[0] < 0.F;
-    right = right || other.position[0] > 1.F;
-  }
-  EXPECT_TRUE(left && right);
 }
 
 TEST(Viewpoint, IsNotFoundForSeparateSolids) {
@@ -458,10 +427,10 @@ TEST(Viewpoint, IsNotFoundForSeparateSolids) {
   EXPECT_LT(fit.agreement, 0.85F);
 }
 
-// A bowl seen from inside. In its middle are two segments that agree with each other; most normals
-// along their border with the rest lie.
+// A bowl seen from inside. In its middle is a segment most of whose normals along the border with
+// the rest lie.
 TEST(Viewpoint, TurnsWhatNothingCouldHaveBeenSeenFrom) {
-  Scene scene(3);
+  Scene scene(2);
   constexpr int kPoints = 24000;
   for (int i = 0; i < kPoints; ++i) {
     const float z = -1.F + (static_cast<float>(i) + 0.5F) / kPoints;
@@ -469,18 +438,18 @@ TEST(Viewpoint, TurnsWhatNothingCouldHaveBeenSeenFrom) {
     const float r = std::sqrt(1.F - z * z);
     const float x = r * std::cos(azimuth);
     const float y = r * std::sin(azimuth);
-    const std::int32_t label = r < 0.15F ? 2 : r < 0.43F ? 1 : 0;
-    const bool lies = label == 1 && r > 0.39F && std::fabs(azimuth) < 0.88F * 3.1415927F;
+    const std::int32_t label = r < 0.43F ? 1 : 0;
+    const bool lies = label == 1 && r > 0.39F && std::fabs(azimuth) < 0.72F * 3.1415927F;
     const float s = lies ? 1.F : -1.F;
     scene.add(label, label == 0, {x, y, z}, {s * x, s * y, s * z});
   }
   for (const bool guess : {false, true}) {
     AutomaticOptions options;
     options.infer_viewpoint = guess;
+    options.turn_loose_parts = false;
     const AutoOrientation out = scene.orient(0.016F, options);
     const std::int8_t sign = out.result.segments[0].sign;
     EXPECT_EQ(out.result.segments[1].sign, guess ? sign : -sign);
-    EXPECT_EQ(out.result.segments[2].sign, guess ? sign : -sign);
   }
 }
 

@@ -2,7 +2,6 @@
 // Copyright (c) 2026, the segorient authors
 #include <algorithm>
 
-#include "orientation/automatic/loose_parts.h"
 #include "orientation/automatic/sheet_stages.h"
 #include "orientation/sensors/viewpoint_fit.h"
 
@@ -10,7 +9,7 @@ namespace segorient::detail {
 namespace {
 
 // How far the points of each segment face a viewpoint.
-std::vector<Ballot> facingOf(const SheetSigns& sheets, const Viewpoint& from) {
+std::vector<Ballot> facingOf(const SheetSigns& sheets, const ViewpointFit& from) {
   PointHints inferred;
   inferred.has_viewpoint = true;
   inferred.viewpoint = from.position;
@@ -21,43 +20,6 @@ std::vector<Ballot> facingOf(const SheetSigns& sheets, const Viewpoint& from) {
     facing[s].add(votes[s].view, sheets.signs[s] * from.facing);
   }
   return facing;
-}
-
-// Nothing that a sensor saw turns its back to it. Segments that do are turned over, those that meet
-// and agree together; but not where next to all of their borders with others know better, nor if
-// the sensor may as well have been at a place that they do not turn their backs to.
-void turnSegmentsTo(SheetSigns& sheets, const ViewpointFit& fit) {
-  const std::vector<Ballot> facing = facingOf(sheets, fit);
-  // That all was seen from there is a guess from the largest cluster, and a wrong one if much of
-  // the rest speaks against it: two walls of a corner look to many places behind the third.
-  constexpr float kMostAgainst = 0.1F;
-  std::vector<bool> turned_away(sheets.signs.size());
-  float points = 0.F;
-  for (std::size_t s = 0; s < sheets.signs.size(); ++s) {
-    turned_away[s] = !sheets.hinted[at(sheets.clusters.of(s))] && facing[s].share() < -kClearly;
-    if (turned_away[s]) points += static_cast<float>(sheets.segmentation.segments[s].size);
-  }
-  const std::vector<std::int32_t> group = agreeingGroups(sheets.votes, sheets.signs, turned_away);
-  const std::vector<float> agreement = agreementOf(group, sheets.votes, sheets.signs, 0.F);
-  std::vector<std::size_t> against;
-  for (std::size_t s = 0; s < sheets.signs.size(); ++s) {
-    if (turned_away[s] && agreement[at(group[s])] <= kFirmBorders) against.push_back(s);
-  }
-  if (against.empty() || points > kMostAgainst * static_cast<float>(sheets.cloud_points)) return;
-  std::vector<bool> sure(sheets.signs.size());  // by group
-  for (const std::size_t s : against) sure[at(group[s])] = true;
-  for (const Viewpoint& other : fit.others) {
-    const std::vector<Ballot> seen = facingOf(sheets, other);
-    std::vector<Ballot> of_group(sheets.signs.size());
-    for (const std::size_t s : against) of_group[at(group[s])].add(seen[s], 1);
-    for (const std::size_t s : against) {
-      if (of_group[at(group[s])].share() >= -kClearly) sure[at(group[s])] = false;
-    }
-  }
-  sheets.keepWhatWindsRight(group, sure);
-  for (const std::size_t s : against) {
-    if (sure[at(group[s])]) sheets.signs[s] = static_cast<std::int8_t>(-sheets.signs[s]);
-  }
 }
 
 // The largest cluster, or -1 where it is less than half of the cloud: that shows too little of what
@@ -86,9 +48,8 @@ std::vector<std::uint32_t> reliablePointsOf(const SheetSigns& sheets, std::int32
 }  // namespace
 
 void followViewpoint(SheetSigns& sheets) {
-  // Shares of the largest cluster that face the place: nearly all, but for what noise turns.
+  // Share of the largest cluster that faces the place: nearly all, but for what noise turns.
   constexpr float kOnePlace = 0.97F;
-  constexpr float kNearlySure = 0.98F;
   if (sheets.windings.empty() || sheets.hints.has_viewpoint || sheets.isClosed(0, kClosedResidual))
     return;
   const std::int32_t largest = largestCluster(sheets);
@@ -104,9 +65,8 @@ void followViewpoint(SheetSigns& sheets) {
     if (!sheets.hinted[c]) facing[c].add(seen[s], 1);
   }
   std::vector<bool> turned_away = sheets.outvoted(facing, kSureBorders);
-  sheets.keepWhatWindsRight(sheets.clusterOf(), turned_away);
+  sheets.keepWhatWindsRight(turned_away);
   sheets.turnClusters(turned_away);
-  if (fit.agreement >= kNearlySure) turnSegmentsTo(sheets, fit);
 }
 
 }  // namespace segorient::detail

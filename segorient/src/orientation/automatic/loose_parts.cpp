@@ -7,7 +7,6 @@
 #include <utility>
 
 #include "common/at.h"
-#include "common/disjoint_sets.h"
 #include "orientation/automatic/cluster_graph.h"
 #include "orientation/winding/winding_components.h"
 
@@ -41,19 +40,6 @@ std::vector<float> agreementOf(const std::vector<std::int32_t>& part_of,
     if (all[p].absolute > 0.F) agreed[p] = all[p].weight / all[p].absolute;
   }
   return agreed;
-}
-
-std::vector<std::int32_t> agreeingGroups(const std::vector<BorderVote>& votes,
-                                         const std::vector<std::int8_t>& signs,
-                                         const std::vector<bool>& chosen) {
-  DisjointSets sets(signs.size());
-  for (const BorderVote& v : votes) {
-    if (!chosen[at(v.a)] || !chosen[at(v.b)]) continue;
-    if (v.weight * static_cast<float>(signs[at(v.a)] * signs[at(v.b)]) > 0.F) sets.join(v.a, v.b);
-  }
-  std::vector<std::int32_t> group(signs.size());
-  for (std::size_t s = 0; s < group.size(); ++s) group[s] = sets.find(static_cast<std::int32_t>(s));
-  return group;
 }
 
 LooseParts findLooseParts(const Segmentation& segmentation, const std::vector<BorderVote>& votes,

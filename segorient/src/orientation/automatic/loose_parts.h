@@ -19,12 +19,6 @@ std::vector<float> agreementOf(const std::vector<std::int32_t>& part_of,
                                const std::vector<BorderVote>& votes,
                                const std::vector<std::int8_t>& signs, float without);
 
-/// Joins chosen segments that meet and agree, so that they cannot vouch for each other.
-/// \return one a segment: the number of one of its group, or its own where it is not chosen
-std::vector<std::int32_t> agreeingGroups(const std::vector<BorderVote>& votes,
-                                         const std::vector<std::int8_t>& signs,
-                                         const std::vector<bool>& chosen);
-
 /// Components of a surface with their loose parts apart: parts whose borders hardly tell how they
 /// are turned, such as the walls of a bore that uneven sampling has cut lengthwise, or shells that
 /// noise has brought together.

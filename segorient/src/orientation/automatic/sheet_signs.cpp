@@ -116,8 +116,7 @@ void SheetSigns::turnClusters(const std::vector<bool>& chosen) {
   }
 }
 
-void SheetSigns::keepWhatWindsRight(const std::vector<std::int32_t>& part_of,
-                                    std::vector<bool>& chosen) const {
+void SheetSigns::keepWhatWindsRight(std::vector<bool>& chosen) const {
   if (!options.wind_components || hints.surface == SurfaceKind::OPEN) return;
   // About 1 for a cavity; .6 for a hemisphere and .8 for a box without a lid, which are open.
   constexpr float kRises = 0.8F;
@@ -126,7 +125,7 @@ void SheetSigns::keepWhatWindsRight(const std::vector<std::int32_t>& part_of,
   std::vector<std::int32_t> numbered = component_of;
   std::size_t count = fixed;
   for (std::size_t s = 0; s < signs.size(); ++s) {
-    const std::size_t part = at(part_of[s]);
+    const std::size_t part = at(clusters.of(s));
     if (!chosen[part]) continue;
     if (number[part] < 0) number[part] = static_cast<std::int32_t>(count++);
     numbered[s] = number[part];

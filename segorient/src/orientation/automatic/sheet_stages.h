@@ -20,9 +20,8 @@ void followHints(SheetSigns& sheets);
 void followSensors(SheetSigns& sheets);
 
 /// If all that the largest cluster knows was seen from one place, so was the rest: other clusters
-/// that turn their backs to it are turned over where their borders hardly tell, and where that is
-/// nearly sure, so are single segments. Closed surfaces are never seen from one place, and have the
-/// winding number.
+/// that turn their backs to it are turned over where their borders hardly tell. Closed surfaces are
+/// never seen from one place, and have the winding number.
 void followViewpoint(SheetSigns& sheets);
 
 /// Signs and confidences of segments, clusters and points, and the borders that contradict them. A

@@ -9,6 +9,7 @@
 #include <numeric>
 
 #include "common/at.h"
+#include "common/box.h"
 #include "orientation/checks/fault_patches.h"
 
 #include "common/dot.h"
@@ -23,8 +24,6 @@ constexpr float kSameLine = 0.5F;
 constexpr float kClearlySeen = 0.2588190F;
 // Residual of the winding number: closed surfaces stay below it even with noise.
 constexpr float kClosedResidual = 0.1F;
-
-constexpr float kMost = std::numeric_limits<float>::max();
 
 // To unit length, in double as lengths may be anything; false where there is no direction.
 bool normalize(const std::array<double, 3>& v, float* out) {
@@ -213,31 +212,27 @@ void Check::countForScan(std::size_t r, const Judgement& judgement, bool same) {
 
 // Number, middle, size and scan of each place.
 void Check::measurePlaces() {
-  struct Box {
+  struct Around {
     std::array<double, 3> sum{0.0, 0.0, 0.0};
-    std::array<float, 3> low{kMost, kMost, kMost};
-    std::array<float, 3> high{-kMost, -kMost, -kMost};
+    Box box;
     std::map<std::int32_t, std::size_t> scans;
   };
-  std::vector<Box> boxes(out_.places.size());
+  std::vector<Around> around(out_.places.size());
   for (std::size_t r = 0; r < out_.place_of.size(); ++r) {
     if (out_.place_of[r] < 0) continue;
-    Box& box = boxes[at(out_.place_of[r])];
+    Around& place = around[at(out_.place_of[r])];
     ++out_.places[at(out_.place_of[r])].points;
-    for (std::size_t a = 0; a < 3; ++a) {
-      box.sum[a] += static_cast<double>(points_[r][a]);
-      box.low[a] = std::min(box.low[a], points_[r][a]);
-      box.high[a] = std::max(box.high[a], points_[r][a]);
-    }
-    if (scanOf(r) >= 0) ++box.scans[scanOf(r)];
+    for (std::size_t a = 0; a < 3; ++a) place.sum[a] += static_cast<double>(points_[r][a]);
+    place.box.add(points_[r]);
+    if (scanOf(r) >= 0) ++place.scans[scanOf(r)];
   }
-  for (std::size_t p = 0; p < boxes.size(); ++p) {
+  for (std::size_t p = 0; p < around.size(); ++p) {
     FaultyPlace& place = out_.places[p];
     for (std::size_t a = 0; a < 3; ++a) {
-      place.center[a] = static_cast<float>(boxes[p].sum[a] / static_cast<double>(place.points));
-      place.size = std::max(place.size, boxes[p].high[a] - boxes[p].low[a]);
+      place.center[a] = static_cast<float>(around[p].sum[a] / static_cast<double>(place.points));
     }
-    for (const auto& [scan, count] : boxes[p].scans) {
+    place.size = around[p].box.longestSide();
+    for (const auto& [scan, count] : around[p].scans) {
       if (2 * count > place.points) place.scan = scan;
     }
   }

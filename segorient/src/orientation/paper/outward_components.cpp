@@ -3,15 +3,14 @@
 #include "orientation/paper/outward_components.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstdint>
-#include <limits>
 #include <numeric>
 #include <utility>
 #include <vector>
 
 #include "common/at.h"
+#include "common/box.h"
 #include "orientation/winding/winding_number.h"
 
 namespace segorient {
@@ -28,29 +27,11 @@ std::vector<Rows> rowsByComponent(const OrientationResult& result) {
   return rows;
 }
 
-struct Bounds {
-  std::array<float, 3> low;
-  std::array<float, 3> high;
-
-  Bounds(const PointView& points, const Rows& rows) {
-    low.fill(std::numeric_limits<float>::max());
-    high.fill(std::numeric_limits<float>::lowest());
-    for (const pcl::index_t row : rows) {
-      const float* p = points[static_cast<std::size_t>(row)];
-      for (std::size_t a = 0; a < 3; ++a) {
-        low[a] = std::min(low[a], p[a]);
-        high[a] = std::max(high[a], p[a]);
-      }
-    }
-  }
-  bool contains(const Bounds& other) const {
-    bool inside = true;
-    for (std::size_t a = 0; a < 3; ++a) {
-      inside = inside && low[a] < other.low[a] && other.high[a] < high[a];
-    }
-    return inside;
-  }
-};
+Box boxAround(const PointView& points, const Rows& rows) {
+  Box box;
+  for (const pcl::index_t row : rows) box.add(points[static_cast<std::size_t>(row)]);
+  return box;
+}
 
 // At most `count` of the rows, evenly spread over them (and so over space, as rows are in Z-order).
 Rows sample(const Rows& rows, std::size_t count) {
@@ -102,13 +83,13 @@ constexpr std::size_t kSources =
     4096;  // points of the outer one: 1 / 64 of the radius apart on a sphere
 
 // Components by how many others' boxes contain theirs: outer ones first.
-std::vector<std::size_t> outerFirst(const std::vector<Bounds>& bounds) {
-  std::vector<std::size_t> order(bounds.size());
+std::vector<std::size_t> outerFirst(const std::vector<Box>& boxes) {
+  std::vector<std::size_t> order(boxes.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
   std::vector<std::ptrdiff_t> depth;
-  for (const Bounds& own : bounds) {
-    depth.push_back(std::count_if(bounds.begin(), bounds.end(),
-                                  [&](const Bounds& other) { return other.contains(own); }));
+  for (const Box& own : boxes) {
+    depth.push_back(std::count_if(boxes.begin(), boxes.end(),
+                                  [&](const Box& other) { return other.encloses(own); }));
   }
   std::stable_sort(order.begin(), order.end(),
                    [&](std::size_t l, std::size_t r) { return depth[l] < depth[r]; });
@@ -157,9 +138,9 @@ void turnCavities(const PointView& points, const Enclosure& enclosure,
                   const std::vector<Rows>& rows,
                   std::vector<ComponentOrientationResult>& components) {
   const std::size_t count = std::min(kMostNested, components.size());
-  std::vector<Bounds> bounds;
-  for (std::size_t c = 0; c < count; ++c) bounds.emplace_back(points, rows[c]);
-  const std::vector<std::size_t> order = outerFirst(bounds);
+  std::vector<Box> boxes;
+  for (std::size_t c = 0; c < count; ++c) boxes.push_back(boxAround(points, rows[c]));
+  const std::vector<std::size_t> order = outerFirst(boxes);
   for (std::size_t i = 0; i < count; ++i) {
     const std::size_t inner = order[i];
     const Rows probes = sample(rows[inner], kProbes);
@@ -167,7 +148,7 @@ void turnCavities(const PointView& points, const Enclosure& enclosure,
     bool enclosed = false;
     for (std::size_t j = 0; j < i; ++j) {
       const std::size_t outer = order[j];
-      if (!bounds[outer].contains(bounds[inner])) continue;
+      if (!boxes[outer].encloses(boxes[inner])) continue;
       enclosed = true;
       filled += enclosure.around(probes, rows[outer], components[outer].sign);
     }

@@ -121,46 +121,6 @@ std::array<float, 3> refine(const std::vector<Sample>& samples, std::array<float
   return v;
 }
 
-// Squared distances between places, however far away they are: all are drawn into a ball.
-float squaredDistance(const std::array<float, 3>& a, const std::array<float, 3>& b) {
-  const auto scale = [](const std::array<float, 3>& v) {
-    return 1.F / (1.F + std::sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]));
-  };
-  float square = 0.F;
-  for (std::size_t i = 0; i < 3; ++i) {
-    const float d = scale(a) * a[i] - scale(b) * b[i];
-    square += d * d;
-  }
-  return square;
-}
-
-// Of the places whose score is not less than `least`, some far from each other and from the best.
-std::vector<std::array<float, 3>> farApart(const std::vector<std::array<float, 3>>& places,
-                                           const std::vector<float>& scores, float least,
-                                           const std::array<float, 3>& best) {
-  constexpr std::size_t kMost = 8;
-  std::vector<std::array<float, 3>> chosen;
-  std::vector<float> nearest(places.size(), 0.F);
-  for (std::size_t c = 0; c < places.size(); ++c) {
-    if (scores[c] >= least) nearest[c] = squaredDistance(places[c], best);
-  }
-  while (chosen.size() < kMost) {
-    const auto it = std::max_element(nearest.begin(), nearest.end());
-    if (!(*it > 0.F)) break;
-    chosen.push_back(places[static_cast<std::size_t>(it - nearest.begin())]);
-    for (std::size_t c = 0; c < places.size(); ++c) {
-      nearest[c] = std::min(nearest[c], squaredDistance(places[c], chosen.back()));
-    }
-  }
-  return chosen;
-}
-
-// Below the best agreement, what chance does to that of a sample: a deviation, or one point.
-float tolerance(float agreement, std::size_t samples) {
-  const auto n = static_cast<float>(samples);
-  return std::max(std::sqrt(agreement * (1.F - agreement) / n), 1.F / n);
-}
-
 }  // namespace
 
 ViewpointFit fitViewpoint(const PointView& points, const std::vector<float>& normals,
@@ -178,13 +138,12 @@ ViewpointFit fitViewpoint(const PointView& points, const std::vector<float>& nor
 #pragma omp parallel for num_threads(t) schedule(static)
   for (std::size_t c = 0; c < places.size(); ++c) scores[c] = agreementAt(few, places[c]);
 
-  std::vector<float> untried = scores;
   constexpr int kStarts = 5;
   std::array<float, 3> best{0.F, 0.F, 0.F};
   for (int start = 0; start < kStarts; ++start) {
-    const auto it = std::max_element(untried.begin(), untried.end());
+    const auto it = std::max_element(scores.begin(), scores.end());
     const std::array<float, 3> v =
-        refine(many, places[static_cast<std::size_t>(it - untried.begin())]);
+        refine(many, places[static_cast<std::size_t>(it - scores.begin())]);
     *it = -1.F;
     const float value = agreementAt(many, v);
     if (value > fit.agreement) {
@@ -192,18 +151,11 @@ ViewpointFit fitViewpoint(const PointView& points, const std::vector<float>& nor
       best = v;
     }
   }
-  const auto viewpoint = [&](const std::array<float, 3>& v) {
-    Viewpoint out;
-    out.facing = facingShare(many, v) >= 0.5F ? 1 : -1;
-    for (std::size_t a = 0; a < 3; ++a) {
-      out.position[a] =
-          static_cast<float>(frame.center[a] + frame.extent * static_cast<double>(v[a]));
-    }
-    return out;
-  };
-  static_cast<Viewpoint&>(fit) = viewpoint(best);
-  const float least = fit.agreement - tolerance(fit.agreement, few.size());
-  for (const auto& v : farApart(places, scores, least, best)) fit.others.push_back(viewpoint(v));
+  fit.facing = facingShare(many, best) >= 0.5F ? 1 : -1;
+  for (std::size_t a = 0; a < 3; ++a) {
+    fit.position[a] =
+        static_cast<float>(frame.center[a] + frame.extent * static_cast<double>(best[a]));
+  }
   return fit;
 }
 

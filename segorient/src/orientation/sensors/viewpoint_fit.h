@@ -10,20 +10,13 @@
 
 namespace segorient {
 
-/// A place that oriented points were perhaps seen from.
-struct Viewpoint {
+/// The place that most of some oriented points could have been seen from.
+struct ViewpointFit {
   std::array<float, 3> position{0.F, 0.F, 0.F};
   std::int8_t facing = 1;  ///< +1 if the face that most points show to it is that of their normals
-};
-
-/// The place that most of some oriented points could have been seen from.
-struct ViewpointFit : Viewpoint {
   /// Share of the points that show one and the same face to it: about 1/2 for a closed surface,
   /// near 1 for a scan from one place.
   float agreement = 0.F;
-  /// Some of the other places that the points do not tell from it, far from each other: of what is
-  /// seen differently from those, the points say nothing.
-  std::vector<Viewpoint> others;
 };
 
 /// Looks for the place of the sensor from the points alone: a scan from one place shows one side of

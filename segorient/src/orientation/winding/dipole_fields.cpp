@@ -2,12 +2,10 @@
 // Copyright (c) 2026, the segorient authors
 #include "orientation/winding/dipole_fields.h"
 
-#include <algorithm>
 #include <array>
-#include <cmath>
 #include <cstddef>
-#include <limits>
 
+#include "common/box.h"
 #include "common/threads.h"
 #include "orientation/winding/winding_number.h"
 
@@ -22,31 +20,6 @@ struct Run {
   float reach;
 };
 
-class Box {
- public:
-  void add(const float* p) {
-    for (std::size_t a = 0; a < 3; ++a) {
-      low_[a] = std::min(low_[a], p[a]);
-      high_[a] = std::max(high_[a], p[a]);
-    }
-  }
-  float halfDiagonal() const {
-    float squares = 0.F;
-    for (std::size_t a = 0; a < 3; ++a) squares += (high_[a] - low_[a]) * (high_[a] - low_[a]);
-    return 0.5F * std::sqrt(squares);
-  }
-  std::array<float, 3> center() const {
-    std::array<float, 3> out{};
-    for (std::size_t a = 0; a < 3; ++a) out[a] = 0.5F * (low_[a] + high_[a]);
-    return out;
-  }
-
- private:
-  static constexpr float kHuge = std::numeric_limits<float>::max();  // of an empty box
-  std::array<float, 3> low_{kHuge, kHuge, kHuge};
-  std::array<float, 3> high_{-kHuge, -kHuge, -kHuge};
-};
-
 std::vector<Run> cutRuns(const PointView& at, float widest) {
   constexpr std::size_t kPlaces = 32;  // listing costs a tenth of the sums then
   std::vector<Run> runs;
@@ -57,10 +30,10 @@ std::vector<Run> cutRuns(const PointView& at, float widest) {
     for (; last < at.size && last - first < kPlaces; ++last) {
       Box wider = box;
       wider.add(at[last]);
-      if (wider.halfDiagonal() > widest) break;
+      if (0.5F * wider.diagonal() > widest) break;
       box = wider;
     }
-    runs.push_back({first, last, box.center(), box.halfDiagonal()});
+    runs.push_back({first, last, box.center(), 0.5F * box.diagonal()});
     first = last;
   }
   return runs;

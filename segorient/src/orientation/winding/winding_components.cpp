@@ -2,14 +2,15 @@
 // Copyright (c) 2026, the segorient authors
 #include "orientation/winding/winding_components.h"
 
+#include <segorient/search/median_hash_index.h>
+
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstddef>
 #include <limits>
-#include <numeric>
 #include <utility>
 
+#include "common/box.h"
 #include "common/threads.h"
 #include "orientation/winding/winding_number.h"
 
@@ -19,96 +20,10 @@ namespace {
 // Each turn lowers the sum; a few rounds are the rule.
 constexpr int kRounds = 20;
 
-struct Box {
-  std::array<float, 3> low;
-  std::array<float, 3> high;
-  Box() {
-    low.fill(std::numeric_limits<float>::max());
-    high.fill(std::numeric_limits<float>::lowest());
-  }
-  void add(const float* p) {
-    for (std::size_t a = 0; a < 3; ++a) {
-      low[a] = std::min(low[a], p[a]);
-      high[a] = std::max(high[a], p[a]);
-    }
-  }
-  bool contains(const float* p, float margin) const {
-    for (std::size_t a = 0; a < 3; ++a) {
-      if (p[a] < low[a] - margin || p[a] > high[a] + margin) return false;
-    }
-    return true;
-  }
-  float diagonal() const {
-    float s = 0.F;
-    for (std::size_t a = 0; a < 3; ++a) s += (high[a] - low[a]) * (high[a] - low[a]);
-    return std::sqrt(s);
-  }
-};
-
 // One sample point that a component's field reaches, and the field there.
 struct Reach {
   std::uint32_t sample;
   float w;
-};
-
-// Finds the samples near a box without looking at all of them.
-class SampleGrid {
- public:
-  void build(const PointView& points, const std::vector<std::uint32_t>& samples) {
-    box_ = Box();
-    for (const std::uint32_t i : samples) box_.add(points[i]);
-    // About as many cells as samples.
-    side_ = static_cast<std::size_t>(std::ceil(std::cbrt(static_cast<double>(samples.size()))));
-    side_ = std::max<std::size_t>(side_, 1);
-    start_.assign(side_ * side_ * side_ + 1, 0);
-    std::vector<std::size_t> cells;
-    for (const std::uint32_t i : samples) {
-      cells.push_back(cellOf(points[i]));
-      ++start_[cells.back() + 1];
-    }
-    std::partial_sum(start_.begin(), start_.end(), start_.begin());
-    order_.resize(samples.size());
-    std::vector<std::uint32_t> next(start_.begin(), start_.end() - 1);
-    for (std::size_t k = 0; k < cells.size(); ++k) {
-      order_[next[cells[k]]++] = static_cast<std::uint32_t>(k);
-    }
-  }
-
-  // Calls visit(k) for each sample k that is near, and some others.
-  template <typename Visit>
-  void forEachNear(const Box& box, float margin, Visit&& visit) const {
-    std::array<std::size_t, 3> first;
-    std::array<std::size_t, 3> last;
-    for (std::size_t a = 0; a < 3; ++a) {
-      first[a] = cellAlong(a, box.low[a] - margin);
-      last[a] = cellAlong(a, box.high[a] + margin);
-    }
-    for (std::size_t z = first[2]; z <= last[2]; ++z) {
-      for (std::size_t y = first[1]; y <= last[1]; ++y) {
-        const std::size_t row = side_ * (y + side_ * z);
-        for (std::uint32_t k = start_[row + first[0]]; k < start_[row + last[0] + 1]; ++k) {
-          visit(order_[k]);
-        }
-      }
-    }
-  }
-
- private:
-  // Monotone, so that what is between two coordinates is between their cells.
-  std::size_t cellAlong(std::size_t axis, float x) const {
-    const float extent = box_.high[axis] - box_.low[axis];
-    const float cell = (x - box_.low[axis]) / extent * static_cast<float>(side_);
-    if (!(extent > 0.F) || !(cell > 0.F)) return 0;
-    return cell < static_cast<float>(side_ - 1) ? static_cast<std::size_t>(cell) : side_ - 1;
-  }
-  std::size_t cellOf(const float* p) const {
-    return cellAlong(0, p[0]) + side_ * (cellAlong(1, p[1]) + side_ * cellAlong(2, p[2]));
-  }
-
-  Box box_;
-  std::size_t side_ = 1;
-  std::vector<std::uint32_t> start_;
-  std::vector<std::uint32_t> order_;
 };
 
 class Solver {
@@ -135,7 +50,6 @@ class Solver {
     takeSamples();
     for (std::size_t c = 0; c < rows_.size(); ++c) evaluate(c);
     insertOneByOne();
-    flipWhileBetter();
     return results();
   }
 
@@ -192,7 +106,13 @@ class Solver {
       }
     }
     field_.assign(samples_.size(), -0.5);
-    grid_.build(points_, samples_);
+    std::vector<float> places;
+    for (const std::uint32_t i : samples_) {
+      places.insert(places.end(), points_[i], points_[i] + 3);
+    }
+    search::MedianHashIndex::Options options;
+    options.threads = threads_;
+    index_.build({places.data(), 3, samples_.size()}, nullptr, options);
   }
 
   void evaluate(std::size_t c) {
@@ -202,11 +122,18 @@ class Solver {
     winding.build(points_, dipoles_, rows_[c]);
     auto& reach = reach_[c];
     const float margin = boxes_[c].diagonal();
-    grid_.forEachNear(boxes_[c], margin, [&](std::uint32_t k) {
-      if (boxes_[c].contains(points_[samples_[k]], margin)) reach.push_back({k, 0.F});
-    });
-    std::sort(reach.begin(), reach.end(),
-              [](const Reach& a, const Reach& b) { return a.sample < b.sample; });
+    // A ball around the box with its margin, and around a single point.
+    const float radius = 2.3F * margin + spacing_[rows_[c].front()];
+    std::vector<pcl::index_t> near;
+    std::vector<float> distances;
+    index_.radius(boxes_[c].center().data(), static_cast<double>(radius), near, distances, 0,
+                  false);
+    std::sort(near.begin(), near.end());
+    for (const pcl::index_t k : near) {
+      const auto sample = static_cast<std::size_t>(k);
+      if (!boxes_[c].contains(points_[samples_[sample]], margin)) continue;
+      reach.push_back({static_cast<std::uint32_t>(sample), 0.F});
+    }
     // Nanoseconds: some nodes of each level of the tree are opened.
     constexpr double kLevel = 2000.0;
     const double time = kLevel * std::log2(static_cast<double>(rows_[c].size()) + 1.0);
@@ -294,18 +221,6 @@ class Solver {
            ownResidual(c, false) > kMisfits;
   }
 
-  void flipWhileBetter() {
-    for (int round = 0; round < kRounds; ++round) {
-      bool moved = false;
-      for (std::size_t c = 0; c < rows_.size(); ++c) {
-        if (change(c) >= -1e-6) continue;
-        flip(c);
-        moved = true;
-      }
-      if (!moved) break;
-    }
-  }
-
   std::vector<ComponentWinding> results() const {
     std::vector<ComponentWinding> out(rows_.size());
     std::vector<double> squares(rows_.size(), 0.0);
@@ -333,7 +248,7 @@ class Solver {
   std::vector<Box> boxes_;
   std::vector<std::vector<Reach>> reach_;
   std::vector<std::uint32_t> samples_;
-  SampleGrid grid_;
+  search::MedianHashIndex index_;  // of the samples
   std::vector<std::uint32_t> owner_;
   std::vector<double> weight_;  // points that a sample stands for
   std::vector<double> field_;   // w - 1/2 at the samples

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the segorient authors
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+
+namespace segorient {
+
+/// The box around some points; empty before the first one.
+struct Box {
+  std::array<float, 3> low;
+  std::array<float, 3> high;
+
+  Box() {
+    low.fill(std::numeric_limits<float>::max());
+    high.fill(std::numeric_limits<float>::lowest());
+  }
+  void add(const float* p) {
+    for (std::size_t a = 0; a < 3; ++a) {
+      low[a] = std::min(low[a], p[a]);
+      high[a] = std::max(high[a], p[a]);
+    }
+  }
+  bool contains(const float* p, float margin) const {
+    for (std::size_t a = 0; a < 3; ++a) {
+      if (p[a] < low[a] - margin || p[a] > high[a] + margin) return false;
+    }
+    return true;
+  }
+  /// Whether all of another box is strictly inside.
+  bool encloses(const Box& other) const {
+    bool inside = true;
+    for (std::size_t a = 0; a < 3; ++a) {
+      inside = inside && low[a] < other.low[a] && other.high[a] < high[a];
+    }
+    return inside;
+  }
+  std::array<float, 3> center() const {
+    std::array<float, 3> out{};
+    for (std::size_t a = 0; a < 3; ++a) out[a] = 0.5F * (low[a] + high[a]);
+    return out;
+  }
+  float diagonal() const {
+    float squares = 0.F;
+    for (std::size_t a = 0; a < 3; ++a) squares += (high[a] - low[a]) * (high[a] - low[a]);
+    return std::sqrt(squares);
+  }
+  float longestSide() const {
+    return std::max({high[0] - low[0], high[1] - low[1], high[2] - low[2]});
+  }
+};
+
+}  // namespace segorient
