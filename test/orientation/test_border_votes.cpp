@@ -45,9 +45,8 @@ Wedge makeWedge(double degrees, unsigned seed) {
 }
 
 // \param reach how far along its normal a point's own sheet reaches
-// \param residual of the whole cloud, in spacings
 BorderVote voteOn(const Wedge& w, float reach = std::numeric_limits<float>::infinity(),
-                  float h = 0.03F, float residual = 0.F) {
+                  float h = 0.03F) {
   const Neighborhoods table = neighborsOf(w.xyz);
   const std::size_t n = w.xyz.size() / 4;
   const std::vector<float> spacing(n, h);
@@ -60,7 +59,6 @@ BorderVote voteOn(const Wedge& w, float reach = std::numeric_limits<float>::infi
   field.below = below.data();
   field.above = above.data();
   field.reliable = reliable.data();
-  field.residual = residual;
   const std::vector<BorderVote> votes = borderVotes(viewOf(w.xyz), table, field, w.segmentation);
   return votes.size() == 1 ? votes[0] : BorderVote{};
 }
@@ -100,52 +98,6 @@ TEST(BorderVotes, NoiseAcrossASharpCreaseDoesNotCount) {
     for (std::size_t i = 1; i < w.segmentation.signs.size(); i += 2) w.segmentation.signs[i] = -1;
     EXPECT_FLOAT_EQ(voteOn(w).weight, -agree.weight) << degrees;
   }
-}
-
-// What noise makes of the tip: the first points of either face lie in the plane between them, those
-// of the second face before those of the first one, so that they seem to go on as one sheet.
-Wedge withFlatTip(Wedge wedge, double degrees, float width) {
-  const float t = static_cast<float>((M_PI - degrees * M_PI / 180) / 2);
-  const float c = std::cos(t);
-  const float s = std::sin(t);
-  for (std::size_t i = 0; i < wedge.xyz.size(); i += 4) {
-    float* const x = wedge.xyz.data() + i;
-    const float out = std::hypot(x[0], x[2]);
-    if (out > width) continue;
-    const bool first = i % 8 == 0;
-    const float along = first ? 0.5F * (width + out) : 0.5F * out;
-    x[0] = -along * c;
-    x[2] = along * s;
-    float* const n = wedge.normals.data() + i;
-    n[0] = first ? s : -s;
-    n[2] = first ? c : -c;
-  }
-  return wedge;
-}
-
-TEST(BorderVotes, PlanesOverruleTheTipOfAWedgeInNoise) {
-  constexpr float kInfinity = std::numeric_limits<float>::infinity();
-  constexpr float kNoise = 0.2F;
-  for (const double degrees : {125.0, 130.0}) {
-    Wedge w = withFlatTip(makeWedge(degrees, 31), degrees, 0.06F);
-    const BorderVote quiet = voteOn(w);
-    ASSERT_LT(quiet.weight, -0.8F * quiet.absolute) << degrees;
-    const BorderVote noisy = voteOn(w, kInfinity, 0.03F, kNoise);
-    EXPECT_TRUE(noisy.by_planes) << degrees;
-    EXPECT_GT(noisy.unanimity(), 0.8F);
-    EXPECT_GT(noisy.weight, 0.F);
-
-    w.segmentation.segments[1].size = 150;  // no face
-    const BorderVote small = voteOn(w, kInfinity, 0.03F, kNoise);
-    EXPECT_FALSE(small.by_planes) << degrees;
-    EXPECT_EQ(small.weight, quiet.weight);
-  }
-  // Faces that meet at 120 degrees are no wedge.
-  const Wedge corner = withFlatTip(makeWedge(60, 31), 60, 0.08F);
-  ASSERT_LT(voteOn(corner).weight, -0.8F * voteOn(corner).absolute);
-  const BorderVote vote = voteOn(corner, kInfinity, 0.03F, kNoise);
-  EXPECT_FALSE(vote.by_planes);
-  EXPECT_LT(vote.weight, -0.8F * vote.absolute);
 }
 
 // Of what lies one behind the other, such as a picture on a wall, the planes tell nothing.

@@ -9,7 +9,6 @@
 #include "common/threads.h"
 #include "orientation/automatic/border_groups.h"
 #include "orientation/automatic/wide_votes.h"
-#include "orientation/winding/winding_normals.h"
 
 namespace segorient {
 namespace {
@@ -17,12 +16,9 @@ namespace {
 using detail::SheetGroup;
 using detail::Vec3;
 
-// Borders of so many votes, of which fewer than nine of ten agree, are voted on again; in
-// noise others, too.
+// Borders of so many votes, of which fewer than nine of ten agree, are voted on again.
 constexpr std::uint32_t kLong = 16;
 constexpr float kNineOfTen = 0.8F;  // .9 for less .1 against
-// Points on a disc of the radius that wide votes reach (8 spacings): fewer are no face.
-constexpr std::uint32_t kFace = 200;
 
 struct RawVote {
   std::int32_t a, b;
@@ -126,13 +122,6 @@ struct Tally {
   }
 };
 
-bool areFaces(const Segmentation& segmentation, const BorderVote& v) {
-  const auto size = [&](std::int32_t s) {
-    return segmentation.segments[static_cast<std::size_t>(s)].size;
-  };
-  return std::min(size(v.a), size(v.b)) >= kFace;
-}
-
 std::vector<RawVote> castVotes(const Voter& voter, std::size_t n, int threads) {
   // Chunks of a fixed size, joined in order, so that sums do not depend on the number of threads.
   constexpr std::size_t kChunk = 8192;
@@ -190,17 +179,15 @@ std::vector<BorderVote> borderVotes(const PointView& points, const Neighborhoods
       v.wall_counts = walls_count;
       v.count = sheet.count;
       v.where = votes[i + (j - i) / 2].point;
-      const bool agreed = v.unanimity() >= kNineOfTen;
-      if (v.count >= kLong && (!agreed || (field.residual > kNoisy && areFaces(segmentation, v)))) {
+      if (v.count >= kLong && v.unanimity() < kNineOfTen) {
         border.clear();
         for (std::size_t k = i; k < j; ++k) {
           const bool counted = walls_count || !votes[k].wall;
           const bool known = !border.empty() && border.back() == votes[k].point;
           if (counted && !known) border.push_back(votes[k].point);
         }
-        const float again = wide.vote(border, v.a, v.b, agreed);
-        // Votes that were right stay as they are, walls and all.
-        v.by_planes = std::fabs(again) > kNineOfTen && !(agreed && again * v.weight > 0.F);
+        const float again = wide.vote(border, v.a, v.b);
+        v.by_planes = std::fabs(again) > kNineOfTen;
         if (v.by_planes) {
           v.weight = again * v.absolute;
           v.wall = Evidence{};

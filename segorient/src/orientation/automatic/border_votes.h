@@ -62,8 +62,7 @@ struct BorderVote : Evidence {
 /// other are walls, too; see Evidence::letsCount().
 ///
 /// Where the points of a longer border contradict each other, as noise across a sharp crease makes
-/// them, planes of more points on either side of it decide, if these agree. In noise they also
-/// overrule points that agree, where large segments meet at 60 degrees or less.
+/// them, planes of more points on either side of it decide, if these agree.
 ///
 /// \param segmentation with a segment for each label
 /// \param voters one a point: 0 for those that have no vote; null = all vote

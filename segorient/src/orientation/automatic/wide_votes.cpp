@@ -18,8 +18,6 @@ constexpr float kLeastPoints = 24.F;
 constexpr float kHardlyBent = 0.9F;
 // Of planes within 18 degrees of each other one may as well lie behind the other.
 constexpr float kOneBehindTheOther = 0.95F;
-// Faces of a wedge meet at 60 degrees or less.
-constexpr float kWedge = 0.5F;
 // In spacings: what is nearer to a plane is on neither side of it.
 constexpr float kClear = 0.5F;
 // Points that are asked; half of them have to know something.
@@ -32,8 +30,8 @@ bool isBent(const SheetGroup& sum) {
 
 // Where two planes meet, with consistent normals, each is behind the other (a ridge) or before it
 // (a valley). \return by how much in spacings, below 0 if one is behind and one before, 0 if that
-// says nothing, or if wedges_only and the planes meet in no ridge or valley that is acute
-float compareSides(const SheetGroup& a, const SheetGroup& b, bool wedges_only) {
+// says nothing
+float compareSides(const SheetGroup& a, const SheetGroup& b) {
   const float cosine = dot(a.normal, b.normal);
   if (std::fabs(cosine) > kOneBehindTheOther) return 0.F;
   const Vec3 chord{b.mean[0] - a.mean[0], b.mean[1] - a.mean[1], b.mean[2] - a.mean[2]};
@@ -41,9 +39,7 @@ float compareSides(const SheetGroup& a, const SheetGroup& b, bool wedges_only) {
   const float before_b = -dot(b.normal, chord);
   const float least = std::min(std::fabs(before_a), std::fabs(before_b));
   if (!(least >= kClear)) return 0.F;
-  const bool agree = (before_a < 0.F) == (before_b < 0.F);
-  if (wedges_only && (agree ? -cosine : cosine) < kWedge) return 0.F;
-  return agree ? least : -least;
+  return (before_a < 0.F) == (before_b < 0.F) ? least : -least;
 }
 
 }  // namespace
@@ -85,8 +81,7 @@ SheetGroup WideVoter::gather(std::size_t from, std::int32_t label) {
   return group;
 }
 
-float WideVoter::vote(const std::vector<pcl::index_t>& border, std::int32_t a, std::int32_t b,
-                      bool wedges_only) {
+float WideVoter::vote(const std::vector<pcl::index_t>& border, std::int32_t a, std::int32_t b) {
   for (const std::int32_t s : {a, b}) {
     const auto size = segmentation_.segments[static_cast<std::size_t>(s)].size;
     if (static_cast<float>(size) < kLeastPoints) return 0.F;
@@ -105,7 +100,7 @@ float WideVoter::vote(const std::vector<pcl::index_t>& border, std::int32_t a, s
     }
     first.finish();
     second.finish();
-    const float value = compareSides(first, second, wedges_only);
+    const float value = compareSides(first, second);
     if (!(std::fabs(value) < std::numeric_limits<float>::max())) continue;
     sum += value;
     absolute += std::fabs(value);

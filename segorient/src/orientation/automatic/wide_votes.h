@@ -20,12 +20,9 @@ class WideVoter {
             const Segmentation& segmentation);
 
   /// \param border points of segments a and b that have neighbours in the other one
-  /// \param wedges_only whether to count only planes that meet at an acute angle, where the nearest
-  ///        points are wrong most easily
   /// \return above 0 where the two agree as they are, -1 to 1 by how far the points agree with each
   ///         other; 0 where the segments are bent or parallel, or too few points could vote
-  float vote(const std::vector<pcl::index_t>& border, std::int32_t a, std::int32_t b,
-             bool wedges_only);
+  float vote(const std::vector<pcl::index_t>& border, std::int32_t a, std::int32_t b);
 
  private:
   SheetGroup gather(std::size_t from, std::int32_t label);
