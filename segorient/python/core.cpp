@@ -272,6 +272,18 @@ py::dict reportOf(const OrientedCloud& cloud) {
     clusters.append(cluster);
   }
   out["clusters"] = clusters;
+  py::list scales;
+  for (const ScaleEnergy& s : report.scales) {
+    py::dict scale;
+    scale["radius_in_spacings"] = s.radius;
+    scale["outside"] = s.outside;
+    scale["facing"] = s.facing;
+    scale["backs"] = s.backs;
+    scale["energy"] = s.total;
+    scale["taken"] = s.taken;
+    scales.append(scale);
+  }
+  out["scales"] = scales;
   py::list contradictions;
   for (const Contradiction& c : report.contradictions) {
     py::dict contradiction;

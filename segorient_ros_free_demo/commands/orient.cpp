@@ -93,6 +93,21 @@ void addKnownSensors(const PipelineReport& report, const std::array<double, 3>& 
   json.endArray();
 }
 
+void addScales(const PipelineReport& report, JsonWriter& json) {
+  json.beginArray("scales");
+  for (const ScaleEnergy& s : report.scales) {
+    json.beginItem();
+    json.field("radius_in_spacings", s.radius);
+    json.field("outside", s.outside);
+    json.field("facing", s.facing);
+    json.field("backs", s.backs);
+    json.field("energy", s.total);
+    json.field("taken", s.taken);
+    json.endObject();
+  }
+  json.endArray();
+}
+
 void addSegments(const OrientedCloud& cloud, JsonWriter& json) {
   json.beginArray("segments");
   for (std::size_t i = 0; i < cloud.segments.size(); ++i) {
@@ -166,6 +181,7 @@ std::string reportText(const OrientedCloud& cloud, const StageMemory& memory,
     json.endObject();
   }
   json.endArray();
+  addScales(report, json);
   addKnownSensors(report, origin, json);
   addTo(json, report.sensors, origin);
   addSegments(cloud, json);

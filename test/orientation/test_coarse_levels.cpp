@@ -111,6 +111,25 @@ TEST(CoarseLevels, AreWhatMakesThemOne) {
   EXPECT_EQ(points, cloud.size());
 }
 
+// The own scale first; the one that is taken has the least of all, and a tenth less than that.
+TEST(CoarseLevels, ReportTheEnergyOfEachScale) {
+  const std::vector<ScaleEnergy> scales = orient(twoScans(6000, 1.0, 1).xyz).report.scales;
+  ASSERT_GE(scales.size(), 2U);
+  EXPECT_EQ(scales[0].radius, 0.F);
+  EXPECT_FALSE(scales[0].taken);
+  const auto taken =
+      std::find_if(scales.begin(), scales.end(), [](const ScaleEnergy& s) { return s.taken; });
+  ASSERT_NE(taken, scales.end());
+  for (const ScaleEnergy& s : scales) {
+    EXPECT_FLOAT_EQ(s.total, s.outside + 3.F * s.facing);
+    EXPECT_GE(s.total, taken->total);
+  }
+  EXPECT_LT(taken->total, 0.9F * scales[0].total);
+  EXPECT_EQ(
+      std::count_if(scales.begin(), scales.end(), [](const ScaleEnergy& s) { return s.taken; }), 1);
+  EXPECT_TRUE(orient(twoScans(6000, 0.0, 1).xyz).report.scales.empty());
+}
+
 // What is known of single points holds at every scale.
 TEST(CoarseLevels, FollowAViewpoint) {
   const Cloud cloud = twoScans(6000, 1.0, 1);

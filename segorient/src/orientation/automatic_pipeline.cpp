@@ -96,6 +96,7 @@ void runAutomatic(const PointView& points, const PipelineOptions& options, Stage
   report.noise = result.noise;
   report.denoised = result.denoised;
   report.normals_chosen = sheetChoice(result);
+  report.scales = std::move(result.scales);
   report.contradictions = std::move(result.orientation.contradictions);
   report.clusters = std::move(result.orientation.clusters);
   report.known_sensors = std::move(refused);

@@ -65,6 +65,17 @@ struct Contradiction {
   std::array<float, 3> where{0.F, 0.F, 0.F};  ///< a point of the border
 };
 
+/// What speaks against the signs that a scale found, as shares of the surface: see the part
+/// "Scans that do not quite fit" of the page about orientation.
+struct ScaleEnergy {
+  float radius = 0.F;   ///< no two points of the subset are nearer, in spacings; 0 = all points
+  float outside = 0.F;  ///< of closed surface in front of points, where nothing should be
+  float facing = 0.F;   ///< pairs of neighbours that face each other
+  float backs = 0.F;    ///< pairs with their backs to each other, as on thin walls; costs nothing
+  float total = 0.F;    ///< outside + 3 facing: the least is best
+  bool taken = false;
+};
+
 /// Segments that certain borders hold together: their relative orientation was not in doubt, but
 /// for single ones that the winding number of a clean closed surface has turned over.
 struct ClusterOrientationResult {

@@ -121,7 +121,10 @@ struct PipelineReport {
   /// sides has some.
   std::vector<Contradiction> contradictions;
   std::vector<ClusterOrientationResult> clusters;  ///< of AUTO
-  std::vector<KnownSensor> known_sensors;          ///< of AUTO: what became of known sensors
+  /// Of AUTO: the scales that were compared, the points' own first; empty where no other was tried,
+  /// as the points do not contradict each other or their sensors decide.
+  std::vector<ScaleEnergy> scales;
+  std::vector<KnownSensor> known_sensors;  ///< of AUTO: what became of known sensors
   /// What AUTO found where no sensor was given; empty otherwise. sensor_of is by input row, and
   /// empty where no sensor was found.
   SensorReport sensors;

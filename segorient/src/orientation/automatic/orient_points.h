@@ -38,10 +38,11 @@ struct AutoNormals {
   AutoOrientation orientation;  ///< of the sheets' segments
   /// Whether a point's sensor decided its side; empty where no sensor is known.
   std::vector<std::uint8_t> by_sensor;
-  float spacing = 0.F;       ///< median
-  float level = 0.F;         ///< see followCoarserLevels()
-  SheetTraits sheets;        ///< of the cloud
-  SheetTraits level_sheets;  ///< of the level's subset, where there is one
+  float spacing = 0.F;              ///< median
+  float level = 0.F;                ///< see followCoarserLevels()
+  std::vector<ScaleEnergy> scales;  ///< see PipelineReport
+  SheetTraits sheets;               ///< of the cloud
+  SheetTraits level_sheets;         ///< of the level's subset, where there is one
 };
 
 /// What fitFinalNormals() measures of a whole cloud; for a part of one it is told.

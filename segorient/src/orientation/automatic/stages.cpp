@@ -143,6 +143,7 @@ AutoStages runAutoStages(PreparedCloud& cloud, const PipelineOptions& options,
   out.orientation = std::move(oriented.orientation);
   out.spacing = oriented.spacing;
   out.level = oriented.level;
+  out.scales = std::move(oriented.scales);
   out.sheets = oriented.sheets;
   out.level_sheets = oriented.level_sheets;
   if (record != nullptr) record->smoothed = std::move(smoothed);

@@ -22,12 +22,13 @@ struct AutoStages {
   std::vector<SegmentOrientationResult> segments;  ///< by label of `segmentation`
   AutoOrientation orientation;                     ///< of the sheets' segments
   int k = 0;
-  float spacing = 0.F;       ///< median
-  float noise = 0.F;         ///< see NoiseLevel::fine
-  bool denoised = false;     ///< whether positions were smoothed first
-  float level = 0.F;         ///< see AutoNormals::level
-  SheetTraits sheets;        ///< of the cloud, as measured or as told
-  SheetTraits level_sheets;  ///< of the level's subset
+  float spacing = 0.F;              ///< median
+  float noise = 0.F;                ///< see NoiseLevel::fine
+  bool denoised = false;            ///< whether positions were smoothed first
+  float level = 0.F;                ///< see AutoNormals::level
+  std::vector<ScaleEnergy> scales;  ///< see PipelineReport
+  SheetTraits sheets;               ///< of the cloud, as measured or as told
+  SheetTraits level_sheets;         ///< of the level's subset
   FinalTraits final_traits;
 };
 
