@@ -189,6 +189,28 @@ TEST(KnownSensors, OneViewpointDoesNotTurnTheFarSideOfAMergedSolid) {
   EXPECT_GT(cloud.report.known_sensors[0].hidden, 0.1F);
 }
 
+TEST(KnownSensors, OnePlaceGivesWayToSensorsThatAreFoundElsewhere) {
+  const Scans scans = room({1.1, 0.9, 1.4});
+  const OrientedCloud free = orient(scans.xyz, {});
+  for (const Vector& place :
+       {Vector{8.0, 2.0, 1.0}, Vector{2.0, 1.5, -9.0}, Vector{2.5, 1.5, 0.4}}) {
+    const OrientedCloud cloud = orient(scans.xyz, seenFrom(place));
+    EXPECT_GE(shareOutward(cloud.normals, scans.normals),
+              shareOutward(free.normals, scans.normals) - 0.01);
+    ASSERT_FALSE(cloud.report.known_sensors.empty());
+    EXPECT_FALSE(cloud.report.known_sensors[0].used) << place[0] << " " << place[2];
+  }
+}
+
+TEST(KnownSensors, APlaceThatIsNoPlaceIsReportedAndHidesNoneThatIsFound) {
+  const Scans scans = room({1.1, 0.9, 1.4});
+  const OrientedCloud cloud =
+      orient(scans.xyz, seenFrom({std::numeric_limits<double>::quiet_NaN(), 0.0, 0.0}));
+  EXPECT_EQ(cloud.normals, orient(scans.xyz, {}).normals);
+  ASSERT_FALSE(cloud.report.known_sensors.empty());
+  EXPECT_FALSE(cloud.report.known_sensors[0].used);
+}
+
 TEST(KnownSensors, PointsWithoutOneFollowTheSurfaceAround) {
   const Scans scans = room({1.1, 0.9, 1.4});
   OrientationHints hints = eachItsOwn(scans);

@@ -38,8 +38,18 @@ const OrientationHints& givenHints(const PipelineOptions& options) {
   return options.orientation.hints ? *options.orientation.hints : kNone;
 }
 
+// One place for all points that nothing was turned to.
+KnownSensor refusedPlace(const std::array<float, 3>& place, const PreparedCloud& cloud) {
+  KnownSensor out;
+  for (std::size_t a = 0; a < 3; ++a) out.position[a] = place[a] / cloud.unit();
+  out.points = cloud.size();
+  out.used = false;
+  return out;
+}
+
 // What the caller knows, and where nothing is known of sensors, what can be found. One place for
-// all points may be a guess of whoever gives it: densities that tell it for sure know better.
+// all points may be a guess of whoever gives it: sensors that densities tell for sure are followed,
+// unless they are in that place, too.
 PointHints findHints(const PointView& points, const PipelineOptions& options, PreparedCloud& cloud,
                      PipelineReport& report) {
   const OrientationHints& given = givenHints(options);
@@ -48,18 +58,15 @@ PointHints findHints(const PointView& points, const PipelineOptions& options, Pr
   if (!options.orientation.automatic.find_sensors || !lacksSensors(found)) {
     return resolveHints(given, cloud);
   }
-  if (place) found.suggested.push_back(*place);
+  const bool is_place = place && isFinite(place->data());
+  if (is_place) found.suggested.push_back(*place);
   SensorReport sensors = addFoundSensors(points, cloud, options.threads, found);
-  if (place && !contradictsPlace(points, sensors, *place)) {
-    return resolveHints(given, cloud);
+  if (is_place && !contradictsPlace(points, sensors, *place)) {
+    PointHints known = resolveHints(given, cloud);
+    known.place_found = sensors.sure() && !sensors.sensors[0].suggested;
+    return known;
   }
-  if (place) {
-    KnownSensor refused;
-    for (std::size_t a = 0; a < 3; ++a) refused.position[a] = (*place)[a] / cloud.unit();
-    refused.points = static_cast<std::uint32_t>(cloud.size());
-    refused.used = false;
-    report.known_sensors.push_back(refused);
-  }
+  if (place) report.known_sensors.push_back(refusedPlace(*place, cloud));
   report.sensors = std::move(sensors);
   if (report.sensors.sensors.empty()) report.sensors.sensor_of = {};
   return resolveHints(found, cloud);

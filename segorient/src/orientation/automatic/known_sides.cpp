@@ -10,15 +10,33 @@
 namespace segorient::detail {
 namespace {
 
+// As kMostContrary of scans: of votes within sheets, against what most of their sheet says. True
+// places leave .007 of them and less; on open surfaces wrong ones leave .011 and more.
+constexpr float kMostSplit = 0.01F;
+
+// How far one place sees smooth sheets from both sides, which no sensor does: share of the votes
+// against their own segment. \param own components that do not ask it
+float splitOf(const SheetSigns& sheets, const std::vector<Ballot>& ballots,
+              const std::vector<bool>& own) {
+  float agreed = 0.F;
+  float total = 0.F;
+  for (std::size_t s = 0; s < ballots.size(); ++s) {
+    if (own[at(sheets.component_of[s])]) continue;
+    agreed += std::fabs(ballots[s].balance);
+    total += ballots[s].total;
+  }
+  return total > 0.F ? 0.5F * (1.F - agreed / total) : 0.F;
+}
+
 // One place for all points may be wrong as a whole, inside a solid, or have seen one side of it
 // only. Unless its density says that all was seen from there, what closes in itself knows better:
-// it keeps its outside if that faces the place, and if its points are spread as evenly as no sensor
-// spreads them.
-void keepClosedFromSensors(SheetSigns& sheets, const std::vector<Ballot>& ballots) {
+// it keeps its outside if that faces the place, or if the place is doubtful. A doubtful place that
+// sees the rest from both sides is dropped.
+void weighOnePlace(SheetSigns& sheets, const std::vector<Ballot>& ballots) {
   const bool told_closed = sheets.hints.surface == SurfaceKind::CLOSED;
   if (!sheets.sensors.one_place || !sheets.sensors.scans[0].used) return;
   if (sheets.hints.surface == SurfaceKind::OPEN) return;
-  if (sheets.sensors.scans[0].density < kConfirmed && !told_closed) return;
+  if (sheets.sensors.confirmed && !told_closed) return;
   std::vector<Ballot> by_component(sheets.windings.size());
   for (std::size_t s = 0; s < sheets.signs.size(); ++s) {
     by_component[at(sheets.component_of[s])].add(ballots[s], sheets.signs[s]);
@@ -27,7 +45,7 @@ void keepClosedFromSensors(SheetSigns& sheets, const std::vector<Ballot>& ballot
   std::size_t believed = 0;
   for (std::size_t c = 0; c < own.size(); ++c) {
     const bool contrary = by_component[c].share() < -kClearly;
-    const bool keeps = told_closed || !contrary || sheets.sensors.even;
+    const bool keeps = told_closed || !contrary || sheets.sensors.doubtful;
     own[c] = keeps && sheets.isClosed(c, kOpenResidual);
     if (!own[c] || !contrary) believed += sheets.found.result.components[c].points;
   }
@@ -40,6 +58,11 @@ void keepClosedFromSensors(SheetSigns& sheets, const std::vector<Ballot>& ballot
   KnownSensor& report = sheets.sensors.scans[0];
   report.used = 2 * believed > sheets.cloud_points;
   if (!report.used) report.seen = 0;
+  if (!sheets.sensors.doubtful) return;
+  report.contrary = splitOf(sheets, ballots, own);
+  if (report.contrary <= kMostSplit) return;
+  sheets.sensors.drop(0);
+  sheets.facing.assign(sheets.points.size, 0.F);
 }
 
 }  // namespace
@@ -51,6 +74,10 @@ void followHints(SheetSigns& sheets) {
     by_cluster[at(sheets.clusters.of(s))].add(sheets.hint_votes[s], sheets.signs[s]);
     component_of[at(sheets.clusters.of(s))] = sheets.component_of[s];
   }
+  // What hides points from a doubtful place goes on behind them, as closed surfaces do.
+  const KnownSensors& known_sensors = sheets.sensors;
+  const bool hides = known_sensors.doubtful && known_sensors.scans[0].hidden > kFewHidden;
+  const float residual = hides ? kOpenResidual : kClosedResidual;
   sheets.hinted.assign(sheets.clusters.size(), false);
   std::vector<Ballot> seen(sheets.clusters.size());
   std::vector<Ballot> known(sheets.clusters.size());
@@ -60,7 +87,7 @@ void followHints(SheetSigns& sheets) {
     if (v.seeds.total > 0.F || v.directions.total > 0.F) {
       known[c] = v.seeds.total > 0.F ? v.seeds : v.directions;
       sheets.hinted[c] = true;
-    } else if (!sheets.isClosed(at(component_of[c]), kClosedResidual)) {
+    } else if (!sheets.isClosed(at(component_of[c]), residual)) {
       seen[c] = v.view;
     }
   }
@@ -70,7 +97,7 @@ void followHints(SheetSigns& sheets) {
 
 void followSensors(SheetSigns& sheets) {
   sheets.facing = facingOf(sheets.field, sheets.points.size, sheets.sensors);
-  keepClosedFromSensors(sheets, facingBySegment(sheets.facing, sheets.segmentation));
+  weighOnePlace(sheets, facingBySegment(sheets.facing, sheets.segmentation));
   const std::vector<Ballot> ballots = facingBySegment(sheets.facing, sheets.segmentation);
   const std::vector<bool> decided =
       turnToSensors(ballots, sheets.votes, sheets.segmentation, sheets.clusterOf(),

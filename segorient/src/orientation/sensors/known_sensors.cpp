@@ -25,10 +25,9 @@ constexpr std::uint32_t kLeastPoints = 200;
 constexpr float kMostHidden = 0.1F;
 constexpr float kMostContrary = 0.01F;
 // A density that varies, as thinning would not leave it, and far from as the sensor would have it:
-// then fewer hidden points are enough.
+// then kFewHidden are enough.
 constexpr float kDenied = 1.3F;
 constexpr float kVaries = 0.3F;
-constexpr float kFewHidden = 0.02F;
 
 bool isKnown(const float* place) {
   return std::isfinite(place[0]) && std::isfinite(place[1]) && std::isfinite(place[2]);
@@ -66,6 +65,7 @@ class Finder {
     if (hints.has_viewpoint) fillIn(hints.viewpoint, sensors);
     if (sensors.empty()) return {};
     out_.common = hints.has_viewpoint && hints.sensors.empty();
+    place_found_ = hints.place_found;
     listScans(sensors);
     if (out_.scans.empty()) return {};
     out_.one_place = out_.scans.size() == 1 && !out_.scans[0].moving;
@@ -160,14 +160,19 @@ class Finder {
       return static_cast<float>(count) / static_cast<float>(flags.size());
     };
     report.hidden = share(hidden);
-    if (report.density < kConfirmed) return;
+    // Of what was not seen from one place, the part nearest to it may have such a density, too.
+    const bool hides = report.hidden > kMostHidden;
+    if (report.density < kConfirmed && !(out_.common && hides && !place_found_)) {
+      out_.confirmed = out_.one_place;
+      return;
+    }
     const bool denied =
         report.density > kDenied && density.constant > kVaries && std::isfinite(report.density);
     denied_[s] = denied ? 1 : 0;
-    if (out_.one_place) out_.even = density.constant < kVaries;
+    if (out_.one_place) out_.doubtful = hides || denied || density.constant < kVaries;
     if (out_.common) {
-      if (report.hidden > kMostHidden) keepVisible(rows, scan.hidden(true));
-    } else if (report.hidden > kMostHidden || (denied && report.hidden > kFewHidden)) {
+      if (hides) keepVisible(rows, scan.hidden(true));
+    } else if (hides || (denied && report.hidden > kFewHidden)) {
       report.used = false;
     }
   }
@@ -241,6 +246,7 @@ class Finder {
   const Neighborhoods& nb_;
   const float* spacing_;
   int threads_;
+  bool place_found_ = false;
   std::vector<std::uint8_t>
       denied_;  // by scan: its density is far from what its sensor would leave
   KnownSensors out_;

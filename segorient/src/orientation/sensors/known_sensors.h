@@ -16,6 +16,8 @@ namespace segorient::detail {
 
 /// Up to this KnownSensor::density the sensor was there: elsewhere it is .7 and more.
 constexpr float kConfirmed = 0.7F;
+/// With fewer points hidden, by KnownSensor::hidden, a place could have seen all of them.
+constexpr float kFewHidden = 0.02F;
 
 /// Where each point was seen from, as far as that is known and not contradicted.
 struct KnownSensors {
@@ -27,8 +29,11 @@ struct KnownSensors {
   bool common = false;
   /// All points have been told the same place, whether as theirs or as the common one.
   bool one_place = false;
-  /// Of that place: points are spread evenly, as no sensor spreads them.
-  bool even = false;
+  /// Of that place: the density of the points shows that it saw them, and nothing that it did not
+  /// see some of them.
+  bool confirmed = false;
+  /// Of that place: there is evidence that it did not see all points, or none that it could have.
+  bool doubtful = false;
 
   bool none() const { return toward.empty(); }
   const float* of(std::size_t point) const { return &toward[3 * point]; }

@@ -23,6 +23,8 @@ struct PointHints {
   SurfaceKind surface = SurfaceKind::UNKNOWN;
   bool has_viewpoint = false;
   std::array<float, 3> viewpoint{0.F, 0.F, 0.F};
+  /// Whether a search for sensors came to the one place for all points, too, by itself.
+  bool place_found = false;
   /// 3 floats a point: where it was seen from, NaN = unknown; empty = none
   std::vector<float> sensors;
   /// 3 floats a point: sum of the unit vectors that its normal is said to point along; empty = none

@@ -28,8 +28,8 @@ OrientationHints withoutPlaces(const OrientationHints& hints);
 /// The place that all points are said to have been seen from, if that is one.
 std::optional<std::array<float, 3>> onlyPlace(const OrientationHints& hints);
 
-/// Whether the sensors that were found for sure are on another side of the points than a place that
-/// somebody gave for all of them.
+/// Whether sensors were found for sure, and some of them elsewhere than the place that somebody
+/// gave for all points, as seen from the points.
 bool contradictsPlace(const PointView& points, const SensorReport& report,
                       const std::array<float, 3>& place);
 
