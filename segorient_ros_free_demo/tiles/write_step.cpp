@@ -85,7 +85,8 @@ class Results {
   std::vector<std::unique_ptr<RowReader>> rows_;
 };
 
-// Calls visit(block) for each block of the points of an output, and end() behind each chunk.
+// Calls visit(block), which may take it over, for each block of the points of an output, and end()
+// behind each chunk.
 template <typename Visit, typename End>
 void forEachBlock(const Plan& plan, const PlanOutput& output, const Visit& visit, const End& end) {
   const Trajectory trajectory = trajectoryOf(plan);
@@ -94,8 +95,8 @@ void forEachBlock(const Plan& plan, const PlanOutput& output, const Visit& visit
     PlannedInput stream(plan, plan.inputs[i], trajectory);
     CloudTable block;
     while (stream.next(block, restOfChunk(plan, done))) {
-      visit(block);
       done += block.size;
+      visit(block);
       if (done % plan.chunk_rows == 0) end();
     }
   }
@@ -155,9 +156,9 @@ void writeStep(const Plan& plan, const std::string& folder, std::size_t output, 
   std::uint64_t written = 0;
   forEachBlock(
       plan, to,
-      [&](const CloudTable& block) {
-        chunk.push_back(block);
+      [&](CloudTable& block) {
         rows += block.size;
+        chunk.push_back(std::move(block));
       },
       [&] {
         results.take(chunk, rows);

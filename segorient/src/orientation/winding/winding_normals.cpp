@@ -16,6 +16,10 @@ namespace {
 
 constexpr float kHuge = std::numeric_limits<float>::max();
 constexpr float kNothingToMend = 0.97F;  // confidence from which on there is nothing to mend
+// Median residual, in spacings, above which it is noise: curvature alone leaves some hundredths.
+// Noise makes the planes in the tip of a wedge lie between its faces, where they agree with each
+// other, wrongly; below, the planes near an edge are of one face each.
+constexpr float kNoisy = 0.1F;
 
 std::vector<std::uint32_t> listDoubtful(const std::vector<float>& spacing,
                                         const FilteredNormals& filtered) {

@@ -11,11 +11,6 @@
 
 namespace segorient {
 
-/// Median residual, in spacings, above which it is noise: curvature alone leaves some hundredths.
-/// Noise makes the planes in the tip of a wedge lie between its faces, where they agree with each
-/// other, wrongly; below, the planes near an edge are of one face each.
-constexpr float kNoisy = 0.1F;
-
 /// Normals from the winding-number field, where noise leaves several possible.
 ///
 /// Planes that were fitted to noisy points near an edge mix its two faces, and whichever of their
