@@ -225,6 +225,7 @@ void speed(std::size_t n) {
   for (const auto& [name, faces] : {solids()[0], solids()[5]}) {
     const LabelledCloud raw = sample(name, faces, n, 7);
     const CompactCloud cloud = compactCloud(viewOf(raw.xyz), nullptr, 1);
+    const std::vector<float> xyz(cloud.xyz.begin(), cloud.xyz.end());
     for (const int k : {10, 15}) {
       std::vector<double> search_times;
       std::vector<double> times;
@@ -234,9 +235,9 @@ void speed(std::size_t n) {
       options.threads = 1;
       for (int run = 0; run < 5; ++run) {
         double seconds = 0;
-        const Neighborhoods table = search(cloud.xyz, k, &seconds);
+        const Neighborhoods table = search(xyz, k, &seconds);
         search_times.push_back(seconds);
-        normals = planeNormals(cloud.xyz, table, k);
+        normals = planeNormals(xyz, table, k);
         const double start = cpuSeconds();
         const Segmentation s = segmentByNormals(cloud.view(), normalsOf(normals), table, options);
         times.push_back(cpuSeconds() - start);
@@ -246,7 +247,7 @@ void speed(std::size_t n) {
         face_times.push_back(cpuSeconds() - again);
       }
       double theirs = 0;
-      regionGrowing(toPcl(cloud.xyz, normals), k, 8, 0.05, &theirs);
+      regionGrowing(toPcl(xyz, normals), k, 8, 0.05, &theirs);
       const double search_time = medianOf(search_times);
       const double time = medianOf(face_times);
       std::printf(
@@ -436,8 +437,9 @@ void file(const std::string& name, FileSums& sums) {
   if ((ply ? pcl::io::loadPLYFile(name, cloud) : pcl::io::loadPCDFile(name, cloud)) < 0) return;
   const CloudPoints<pcl::PointXYZ> points(cloud);
   const CompactCloud compact = compactCloud(points.view());
-  const std::vector<float> normals = planeNormals(compact.xyz, search(compact.xyz, 12), 12);
-  const CloudSegmentation result = segment(compact.xyz, normals, 12);
+  const std::vector<float> xyz(compact.xyz.begin(), compact.xyz.end());
+  const std::vector<float> normals = planeNormals(xyz, search(xyz, 12), 12);
+  const CloudSegmentation result = segment(xyz, normals, 12);
   const Segmentation& s = result.segmentation();
   const auto regular = regularLabels(s);
   const auto covered = std::count_if(regular.begin(), regular.end(), [](int l) { return l >= 0; });
