@@ -67,7 +67,7 @@ void savePlan(const Plan& plan, const std::string& folder) {
   for (const PlanInput& in : plan.inputs) {
     file.text(in.path);
     file.text(in.streamed);
-    for (const std::uint64_t v : {in.bytes, in.head, in.first_row, in.rows, in.first_scan}) {
+    for (const std::uint64_t v : {in.bytes, in.head, in.first_row, in.rows}) {
       file.value(v);
     }
     file.value(in.time);
@@ -96,7 +96,7 @@ Plan loadPlan(const std::string& folder) {
     PlanInput in;
     in.path = file.text();
     in.streamed = file.text();
-    for (std::uint64_t* v : {&in.bytes, &in.head, &in.first_row, &in.rows, &in.first_scan}) {
+    for (std::uint64_t* v : {&in.bytes, &in.head, &in.first_row, &in.rows}) {
       *v = file.value<std::uint64_t>();
     }
     in.time = file.value<std::int64_t>();

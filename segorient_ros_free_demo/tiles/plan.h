@@ -47,7 +47,6 @@ struct PlanInput {
   std::uint64_t head = 0;  ///< checksum of its first bytes
   std::uint64_t first_row = 0;
   std::uint64_t rows = 0;
-  std::uint64_t first_scan = 0;  ///< in a field of the joint output
 };
 
 /// A file that is written: the results of some inputs.
@@ -106,11 +105,6 @@ using StepProgress = std::function<void(double)>;
 
 Plan loadPlan(const std::string& folder);
 void savePlan(const Plan& plan, const std::string& folder);
-
-/// How many rows of an output may follow its first `done` ones in the same chunk.
-inline std::uint64_t restOfChunk(const Plan& plan, std::uint64_t done) {
-  return plan.chunk_rows - done % plan.chunk_rows;
-}
 
 /// A finite place as tiles have it: its owner is the tile of that.
 std::array<double, 3> storedPlace(const Plan& plan, const std::array<double, 3>& place);

@@ -29,15 +29,32 @@ class Probe {
 
   Probe(const std::vector<Place>& sample, double points_each, const Place& origin)
       : tree_(sample, points_each, kPart), origin_(origin), chosen_(tree_.tiles(), 0) {
-    const std::size_t parts = std::min(tree_.tiles(), kParts);
-    for (std::size_t p = 0; p < parts; ++p) chosen_[p * tree_.tiles() / parts] = 1;
+    const std::vector<TileTree::Box> tiles = tree_.tileBoxes();
+    std::vector<TileTree::Box> parts;
+    for (std::size_t p = 0; p < std::min(tiles.size(), kParts); ++p) {
+      parts.push_back(tiles[p * tiles.size() / std::min(tiles.size(), kParts)]);
+      chosen_[parts.back().tile] = 1;
+    }
+    const std::vector<TileTree::Node>& nodes = tree_.nodes();
+    is_near_.assign(nodes.size(), 0);
+    for (const TileTree::Box& cell : tree_.cells()) {
+      const auto isNear = [&](const TileTree::Box& part) {
+        return part.tile == cell.tile || cell.isWithin(part, nodes[cell.node].reach);
+      };
+      is_near_[cell.node] = std::any_of(parts.begin(), parts.end(), isNear) ? 1 : 0;
+    }
+    for (std::size_t n = nodes.size(); n-- > 0;) {  // halves come behind their node
+      if (nodes[n].axis >= 0) is_near_[n] = is_near_[n + 1] | is_near_[nodes[n].upper];
+    }
   }
   /// \param seen_from relative to the origin; null where no point carries that
   void add(const Place& place, const float* seen_from) {
-    double reach = 0.0;
-    bool wanted = chosen_[tree_.owner(place, reach)] != 0;
-    if (!wanted)
-      tree_.forEachWithin(place, reach, [&](auto t, double) { wanted |= chosen_[t] != 0; });
+    std::uint32_t n = 0;
+    while (is_near_[n] != 0 && tree_.nodes()[n].axis >= 0) n = tree_.halfOf(n, place);
+    if (is_near_[n] == 0) return;
+    bool wanted = false;
+    tree_.forEachWithin(place, tree_.nodes()[n].reach,
+                        [&](auto t, double) { wanted |= chosen_[t] != 0; });
     if (!wanted) return;
     const std::array<float, 3> p = near(place, origin_);
     points_.insert(points_.end(), p.begin(), p.end());
@@ -53,7 +70,8 @@ class Probe {
   static constexpr std::size_t kParts = 26;
   TileTree tree_;
   Place origin_;
-  std::vector<std::uint8_t> chosen_;
+  std::vector<std::uint8_t> chosen_;   // by tile of the tree
+  std::vector<std::uint8_t> is_near_;  // by node: whether some of it may be of a part
   std::vector<float> points_;
   std::vector<float> viewpoints_;
 };

@@ -27,40 +27,6 @@ bool isFinite(const Place& p) {
   return std::isfinite(p[0]) && std::isfinite(p[1]) && std::isfinite(p[2]);
 }
 
-// Calls visit(row, place, block, row in block) for all points of all inputs, begin(block) for the
-// first of each input, and end(output) behind each chunk. Numbers their scans.
-template <typename Begin, typename Visit, typename End>
-void forEachPoint(const StepProgress& progress, double from, double to, const Begin& begin,
-                  const Visit& visit, const End& end, Plan& plan) {
-  const Trajectory trajectory = trajectoryOf(plan);
-  std::uint64_t scans = 0;
-  std::uint64_t done = 0;  // rows of the output
-  std::uint32_t output = 0;
-  for (std::size_t i = 0; i < plan.inputs.size(); ++i) {
-    PlanInput& in = plan.inputs[i];
-    if (output + 1 < plan.outputs.size() && i == plan.outputs[output + 1].first_input) {
-      end(output++);
-      done = 0;
-    }
-    in.first_scan = scans;
-    PlannedInput stream(plan, in, trajectory);
-    CloudTable block;
-    std::uint64_t row = in.first_row;
-    while (stream.next(block, restOfChunk(plan, done))) {
-      if (row == in.first_row) begin(block);
-      const auto xyz = block.xyz();
-      for (std::size_t j = 0; j < block.size; ++j) visit(row++, block.triple(xyz, j), block, j);
-      done += block.size;
-      if (done % plan.chunk_rows == 0) end(output);
-      if (progress) {
-        progress(from + (to - from) * static_cast<double>(row) / static_cast<double>(plan.rows));
-      }
-    }
-    scans += stream.scans();
-  }
-  end(output);
-}
-
 // Draws a sample of all inputs: of those that are small enough all points are looked at, of others
 // some of each of many pages from all over them, by no pattern that a file could have, too. Those
 // of a page may lie side by side: few of them, so that what is measured between points of the
@@ -151,34 +117,40 @@ double roundingStep(const TileTree& tree) {
 void distribute(const std::string& folder, const StepProgress& progress, const PlanSensors& sensors,
                 Probe& probe, Plan& plan) {
   PointFiles files(folder, plan.run, plan.tree, {plan.has_viewpoints, plan.keep_orientation});
-  plan.tile_points.assign(plan.tree.tiles(), 0);
   Viewpoints viewpoints(sensors);
   plan.step = roundingStep(plan.tree);
-  forEachPoint(
-      progress, 0.4, 0.95, [&](const CloudTable& block) { viewpoints.begin(block); },
-      [&](std::uint64_t row, const Place& place, const CloudTable& block, std::size_t i) {
-        if (!isFinite(place)) return;
+  const Trajectory trajectory = trajectoryOf(plan);
+  std::uint64_t row = 0;
+  for (std::uint32_t o = 0; o < plan.outputs.size(); ++o) {
+    const auto visit = [&](CloudTable& block) {
+      viewpoints.begin(block);
+      const auto xyz = block.xyz();
+      for (std::size_t i = 0; i < block.size; ++i, ++row) {
+        const Place place = block.triple(xyz, i);
+        if (!isFinite(place)) continue;
         StoredPoint point;
         point.place = storedPlace(plan, place);
+        point.cell = plan.tree.cellOf(point.place);
         if (plan.has_viewpoints) {
           point.seen_from = viewpoints.of(block, i, row, place, plan.origin);
         }
-        probe.add(point.place, plan.has_viewpoints ? point.seen_from.data() : nullptr);
-        double reach = 0.0;
-        const std::uint32_t owner = plan.tree.owner(point.place, reach);
-        point.cell = plan.tree.cellOf(point.place);
-        ++plan.tile_points[owner];
-        ++plan.finite;
         if (plan.keep_orientation) {
           point.normal = near(block.triple(block.normals(), i), {0.0, 0.0, 0.0});
         }
+        probe.add(point.place, plan.has_viewpoints ? point.seen_from.data() : nullptr);
         files.add(point);
-      },
-      [&](std::uint32_t output) { files.endChunk(output); }, plan);
+        ++plan.finite;
+      }
+      if (progress) {
+        progress(0.4 + 0.55 * static_cast<double>(row) / static_cast<double>(plan.rows));
+      }
+    };
+    forEachBlock(plan, plan.outputs[o], trajectory, visit, [&] { files.endChunk(o); });
+  }
   if (plan.finite == 0) {
     throw FileError(plan.inputs[0].path, "has no point with finite coordinates");
   }
-  files.commit();
+  plan.tile_points = files.commit();
 }
 
 // What takes a quarter of the memory: a point as it is stored and its place in the order, and in

@@ -8,6 +8,7 @@
 #include <limits>
 #include <vector>
 
+#include "io/cloud_stream.h"
 #include "io/readers.h"
 #include "support/hint_options.h"
 
@@ -16,22 +17,43 @@ namespace {
 
 constexpr double kMostScan = 2147483647.0;
 
-}  // namespace
+// The points of one input.
+class InputBlocks {
+ public:
+  // \param first_scan its number among those of all inputs
+  InputBlocks(const Plan& plan, const PlanInput& input, const Trajectory& trajectory,
+              std::uint64_t first_scan)
+      : plan_(plan),
+        input_(input),
+        trajectory_(trajectory),
+        first_scan_(first_scan),
+        stream_(input.streamed) {}
 
-PlannedInput::PlannedInput(const Plan& plan, const PlanInput& input, const Trajectory& trajectory)
-    : plan_(plan), input_(input), trajectory_(trajectory), stream_(input.streamed) {}
+  bool next(CloudTable& block, std::uint64_t most) {
+    constexpr std::uint64_t kBlock = std::uint64_t{1} << 16;
+    if (!stream_.next(read_, static_cast<std::size_t>(std::min(kBlock, most)))) return false;
+    block = read_;
+    if (plan_.adds_scans) addScan(block);
+    if (trajectory_.size() > 0) addViewpoints(trajectory_, input_.path, block);
+    return true;
+  }
+  // How many scans the blocks so far are of.
+  std::uint64_t scans() const { return scans_; }
 
-bool PlannedInput::next(CloudTable& block, std::uint64_t most) {
-  constexpr std::uint64_t kBlock = std::uint64_t{1} << 16;
-  if (!stream_.next(read_, static_cast<std::size_t>(std::min(kBlock, most)))) return false;
-  block = read_;
-  if (plan_.adds_scans) addScan(block);
-  if (trajectory_.size() > 0) addViewpoints(trajectory_, input_.path, block);
-  return true;
-}
+ private:
+  void addScan(CloudTable& block);
+
+  const Plan& plan_;
+  const PlanInput& input_;
+  const Trajectory& trajectory_;
+  std::uint64_t first_scan_;
+  CloudStream stream_;
+  CloudTable read_;
+  std::uint64_t scans_ = 1;
+};
 
 // As joinClouds() does: fields of the input's own sensors stay what they are.
-void PlannedInput::addScan(CloudTable& block) {
+void InputBlocks::addScan(CloudTable& block) {
   std::vector<Field> added{{"scan", 'U', 4, 1, 0}};
   const std::uint32_t size = block.find("x")->size;
   if (plan_.adds_viewpoints) {
@@ -46,7 +68,7 @@ void PlannedInput::addScan(CloudTable& block) {
     const double v = own == nullptr ? 0.0 : read_.value(*own, i);
     const std::uint64_t number = v >= 0.0 && v < kMostScan ? static_cast<std::uint64_t>(v) : 0;
     scans_ = std::max(scans_, number + 1);
-    const auto scan = static_cast<std::uint32_t>(input_.first_scan + number);
+    const auto scan = static_cast<std::uint32_t>(first_scan_ + number);
     std::memcpy(block.at(*block.find("scan"), i), &scan, sizeof(scan));
     if (!plan_.adds_viewpoints) continue;
     constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
@@ -57,6 +79,27 @@ void PlannedInput::addScan(CloudTable& block) {
       block.setReal(*block.viewpoints()[a], i, seen_from[a]);
     }
   }
+}
+
+}  // namespace
+
+void forEachBlock(const Plan& plan, const PlanOutput& output, const Trajectory& trajectory,
+                  const std::function<void(CloudTable&)>& visit, const std::function<void()>& end) {
+  std::uint64_t in_chunk = 0;
+  std::uint64_t scans = 0;
+  for (std::size_t i = output.first_input; i < output.first_input + output.inputs; ++i) {
+    InputBlocks blocks(plan, plan.inputs[i], trajectory, scans);
+    CloudTable block;
+    while (blocks.next(block, plan.chunk_rows - in_chunk)) {
+      in_chunk += block.size;
+      visit(block);
+      if (in_chunk < plan.chunk_rows) continue;
+      end();
+      in_chunk = 0;
+    }
+    scans += blocks.scans();
+  }
+  end();
 }
 
 Trajectory trajectoryOf(const Plan& plan) {

@@ -4,37 +4,25 @@
 
 #include <segorient/orientation/trajectory.h>
 
-#include <cstdint>
+#include <functional>
 
-#include "io/cloud_stream.h"
+#include "io/cloud_table.h"
 #include "tiles/plan.h"
 
 namespace segorient::program {
 
-/// An input's points block by block, with the fields that outputs get beside the input's own: where
-/// the sensor was at each point's time, and, of several inputs to one output, which one it is.
-class PlannedInput {
- public:
-  /// \param trajectory may have no poses
-  PlannedInput(const Plan& plan, const PlanInput& input, const Trajectory& trajectory);
-  const CloudTable& layout() const { return stream_.layout(); }
-  /// \param most points of the block \return false behind the last one
-  bool next(CloudTable& block, std::uint64_t most);
-  /// How many scans the blocks so far are of.
-  std::uint64_t scans() const { return scans_; }
+/// Reads the points of an output's inputs block by block, with the fields that outputs get beside
+/// the inputs' own: where the sensor was at each point's time, and, of several inputs to one
+/// output, which one it is. Chunks, Plan::chunk_rows of them at most, are the same whenever they
+/// are read.
+///
+/// \param trajectory see trajectoryOf()
+/// \param visit may take the block over
+/// \param end called behind each chunk, and behind the last block
+void forEachBlock(const Plan& plan, const PlanOutput& output, const Trajectory& trajectory,
+                  const std::function<void(CloudTable&)>& visit, const std::function<void()>& end);
 
- private:
-  void addScan(CloudTable& block);
-
-  const Plan& plan_;
-  const PlanInput& input_;
-  const Trajectory& trajectory_;
-  CloudStream stream_;
-  CloudTable read_;
-  std::uint64_t scans_ = 1;
-};
-
-/// The plan's; none where it has none.
+/// The plan's; without poses where it has none.
 Trajectory trajectoryOf(const Plan& plan);
 
 }  // namespace segorient::program

@@ -81,7 +81,8 @@ void PointFiles::endChunk(std::uint32_t output) {
   chunk_.clear();
 }
 
-void PointFiles::commit() {
+std::vector<std::uint64_t> PointFiles::commit() {
+  std::vector<std::uint64_t> points;
   for (std::size_t t = 0; t < files_.size(); ++t) {
     ListWriter lists;
     lists.list(files_[t].packets);
@@ -90,6 +91,7 @@ void PointFiles::commit() {
     const PartsEnd end{files_[t].offset, checksumOf(bytes.data(), bytes.size())};
     append(t, bytes.data(), bytes.size());
     append(t, &end, sizeof(end));
+    points.push_back(files_[t].points);
   }
   for (std::size_t t = 0; t < files_.size(); ++t) {
     const std::string place = tilePath(folder_, t, "points");
@@ -98,6 +100,7 @@ void PointFiles::commit() {
     }
   }
   committed_ = true;
+  return points;
 }
 
 }  // namespace segorient::program

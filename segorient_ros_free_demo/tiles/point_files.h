@@ -38,7 +38,8 @@ class PointFiles {
   /// After the last point of a chunk. \param output that its points will be part of; those of one
   /// come one after the other
   void endChunk(std::uint32_t output);
-  void commit();
+  /// \return how many points each tile has
+  std::vector<std::uint64_t> commit();
 
  private:
   struct File {

@@ -85,24 +85,6 @@ class Results {
   std::vector<std::unique_ptr<RowReader>> rows_;
 };
 
-// Calls visit(block), which may take it over, for each block of the points of an output, and end()
-// behind each chunk.
-template <typename Visit, typename End>
-void forEachBlock(const Plan& plan, const PlanOutput& output, const Visit& visit, const End& end) {
-  const Trajectory trajectory = trajectoryOf(plan);
-  std::uint64_t done = 0;
-  for (std::size_t i = output.first_input; i < output.first_input + output.inputs; ++i) {
-    PlannedInput stream(plan, plan.inputs[i], trajectory);
-    CloudTable block;
-    while (stream.next(block, restOfChunk(plan, done))) {
-      done += block.size;
-      visit(block);
-      if (done % plan.chunk_rows == 0) end();
-    }
-  }
-  end();
-}
-
 // \param first row of the block among those of the results
 void addBlock(const CloudTable& block, const Results& results, std::size_t first, bool colors,
               std::uint64_t size, CloudWriter& writer) {
@@ -134,14 +116,15 @@ void writeStep(const Plan& plan, const std::string& folder, std::size_t output, 
   const PlanOutput& to = plan.outputs[output];
   OutputFile file(to.path);
   CloudWriter writer(file, plan.bulk);
+  const Trajectory trajectory = trajectoryOf(plan);
   std::uint64_t size = 0;
   for (std::size_t i = to.first_input; i < to.first_input + to.inputs; ++i) {
     size += plan.inputs[i].rows;
   }
   if (writer.needsSummary()) {
     forEachBlock(
-        plan, to,
-        [&](const CloudTable& block) {
+        plan, to, trajectory,
+        [&](CloudTable& block) {
           OutputCloud columns(block);
           columns.addRest(block);
           writer.sumUp(columns);
@@ -155,7 +138,7 @@ void writeStep(const Plan& plan, const std::string& folder, std::size_t output, 
   std::size_t rows = 0;
   std::uint64_t written = 0;
   forEachBlock(
-      plan, to,
+      plan, to, trajectory,
       [&](CloudTable& block) {
         rows += block.size;
         chunk.push_back(std::move(block));

@@ -173,16 +173,8 @@ std::uint32_t TileTree::owner(const Place& p, double& reach) const {
       reach = node.reach;
       return tile;
     }
-    n = p[static_cast<std::size_t>(node.axis)] < node.split ? n + 1 : node.upper;
+    n = halfOf(n, p);
   }
-}
-
-std::uint32_t TileTree::cellOf(const Place& p) const {
-  std::uint32_t n = 0;
-  while (nodes_[n].axis >= 0) {
-    n = p[static_cast<std::size_t>(nodes_[n].axis)] < nodes_[n].split ? n + 1 : nodes_[n].upper;
-  }
-  return n;
 }
 
 namespace {

@@ -52,7 +52,16 @@ class SEGORIENT_TILES_EXPORT TileTree {
   /// The tile that a place belongs to, and how far from it other tiles take it along.
   std::uint32_t owner(const Place& p, double& reach) const;
   /// The cell that a place is in: its number in the list of nodes.
-  std::uint32_t cellOf(const Place& p) const;
+  std::uint32_t cellOf(const Place& p) const {
+    std::uint32_t n = 0;
+    while (nodes_[n].axis >= 0) n = halfOf(n, p);
+    return n;
+  }
+  /// Of a node that has halves, the one that a place is in.
+  std::uint32_t halfOf(std::uint32_t n, const Place& p) const {
+    const Node& node = nodes_[n];
+    return p[static_cast<std::size_t>(node.axis)] < node.split ? n + 1 : node.upper;
+  }
 
   /// A cell that has no halves, or a tile: all of space together, so that those at the rim have no
   /// end.
