@@ -71,15 +71,18 @@ std::vector<std::size_t> pointsAtBorders(const RecomputationScene& scene,
 
 /// By coordinates, so that nothing depends on the order of the points.
 std::vector<std::size_t> inOrderOfPlace(const RecomputationScene& scene,
-                                        std::vector<std::size_t> points) {
-  std::sort(points.begin(), points.end(), [&](std::size_t a, std::size_t b) {
-    for (std::size_t c = 0; c < 3; ++c) {
-      const float difference = scene.points[a][c] - scene.points[b][c];
-      if (difference != 0.F) return difference < 0.F;
-    }
-    return a < b;
-  });
-  return points;
+                                        const std::vector<std::size_t>& points) {
+  std::vector<std::pair<std::array<float, 3>, std::size_t>> places;
+  places.reserve(points.size());
+  for (const std::size_t i : points) {
+    const float* p = scene.points[i];
+    places.push_back({{p[0], p[1], p[2]}, i});
+  }
+  std::sort(places.begin(), places.end());
+  std::vector<std::size_t> out;
+  out.reserve(places.size());
+  for (const auto& [place, i] : places) out.push_back(i);
+  return out;
 }
 
 /// Greedily, each point becomes the middle of a patch that has none among its nearest.
@@ -98,14 +101,16 @@ Looks layPatches(const RecomputationScene& scene, std::vector<std::uint8_t>& sta
     state[i] = kMiddle;
     middles.push_back(i);
   }
-  std::vector<std::pair<std::size_t, std::size_t>> pairs;
+  std::vector<std::uint64_t> pairs;  // middle above, point below
   pairs.reserve(examined.size());
-  for (const std::size_t i : examined) pairs.emplace_back(middleNear(i), i);
+  for (const std::size_t i : examined) pairs.push_back(std::uint64_t{middleNear(i)} << 32U | i);
   std::sort(pairs.begin(), pairs.end());
 
   Looks looks;
   looks.points.reserve(pairs.size());
-  for (const auto& [middle, point] : pairs) {
+  for (const std::uint64_t pair : pairs) {
+    const auto middle = static_cast<std::size_t>(pair >> 32U);
+    const auto point = static_cast<std::size_t>(pair & 0xffffffffU);
     if (looks.patches.empty() || looks.patches.back().middle != middle) {
       looks.patches.push_back({middle, looks.points.size(), looks.points.size()});
     }

@@ -69,7 +69,7 @@ void MedianHashIndex::build(const PointView& points, const std::vector<pcl::inde
   }
   const std::size_t region_size =
       std::min(std::max<std::size_t>(options.region_size, 8), kMostRegionSize);
-  constexpr double kBuildTime = 15.0;  // ns a point
+  constexpr double kBuildTime = 30.0;  // ns a point
   const std::vector<float> steps = stepsOf(finite.get(), count);
   self.layout = buildLayout(finite.get(), count, region_size, indices,
                             resolveThreads(options.threads, count, kBuildTime));

@@ -129,7 +129,8 @@ AutoNormals orientAtOneScale(const PointView& points, const Neighborhoods& neigh
   out.components = std::move(result.point_components);
   // The less of both: do the normals around agree, and is their segment sure? Of a part of a cloud
   // only the first is known yet.
-  for (std::size_t i = 0; record == nullptr && i < points.size; ++i) {
+#pragma omp parallel for schedule(static) num_threads(workers)
+  for (std::size_t i = 0; i < (record == nullptr ? points.size : 0); ++i) {
     if (out.components[i] >= 0) {
       out.confidences[i] = std::min(out.confidences[i], result.point_confidences[i]);
     }

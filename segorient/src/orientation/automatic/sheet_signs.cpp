@@ -6,6 +6,7 @@
 #include <numeric>
 #include <utility>
 
+#include "common/threads.h"
 #include "orientation/automatic/loose_parts.h"
 
 namespace segorient::detail {
@@ -64,6 +65,7 @@ std::vector<float> SheetSigns::orientedNormals(bool dipoles) const {
   // square.
   const float r = field.residual;
   const float per_square = 1.047F / (1.F + 2.F * r * r);
+#pragma omp parallel for schedule(static) num_threads(resolveThreads(threads, points.size, 10.0))
   for (std::size_t i = 0; i < points.size; ++i) {
     const float h = field.spacing[i];
     const float area = dipoles ? per_square * h * h : 1.F;

@@ -8,6 +8,7 @@
 #include <cmath>
 
 #include "common/dot.h"
+#include "common/threads.h"
 #include "features/sheet_denoise.h"
 #include "features/sheet_normals.h"
 #include "orientation/automatic/final_labels.h"
@@ -61,9 +62,11 @@ bool knowsNothing(const PointHints& hints) {
 }
 
 // Turns the segments as most of their points are.
-void turnSegments(const AutoNormals& oriented, AutoStages& out) {
+void turnSegments(const AutoNormals& oriented, int threads, AutoStages& out) {
   Segmentation& segmentation = out.segmentation;
   out.segments.resize(segmentation.segments.size());
+  const int workers = resolveThreads(threads, segmentation.members.size(), 20.0);
+#pragma omp parallel for schedule(dynamic, 16) num_threads(workers)
   for (std::size_t s = 0; s < segmentation.segments.size(); ++s) {
     Segment& segment = segmentation.segments[s];
     long balance = 0;
@@ -136,7 +139,7 @@ AutoStages runAutoStages(PreparedCloud& cloud, const PipelineOptions& options,
                   oriented.normals);
   }
   followFinalNormals(table, oriented.normals, options.threads, out.segmentation);
-  turnSegments(oriented, out);
+  turnSegments(oriented, options.threads, out);
   out.normals = std::move(oriented.normals);
   out.confidences = std::move(oriented.confidences);
   out.components = std::move(oriented.components);

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the segorient authors
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstddef>
+#include <random>
+#include <vector>
+
+#include "common/median.h"
+
+namespace segorient {
+namespace {
+
+float sortedMiddle(std::vector<float> values) {
+  std::sort(values.begin(), values.end());
+  return values[values.size() / 2];
+}
+
+std::vector<float> randomValues(std::size_t count) {
+  std::mt19937 random(7);
+  std::lognormal_distribution<float> values(0.F, 2.F);
+  std::vector<float> out(count);
+  for (float& v : out) v = values(random);
+  return out;
+}
+
+TEST(Median, OfNoneIsZero) {
+  EXPECT_EQ(0.F, median({}));
+}
+
+TEST(Median, IsTheMiddleOfTheSortedValues) {
+  for (const std::size_t count : {1U, 2U, 3U, 1000U, 16384U, 16385U, 100000U}) {
+    const std::vector<float> values = randomValues(count);
+    EXPECT_EQ(sortedMiddle(values), median(values)) << count;
+  }
+}
+
+TEST(Median, OfManyEqualValues) {
+  std::vector<float> values(50000, 2.F);
+  EXPECT_EQ(2.F, median(values));
+  for (std::size_t i = 0; i < 24000; ++i) values[i] = 1.F;
+  EXPECT_EQ(2.F, median(values));
+}
+
+// Values that a regular sample sees only the extremes of.
+TEST(Median, DoesNotBelieveASampleThatIsWrong) {
+  constexpr std::size_t kCount = 64U * 1024U;
+  for (const float extreme : {-1000.F, 1000.F}) {
+    std::vector<float> values = randomValues(kCount);
+    for (std::size_t i = 0; i < kCount; i += 64) values[i] = extreme;
+    EXPECT_EQ(sortedMiddle(values), median(values)) << extreme;
+  }
+}
+
+}  // namespace
+}  // namespace segorient
