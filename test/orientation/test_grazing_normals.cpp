@@ -31,7 +31,8 @@ struct Seen {
     normals.confidences.assign(1600, 1.F);
   }
   void run(int threads = 1) {
-    detail::replaceGrazingNormals(viewOf(xyz), toward, threads, normals);
+    detail::MoreNeighbors more(viewOf(xyz), threads);
+    detail::replaceGrazingNormals(more, toward, threads, normals);
   }
 };
 

@@ -60,10 +60,12 @@ TEST(ScanScale, FewPointsAndLines) {
   std::vector<float> line;
   for (int i = 0; i < 40; ++i) line.insert(line.end(), {static_cast<float>(i), 0.F, 0.F, 0.F});
   const std::vector<float> spacing(40, 1.F);
-  for (const detail::ScanPlane& p : detail::fitScanPlanes(viewOf(line), spacing, 8, 0)) {
+  detail::MoreNeighbors more(viewOf(line), 0);
+  for (const detail::ScanPlane& p : detail::fitScanPlanes(more, spacing, 8, 0)) {
     EXPECT_EQ(p.scale, 0) << "a line has no plane";
   }
-  EXPECT_TRUE(detail::fitScanPlanes({nullptr, 4, 0}, {}, 8, 0).empty());
+  detail::MoreNeighbors none({nullptr, 4, 0}, 0);
+  EXPECT_TRUE(detail::fitScanPlanes(none, {}, 8, 0).empty());
 }
 
 }  // namespace

@@ -43,7 +43,8 @@ struct Corner {
   }
   std::size_t size() const { return xyz.size() / 4; }
   void run(int threads = 1, const std::vector<std::uint8_t>& sure = {}) {
-    detail::leanToSensors(viewOf(xyz), neighborsOf(xyz), toward, sure, threads, normals);
+    detail::MoreNeighbors more(viewOf(xyz), threads);
+    detail::leanToSensors(more, neighborsOf(xyz), toward, sure, threads, normals);
   }
 };
 

@@ -2,6 +2,7 @@
 // Copyright (c) 2026, the segorient authors
 #pragma once
 
+#include <segorient/common/export.h>
 #include <segorient/common/neighborhoods.h>
 #include <segorient/common/point_view.h>
 
@@ -48,7 +49,8 @@ std::vector<pcl::index_t> sampleRows(const std::vector<pcl::index_t>& of);
 
 /// Medians over a sample: edges and creases, where surfaces do not fit, are the minority. 0 for
 /// fewer than 16 points.
-CloudNoise sampleNoise(const PointView& points, const Neighborhoods& neighborhoods, int threads);
+SEGORIENT_FEATURES_EXPORT CloudNoise sampleNoise(const PointView& points,
+                                                 const Neighborhoods& neighborhoods, int threads);
 
 /// Least noise, in spacings: less cannot be told from what a quadratic leaves of a smooth surface.
 constexpr double kLeastNoise = 0.01;

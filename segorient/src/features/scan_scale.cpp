@@ -2,12 +2,12 @@
 // Copyright (c) 2026, the segorient authors
 #include "features/scan_scale.h"
 
-#include <segorient/search/median_hash_index.h>
-
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <limits>
+#include <tuple>
 
 #include "common/threads.h"
 
@@ -25,6 +25,29 @@ constexpr float kFlat = 1.7F;
 constexpr float kClearly = 1.6F;
 // Points around whose residuals count: a sheet's worth, beyond the larger neighbourhoods.
 constexpr std::size_t kAround = 22;
+
+// Room for those and the point's own, in whole vectors, and an entry that is written in vain.
+using Values = std::array<float, 32>;
+static_assert(kAround + 2 <= std::tuple_size<Values>::value);
+
+// The value that n / 2 others are less than, as sorting would find it; NaN where there is none. By
+// counting, which branches nowhere: so few are counted sooner than they are parted.
+float middleOf(Values& values, std::size_t n) {
+  if (n == 0) return kNone;
+  std::fill(values.begin() + static_cast<std::ptrdiff_t>(n), values.end(),
+            std::numeric_limits<float>::infinity());
+  std::array<std::int32_t, std::tuple_size<Values>::value> less{};
+  for (std::size_t j = 0; j < n; ++j) {
+    const float v = values[j];
+    for (std::size_t i = 0; i < values.size(); ++i) less[i] += v < values[i] ? 1 : 0;
+  }
+  const auto half = static_cast<std::int32_t>(n / 2);
+  float middle = -std::numeric_limits<float>::infinity();
+  for (std::size_t i = 0; i < n; ++i) {
+    middle = less[i] <= half ? std::max(middle, values[i]) : middle;
+  }
+  return middle;
+}
 
 template <std::size_t kCount>
 struct Scales {
@@ -50,10 +73,10 @@ struct Scales {
         const float* q = points[static_cast<std::size_t>(row[j])];
         m.add((q[0] - p[0]) * per_h, (q[1] - p[1]) * per_h, (q[2] - p[2]) * per_h);
       }
-      const Plane plane = fitPlane(m);
-      const bool wide = plane.valid && m.n > 3.F && plane.lambda[1] >= kOneLine * plane.lambda[2];
-      out.noise2[s] = wide ? plane.lambda[0] * m.n / (m.n - 3.F) * h * h : kNone;
-      out.width2[s] = wide ? plane.lambda[1] * h * h : 0.F;
+      const Eigen::Vector3f lambda = planeVariances(m);
+      const bool wide = m.n > 3.F && lambda[1] > 0.F && lambda[1] >= kOneLine * lambda[2];
+      out.noise2[s] = wide ? lambda[0] * m.n / (m.n - 3.F) * h * h : kNone;
+      out.width2[s] = wide ? lambda[1] * h * h : 0.F;
     }
     return out;
   }
@@ -64,21 +87,17 @@ struct Scales {
   template <typename FitOf>
   std::size_t choose(const Fits& own, std::size_t around, const FitOf& fit_of,
                      float& noise2) const {
-    std::array<float, kCount> medians;
-    std::array<float, kAround + 1> values;
-    for (std::size_t s = 0; s < kCount; ++s) {
+    noise2 = saturation([&](std::size_t s) {
+      Values values;
       std::size_t n = 0;
       if (std::isfinite(own.noise2[s])) values[n++] = own.noise2[s];
       for (std::size_t j = 0; j < around; ++j) {
         const float v = fit_of(j, s);
-        if (std::isfinite(v)) values[n++] = v;
+        values[n] = v;
+        n += std::isfinite(v) ? 1 : 0;
       }
-      const auto middle = values.begin() + static_cast<std::ptrdiff_t>(n / 2);
-      if (n > 0)
-        std::nth_element(values.begin(), middle, values.begin() + static_cast<std::ptrdiff_t>(n));
-      medians[s] = n > 0 ? *middle : kNone;
-    }
-    noise2 = saturation(medians);
+      return middleOf(values, n);
+    });
     for (std::size_t s = 0; s < kCount; ++s) {
       const float w = own.width2[s];
       if (!(noise2 < 0.5F * w)) continue;
@@ -90,22 +109,27 @@ struct Scales {
   }
 
   // The first of the variances from which the next two stay flat; without one, the first.
-  static float saturation(const std::array<float, kCount>& medians) {
-    std::size_t first = 0;
-    while (first + 1 < kCount && !std::isfinite(medians[first])) ++first;
-    for (std::size_t s = first; s + 2 < kCount; ++s) {
-      if (medians[s + 1] <= kFlat * medians[s] && medians[s + 2] <= kFlat * medians[s])
-        return medians[s];
+  // \param median of a scale: most stay flat from the smallest on, and no others are asked for
+  template <typename Median>
+  static float saturation(const Median& median) {
+    std::size_t s = 0;
+    float here = median(s);
+    while (s + 1 < kCount && !std::isfinite(here)) here = median(++s);
+    const float first = std::isfinite(here) ? here : 0.F;
+    float next = s + 1 < kCount ? median(s + 1) : kNone;
+    for (; s + 2 < kCount; ++s) {
+      const float last = median(s + 2);
+      if (next <= kFlat * here && last <= kFlat * here) return here;
+      here = next;
+      next = last;
     }
-    return std::isfinite(medians[first]) ? medians[first] : 0.F;
+    return first;
   }
 };
 
 constexpr Scales<4> kFew{kSheetScales};
 // Half as many again each time, up to where planes are nearly free of noise.
 constexpr Scales<6> kMany{{8, 12, 18, 27, 40, 60}};
-// Neighbours that are sought: those of the largest scale, and some to vote beyond them.
-constexpr int kReach = 66;
 // ns a point, see resolveThreads().
 constexpr double kVoteTime = 20000.0;
 constexpr double kFitTime = 2000.0;
@@ -146,18 +170,12 @@ bool needsScanScales(const PointView& points, const Neighborhoods& nb, int small
   return static_cast<double>(asking) > kManyAsk * static_cast<double>(n);
 }
 
-std::vector<ScanPlane> fitScanPlanes(const PointView& points, const std::vector<float>& spacing,
+std::vector<ScanPlane> fitScanPlanes(MoreNeighbors& more, const std::vector<float>& spacing,
                                      int smallest, int threads) {
+  const PointView& points = more.points();
+  const Neighborhoods& nb = more.ofAll();
   const std::size_t n = points.size;
-  Neighborhoods nb;
-  {
-    search::MedianHashIndex index;
-    search::MedianHashIndex::Options options;
-    options.threads = threads;
-    index.build(points, nullptr, options);
-    index.nearestKAll(kReach + 1, nb, false);
-  }
-  std::vector<Scales<6>::Fits> fits(n);
+  FastVector<Scales<6>::Fits> fits(n);
   const int t = resolveThreads(threads, n, kFitTime);
 #pragma omp parallel for num_threads(t) schedule(dynamic, 512)
   for (std::size_t i = 0; i < n; ++i) fits[i] = kMany.fit(points, nb, i, spacing[i]);

@@ -7,6 +7,7 @@
 
 #include <vector>
 
+#include "features/more_neighbors.h"
 #include "features/sheet_fit.h"
 
 namespace segorient::detail {
@@ -34,9 +35,10 @@ struct ScanPlane {
 /// residuals of 8 to 60 neighbours, medians over the points around, the first from which they stay
 /// flat is the noise. The scale is the smallest at which that noise turns a plane's normal by less
 /// than 3.5 degrees, and at which the neighbours spread in two directions.
+/// \param more the points, and their neighbours
 /// \param spacing one a point: mean distance to the 6 nearest
 /// \return one a point
-std::vector<ScanPlane> fitScanPlanes(const PointView& points, const std::vector<float>& spacing,
+std::vector<ScanPlane> fitScanPlanes(MoreNeighbors& more, const std::vector<float>& spacing,
                                      int smallest, int threads);
 
 }  // namespace segorient::detail

@@ -82,6 +82,42 @@ double smallestEigenvalue(double trace, double minors, double determinant) {
   return std::max(x, 0.0);
 }
 
+// Of a set of offsets.
+struct Spectrum {
+  Eigen::Vector3d mean;
+  Covariance covariance;
+  double trace, minors, smallest;
+
+  // Ascending.
+  Eigen::Vector3f variances() const {
+    const double rest = trace - smallest;
+    const double root = std::sqrt(std::max(0.0, rest * rest - 4.0 * (minors - smallest * rest)));
+    return Eigen::Vector3d(smallest, 0.5 * (rest - root), 0.5 * (rest + root)).cast<float>();
+  }
+};
+
+// \return false for fewer than 3 points
+bool findSpectrum(const Moments& m, Spectrum& s) {
+  if (m.n < 3.F) return false;
+  const double w = 1.0 / static_cast<double>(m.n);
+  s.mean = Eigen::Vector3d(static_cast<double>(m.x) * w, static_cast<double>(m.y) * w,
+                           static_cast<double>(m.z) * w);
+  const Covariance c = covarianceOf(m, s.mean[0], s.mean[1], s.mean[2]);
+  s.covariance = c;
+  s.trace = c.trace();
+  const double yz = c.yy * c.zz - c.yz * c.yz;
+  s.minors = c.xx * (c.yy + c.zz) - c.xy * c.xy - c.xz * c.xz + yz;
+  const double determinant =
+      c.xx * yz + c.xy * (c.yz * c.xz - c.xy * c.zz) + c.xz * (c.xy * c.yz - c.yy * c.xz);
+  s.smallest = smallestEigenvalue(s.trace, s.minors, determinant);
+  return true;
+}
+
+// Below that, the width is rounding.
+bool spansTwo(const Eigen::Vector3f& lambda) {
+  return lambda[1] > 1e-6F * lambda[2];
+}
+
 // The longest row of the adjugate of c - x: all of them are multiples of the eigenvector.
 Eigen::Vector3d eigenvector(const Covariance& c, double x) {
   const Eigen::Vector3d r0(c.xx - x, c.xy, c.xz);
@@ -107,44 +143,35 @@ void decompose(const Covariance& c, Plane& plane) {
 
 Plane fitPlane(const Moments& m) {
   Plane plane;
-  if (m.n < 3.F) return plane;
-  const double w = 1.0 / static_cast<double>(m.n);
-  const double mx = static_cast<double>(m.x) * w;
-  const double my = static_cast<double>(m.y) * w;
-  const double mz = static_cast<double>(m.z) * w;
-  plane.mean =
-      Eigen::Vector3f(static_cast<float>(mx), static_cast<float>(my), static_cast<float>(mz));
-  const Covariance c = covarianceOf(m, mx, my, mz);
-  const double trace = c.trace();
-  if (!(trace > 0.0) || !std::isfinite(trace)) return plane;
-  const double yz = c.yy * c.zz - c.yz * c.yz;
-  const double minors = c.xx * (c.yy + c.zz) - c.xy * c.xy - c.xz * c.xz + yz;
-  const double determinant =
-      c.xx * yz + c.xy * (c.yz * c.xz - c.xy * c.zz) + c.xz * (c.xy * c.yz - c.yy * c.xz);
-  const double smallest = smallestEigenvalue(trace, minors, determinant);
-  const Eigen::Vector3d normal = eigenvector(c, smallest);
+  Spectrum s;
+  if (!findSpectrum(m, s)) return plane;
+  plane.mean = s.mean.cast<float>();
+  if (!(s.trace > 0.0) || !std::isfinite(s.trace)) return plane;
+  const Eigen::Vector3d normal = eigenvector(s.covariance, s.smallest);
   const double length = normal.norm();
-  if (length > 1e-4 * trace * trace) {
-    const double rest = trace - smallest;
-    const double root = std::sqrt(std::max(0.0, rest * rest - 4.0 * (minors - smallest * rest)));
-    plane.lambda =
-        Eigen::Vector3d(smallest, 0.5 * (rest - root), 0.5 * (rest + root)).cast<float>();
+  if (length > 1e-4 * s.trace * s.trace) {
+    plane.lambda = s.variances();
     plane.normal = (normal / length).cast<float>();
   } else {
-    decompose(c, plane);
+    decompose(s.covariance, plane);
   }
-  // Below that, the width is rounding.
-  plane.valid = plane.lambda[1] > 1e-6F * plane.lambda[2] && plane.normal.allFinite();
+  plane.valid = spansTwo(plane.lambda) && plane.normal.allFinite();
   return plane;
 }
 
-float meanDistance(const PointView& points, const Neighborhoods& nb, std::size_t i, int k) {
-  const pcl::index_t* row = nb.indices(i);
-  const int n = std::min(nb.count(i) - 1, k);
+Eigen::Vector3f planeVariances(const Moments& m) {
+  Spectrum s;
+  if (!findSpectrum(m, s) || !(s.trace > 0.0) || !std::isfinite(s.trace))
+    return Eigen::Vector3f::Zero();
+  const Eigen::Vector3f lambda = s.variances();
+  return spansTwo(lambda) ? lambda : Eigen::Vector3f::Zero();
+}
+
+float meanDistance(const PointView& points, std::size_t i, const pcl::index_t* others, int n) {
   const float* p = points[i];
   double sum = 0.0;  // in double: squares of far or tiny offsets leave the range of float
-  for (int j = 1; j <= n; ++j) {
-    const float* q = points[static_cast<std::size_t>(row[j])];
+  for (int j = 0; j < n; ++j) {
+    const float* q = points[static_cast<std::size_t>(others[j])];
     double square = 0.0;
     for (int a = 0; a < 3; ++a) {
       const double d = static_cast<double>(q[a]) - static_cast<double>(p[a]);
@@ -153,6 +180,10 @@ float meanDistance(const PointView& points, const Neighborhoods& nb, std::size_t
     sum += std::sqrt(square);
   }
   return n > 0 ? static_cast<float>(sum / n) : 0.F;
+}
+
+float meanDistance(const PointView& points, const Neighborhoods& nb, std::size_t i, int k) {
+  return meanDistance(points, i, nb.indices(i) + 1, std::min(nb.count(i) - 1, k));
 }
 
 Offsets gatherOffsets(const PointView& points, const Neighborhoods& nb, std::size_t i,

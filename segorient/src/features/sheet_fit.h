@@ -51,6 +51,10 @@ struct Plane {
 };
 SEGORIENT_FEATURES_EXPORT Plane fitPlane(const Moments& moments);
 
+/// Its variances alone, ascending; 0 for fewer than 3 points or a line. Where the two smaller ones
+/// meet they are known to a thousandth only.
+Eigen::Vector3f planeVariances(const Moments& moments);
+
 /// The neighbours of one point: offsets from it in units of its spacing, as separate arrays; unused
 /// entries are 0 with weight 0.
 struct Offsets {
@@ -67,6 +71,10 @@ struct Offsets {
 };
 Offsets gatherOffsets(const PointView& points, const Neighborhoods& neighborhoods, std::size_t i,
                       float spacing);
+
+/// Mean distance to some points; 0 without any.
+SEGORIENT_FEATURES_EXPORT float meanDistance(const PointView& points, std::size_t i,
+                                             const pcl::index_t* others, int n);
 
 /// Mean distance to the k nearest.
 SEGORIENT_FEATURES_EXPORT float meanDistance(const PointView& points,

@@ -9,6 +9,7 @@
 
 #include "common/median.h"
 #include "common/threads.h"
+#include "features/more_neighbors.h"
 #include "features/scan_scale.h"
 #include "features/sheet_fit.h"
 
@@ -207,7 +208,7 @@ NoiseLevel measureNoise(const PointView& points, const Neighborhoods& nb, int th
 }
 
 SheetNormals estimateSheetNormals(const PointView& points, const Neighborhoods& nb,
-                                  const SheetNormalOptions& options) {
+                                  const SheetNormalOptions& options, detail::MoreNeighbors* more) {
   SheetNormals out;
   const std::size_t n = points.size;
   out.normals.resize(4 * n);
@@ -226,21 +227,24 @@ SheetNormals estimateSheetNormals(const PointView& points, const Neighborhoods& 
   std::vector<float> lopsided(n, std::numeric_limits<float>::infinity());
   const int threads = resolveThreads(options.threads, n, 2000.0);
 #pragma omp parallel for num_threads(threads) schedule(dynamic, 1024)
-  for (std::size_t i = 0; i < n; ++i) {
-    out.spacing[i] = detail::meanDistance(points, nb, i, 6);
-    const Offsets o = gatherOffsets(points, nb, i, out.spacing[i]);
-    store(fitPoint(o, smallest, noise, options), i, out, lopsided);
-  }
+  for (std::size_t i = 0; i < n; ++i) out.spacing[i] = detail::meanDistance(points, nb, i, 6);
+  std::vector<detail::ScanPlane> planes;
   out.traits.scan_scales =
       options.known ? options.known->scan_scales
                     : options.scan_scales && !noise.thin &&
                           detail::needsScanScales(points, nb, out.scale, options.threads);
   if (out.traits.scan_scales) {
-    const std::vector<detail::ScanPlane> planes =
-        detail::fitScanPlanes(points, out.spacing, out.scale, options.threads);
-    for (std::size_t i = 0; i < n; ++i) {
-      if (planes[i].scale == 0) continue;
+    detail::MoreNeighbors own(points, options.threads);
+    planes = detail::fitScanPlanes(more != nullptr ? *more : own, out.spacing, out.scale,
+                                   options.threads);
+  }
+#pragma omp parallel for num_threads(threads) schedule(dynamic, 1024)
+  for (std::size_t i = 0; i < n; ++i) {
+    if (!planes.empty() && planes[i].scale > 0) {
       store({planes[i].plane, planes[i].plane.variation(), {}}, i, out, lopsided);
+    } else {
+      const Offsets o = gatherOffsets(points, nb, i, out.spacing[i]);
+      store(fitPoint(o, smallest, noise, options), i, out, lopsided);
     }
   }
   out.residual = options.known ? options.known->residual : medianResidual(out);

@@ -70,6 +70,10 @@ struct SheetNormals {
   SheetTraits traits;                  ///< as measured, or as told
 };
 
+namespace detail {
+class MoreNeighbors;
+}
+
 /// Estimates sheet normals.
 ///
 /// For each point: planes over 8, 12, 18 and 32 neighbours, from the largest down a smaller one
@@ -85,9 +89,11 @@ struct SheetNormals {
 /// \param neighborhoods their neighbours: kSheetNeighbors beside the point itself, or as many as
 /// there
 ///        are
+/// \param more of the same points, for scan_scales; null = sought here
 SEGORIENT_FEATURES_EXPORT SheetNormals estimateSheetNormals(const PointView& points,
                                                             const Neighborhoods& neighborhoods,
-                                                            const SheetNormalOptions& options = {});
+                                                            const SheetNormalOptions& options = {},
+                                                            detail::MoreNeighbors* more = nullptr);
 
 /// Measures the noise at some thousand of a cloud's points.
 /// \param points distinct finite points

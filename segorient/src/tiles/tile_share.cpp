@@ -155,8 +155,9 @@ void Tile::goByLevel(const PointView& points, const AutomaticOptions& settings,
   } else {
     coarse_.prepareRecord();
   }
-  level_.found = detail::orientPoints(coarse_.points, level_.cloud.neighborhoods(), settings,
-                                      PointHints(), options_.threads, {}, &coarse_.record);
+  detail::MoreNeighbors more(coarse_.points, options_.threads);
+  level_.found = detail::orientPoints(more, level_.cloud.neighborhoods(), settings, PointHints(),
+                                      options_.threads, {}, &coarse_.record);
   detail::followLevel(points, level_, radius, options_.threads, fine);
 }
 

@@ -11,6 +11,7 @@
 #include "common/dot.h"
 #include "common/threads.h"
 #include "features/automatic_normals.h"
+#include "features/cloud_noise.h"
 #include "features/recompute_normals.h"
 #include "features/recompute_scene.h"
 #include "features/sheet_normals.h"
@@ -42,9 +43,10 @@ enum class Fit : std::uint8_t { EXPLAINED, UNEXPLAINED, ONE_SIDED, ON_EDGE };
 
 class FinalNormals {
  public:
-  FinalNormals(PreparedCloud& cloud, const Segmentation& segments, int threads,
+  FinalNormals(PreparedCloud& cloud, MoreNeighbors& more, const Segmentation& segments, int threads,
                const FinalTraits* known, const AutoNormals& oriented)
       : cloud_(cloud),
+        more_(more),
         points_(cloud.points()),
         table_(cloud.neighborhoods()),
         segments_(segments),
@@ -55,9 +57,9 @@ class FinalNormals {
 
   /// Normals of all points, 4 floats each; empty where the filtered ones are the best there are.
   std::vector<float> run(bool only_known) {
-    fitSurfaces(only_known);
     // Depth cameras round what they measure: that is no noise which a mean could lessen.
-    if (!toward_.empty() && noise_ > kEdgesHidden) return {};
+    if (!toward_.empty() && tooNoisy()) return {};
+    fitSurfaces(only_known);
     if (noise_ <= kEdgesHidden) recomputeAtEdges();
     if (known_ != nullptr) has_edges_ = known_->edges;
     traits_.edges = has_edges_;
@@ -90,6 +92,15 @@ class FinalNormals {
     return (oriented_.around[i] & what) != 0;
   }
 
+  bool tooNoisy() {
+    const CloudNoise noise = known_ != nullptr
+                                 ? CloudNoise{known_->surfaces.noise, known_->surfaces.in_spacings}
+                                 : sampleNoise(points_, table_, threads_);
+    traits_.surfaces.noise = noise.length;
+    traits_.surfaces.in_spacings = noise.in_spacings;
+    return static_cast<float>(noise.in_spacings) > kEdgesHidden;
+  }
+
   void fitSurfaces(bool only_known) {
     fitted_ = oriented_.normals;
     std::vector<pcl::index_t> rows;
@@ -101,13 +112,16 @@ class FinalNormals {
     const AutomaticNormalTraits* known = known_ != nullptr ? &known_->surfaces : nullptr;
     const bool wider =
         !only_known && automaticNeighbors(points_, table_, threads_, known) > table_.k() - 1;
+    // The nearest of each point, which the noise comes from, are the same.
+    const Neighborhoods& table = wider && more_.hasAll() ? more_.ofAll() : table_;
+    const bool search = wider && !more_.hasAll();
     const AutomaticNormalReport report =
-        wider ? estimateNormalsAutomatically(points_, cloud_.index(), table_, threads_,
-                                             fitted_.data(), &unexplained, &rows, known)
-              : estimateNormalsAutomatically(points_, table_, threads_, fitted_.data(),
-                                             &unexplained, &rows, known);
+        search ? estimateNormalsAutomatically(points_, cloud_.index(), table, threads_,
+                                              fitted_.data(), &unexplained, &rows, known)
+               : estimateNormalsAutomatically(points_, table, threads_, fitted_.data(),
+                                              &unexplained, &rows, known);
     traits_.surfaces = report.traits;
-    if (wider) cloud_.dropIndex();
+    if (search) cloud_.dropIndex();
     noise_ = report.noise;
     most_ = report.surfaces.empty() ? kFewest : report.surfaces.front().first;
     fits_.assign(points_.size, Fit::EXPLAINED);
@@ -212,6 +226,7 @@ class FinalNormals {
   }
 
   PreparedCloud& cloud_;
+  MoreNeighbors& more_;
   PointView points_;
   const Neighborhoods& table_;
   const Segmentation& segments_;
@@ -231,9 +246,10 @@ class FinalNormals {
 
 }  // namespace
 
-FinalTraits fitFinalNormals(PreparedCloud& cloud, const Segmentation& segments, bool only_known,
-                            int threads, const FinalTraits* known, AutoNormals& oriented) {
-  FinalNormals final_normals(cloud, segments, threads, known, oriented);
+FinalTraits fitFinalNormals(PreparedCloud& cloud, MoreNeighbors& more, const Segmentation& segments,
+                            bool only_known, int threads, const FinalTraits* known,
+                            AutoNormals& oriented) {
+  FinalNormals final_normals(cloud, more, segments, threads, known, oriented);
   std::vector<float> normals = final_normals.run(only_known);
   if (!normals.empty()) {
     oriented.normals = std::move(normals);

@@ -4,6 +4,7 @@
 
 #include <segorient/segmentation/segmentation.h>
 
+#include "features/more_neighbors.h"
 #include "orientation/automatic/orient_points.h"
 #include "search/prepared_cloud.h"
 
@@ -21,11 +22,13 @@ namespace segorient::detail {
 ///
 /// \param cloud whose neighbours are known; more are sought where the noise asks for them, unless
 ///        `only_known`
+/// \param more of the same points, asked only if they have been found
 /// \param segments by the filtered normals
 /// \param known of the cloud that this one is part of; null = measured
 /// \param oriented normals are replaced; the residuals stay
 /// \return as measured, or as told
-FinalTraits fitFinalNormals(PreparedCloud& cloud, const Segmentation& segments, bool only_known,
-                            int threads, const FinalTraits* known, AutoNormals& oriented);
+FinalTraits fitFinalNormals(PreparedCloud& cloud, MoreNeighbors& more, const Segmentation& segments,
+                            bool only_known, int threads, const FinalTraits* known,
+                            AutoNormals& oriented);
 
 }  // namespace segorient::detail

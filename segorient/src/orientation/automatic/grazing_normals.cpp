@@ -2,8 +2,6 @@
 // Copyright (c) 2026, the segorient authors
 #include "orientation/automatic/grazing_normals.h"
 
-#include <segorient/search/median_hash_index.h>
-
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -24,17 +22,19 @@ constexpr float kLessLikely = 1.F / 3.F;
 // ns a point, see resolveThreads().
 constexpr double kQueryTime = 4000.0;
 
-Plane planeAround(const PointView& points, const search::MedianHashIndex& index, std::size_t i) {
-  std::array<pcl::index_t, kAround + 1> row;
-  std::array<float, kAround + 1> distances;
-  const int found = index.nearestK(points[i], kAround + 1, row.data(), distances.data(), 0.F);
-  if (found < 3) return {};
-  const float radius = std::sqrt(distances[static_cast<std::size_t>(found) - 1]);
+Plane planeAround(const MoreNeighbors& more, std::size_t i) {
+  const PointView& points = more.points();
+  MoreNeighbors::Room room;
+  const MoreNeighbors::Row row = more.row(i, kAround + 1, room);
+  if (row.count < 3) return {};
+  const float* p = points[i];
+  const float* farthest = points[static_cast<std::size_t>(row.indices[row.count - 1])];
+  const std::array<float, 3> reach{farthest[0] - p[0], farthest[1] - p[1], farthest[2] - p[2]};
+  const float radius = std::sqrt(dot(reach.data(), reach.data()));
   if (!(radius > 0.F)) return {};
   Moments m;
-  const float* p = points[i];
-  for (std::size_t j = 0; j < static_cast<std::size_t>(found); ++j) {
-    const float* q = points[static_cast<std::size_t>(row[j])];
+  for (int j = 0; j < row.count; ++j) {
+    const float* q = points[static_cast<std::size_t>(row.indices[j])];
     m.add((q[0] - p[0]) / radius, (q[1] - p[1]) / radius, (q[2] - p[2]) / radius);
   }
   return fitPlane(m);
@@ -42,10 +42,10 @@ Plane planeAround(const PointView& points, const search::MedianHashIndex& index,
 
 }  // namespace
 
-void replaceGrazingNormals(const PointView& points, const std::vector<float>& toward, int threads,
+void replaceGrazingNormals(MoreNeighbors& more, const std::vector<float>& toward, int threads,
                            FilteredNormals& filtered) {
   std::vector<std::uint32_t> grazing;
-  for (std::size_t i = 0; i < points.size; ++i) {
+  for (std::size_t i = 0; i < more.points().size; ++i) {
     const float* t = &toward[3 * i];
     const bool known = dot(t, t) > 0.F;
     if (known && std::fabs(dot(filtered.normals.data() + 4 * i, t)) < kLessLikely) {
@@ -53,15 +53,12 @@ void replaceGrazingNormals(const PointView& points, const std::vector<float>& to
     }
   }
   if (grazing.empty()) return;
-  search::MedianHashIndex index;
-  search::MedianHashIndex::Options options;
-  options.threads = threads;
-  index.build(points, nullptr, options);
+  more.prepareRows();
   const int t = resolveThreads(threads, grazing.size(), kQueryTime);
 #pragma omp parallel for num_threads(t) schedule(dynamic, 64)
   for (std::size_t g = 0; g < grazing.size(); ++g) {
     const std::size_t i = grazing[g];
-    const Plane plane = planeAround(points, index, i);
+    const Plane plane = planeAround(more, i);
     if (!plane.valid) continue;
     float* n = filtered.normals.data() + 4 * i;
     const float seen = dot(plane.normal.data(), &toward[3 * i]);

@@ -2,10 +2,9 @@
 // Copyright (c) 2026, the segorient authors
 #pragma once
 
-#include <segorient/common/point_view.h>
-
 #include <vector>
 
+#include "features/more_neighbors.h"
 #include "orientation/automatic/sheet_filter.h"
 
 namespace segorient::detail {
@@ -17,9 +16,10 @@ namespace segorient::detail {
 /// the plane, facing the sensor.
 /// For clouds whose noise or scan lines leave the nearest points no say, see needsScanScales(); on
 /// others small neighbourhoods show the true edges of what was seen.
+/// \param more the points, and neighbours as far as such planes reach
 /// \param toward 3 a point: unit vector to its sensor; 0 = unknown, and the normal stays
 /// \param filtered final normals; changed
-void replaceGrazingNormals(const PointView& points, const std::vector<float>& toward, int threads,
+void replaceGrazingNormals(MoreNeighbors& more, const std::vector<float>& toward, int threads,
                            FilteredNormals& filtered);
 
 }  // namespace segorient::detail

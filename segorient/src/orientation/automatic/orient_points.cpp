@@ -50,10 +50,11 @@ std::vector<std::uint8_t> lookAround(const SheetNormals& sheets, int threads) {
   return out;
 }
 
-AutoNormals orientAtOneScale(const PointView& points, const Neighborhoods& neighborhoods,
+AutoNormals orientAtOneScale(MoreNeighbors& more, const Neighborhoods& neighborhoods,
                              const AutomaticOptions& settings, const PointHints& hints, int threads,
                              const std::function<void(const char*, double)>& begin,
                              SheetRecord* record, FinishedSegments* finished) {
+  const PointView& points = more.points();
   AutoNormals out;
   if (begin) begin("normals", 0.3);
   SheetNormalOptions normal_options;
@@ -64,7 +65,7 @@ AutoNormals orientAtOneScale(const PointView& points, const Neighborhoods& neigh
   normal_options.scan_scales =
       hints.toward.empty() && (hints.has_viewpoint || !hints.sensors.empty());
   if (record != nullptr) normal_options.known = record->traits;
-  SheetNormals sheets = estimateSheetNormals(points, neighborhoods, normal_options);
+  SheetNormals sheets = estimateSheetNormals(points, neighborhoods, normal_options, &more);
   out.spacing = median(sheets.spacing);
   if (record != nullptr) dropCutOff(points, neighborhoods, *record->whole, sheets);
   if (begin) begin("segmentation", 0.48);
@@ -110,7 +111,7 @@ AutoNormals orientAtOneScale(const PointView& points, const Neighborhoods& neigh
   if (!out.orientation.toward.empty()) {
     out.by_sensor = faceSensors(out.orientation.toward, filtered);
     if (sheets.traits.scan_scales) {
-      replaceGrazingNormals(points, out.orientation.toward, threads, filtered);
+      replaceGrazingNormals(more, out.orientation.toward, threads, filtered);
     }
   }
   out.normals = std::move(filtered.normals);
@@ -141,27 +142,28 @@ AutoNormals orientAtOneScale(const PointView& points, const Neighborhoods& neigh
 
 }  // namespace
 
-AutoNormals orientPoints(const PointView& points, const Neighborhoods& neighborhoods,
+AutoNormals orientPoints(MoreNeighbors& more, const Neighborhoods& neighborhoods,
                          const AutomaticOptions& settings, const PointHints& hints, int threads,
                          const std::function<void(const char*, double)>& begin, SheetRecord* record,
                          FinishedSegments* finished) {
   AutoNormals out =
-      orientAtOneScale(points, neighborhoods, settings, hints, threads, begin, record, finished);
+      orientAtOneScale(more, neighborhoods, settings, hints, threads, begin, record, finished);
   // Whether a coarser scale is better is for the whole cloud to tell.
   // Where points have sensors of their own, those decide.
   const bool part = record != nullptr;
   if (part ? !record->coarser : !settings.coarse_levels || !hints.sensors.empty()) return out;
   const auto orient = [&](const PointView& subset, const Neighborhoods& table,
                           const PointHints& of_subset) {
-    return orientAtOneScale(subset, table, settings, of_subset, threads, {}, nullptr, nullptr);
+    MoreNeighbors of_level(subset, threads);
+    return orientAtOneScale(of_level, table, settings, of_subset, threads, {}, nullptr, nullptr);
   };
   // A coarser level knows nothing of what is around each point.
   const std::vector<std::uint8_t> around = out.around;
   const SheetTraits traits = out.sheets;
   if (part) {
-    record->coarser(points, out);
+    record->coarser(more.points(), out);
   } else {
-    out.level = followCoarserLevels(points, neighborhoods, hints, orient, threads, out);
+    out.level = followCoarserLevels(more.points(), neighborhoods, hints, orient, threads, out);
   }
   if (out.level > 0.F) out.level_sheets = out.sheets;
   out.around = around;

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "features/automatic_normals.h"
+#include "features/more_neighbors.h"
 #include "features/sheet_normals.h"
 #include "orientation/automatic/orient_sheets.h"
 #include "orientation/sensors/point_hints.h"
@@ -75,13 +76,14 @@ struct SheetRecord {
 
 /// Sheet normals, sheet segments, their orientation, and the filter that makes the final normals;
 /// at a coarser scale as well where points contradict each other, see followCoarserLevels().
+/// \param more the points, and more neighbours than those of the table for who needs them
 /// \param begin called with a stage's name and the fraction of the work done before it; may be
 ///        empty
 /// \param record null unless the cloud is part of a larger one
 /// \param finished where not null: the sheets' segments as a user wants to see them, their signs
 ///        those of the sheets' normals, which are not known any more; see segmentSheets()
 SEGORIENT_ORIENTATION_EXPORT AutoNormals
-orientPoints(const PointView& points, const Neighborhoods& neighborhoods,
+orientPoints(MoreNeighbors& more, const Neighborhoods& neighborhoods,
              const AutomaticOptions& settings, const PointHints& hints, int threads,
              const std::function<void(const char*, double)>& begin = {},
              SheetRecord* record = nullptr, FinishedSegments* finished = nullptr);

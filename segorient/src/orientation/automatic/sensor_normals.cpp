@@ -2,8 +2,6 @@
 // Copyright (c) 2026, the segorient authors
 #include "orientation/automatic/sensor_normals.h"
 
-#include <segorient/search/median_hash_index.h>
-
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -94,9 +92,10 @@ class GrowingPlane {
 
 class Leaner {
  public:
-  Leaner(const PointView& points, const Neighborhoods& nb, const std::vector<float>& toward,
+  Leaner(MoreNeighbors& more, const Neighborhoods& nb, const std::vector<float>& toward,
          const std::vector<std::uint8_t>& sure, int threads, std::vector<float>& normals)
-      : points_(points),
+      : more_(more),
+        points_(more.points()),
         nb_(nb),
         toward_(toward),
         sure_(sure),
@@ -104,9 +103,7 @@ class Leaner {
         normals_(normals) {}
 
   void run() {
-    search::MedianHashIndex::Options options;
-    options.threads = threads_;
-    index_.build(points_, nullptr, options);
+    more_.prepareRows();
     leaned_ = normals_;
     tolerance_.assign(points_.size, 0.F);
     int t = resolveThreads(threads_, points_.size, kFitTime);
@@ -192,11 +189,10 @@ class Leaner {
   }
 
   Plane planeAround(std::size_t i, float scale) const {
-    std::array<pcl::index_t, kWidest + 1> row;
-    std::array<float, kWidest + 1> squares;
-    const int found = index_.nearestK(points_[i], kWidest + 1, row.data(), squares.data(), 0.F);
+    MoreNeighbors::Room room;
+    const MoreNeighbors::Row row = more_.row(i, kWidest + 1, room);
     GrowingPlane sum(points_, i, scale);
-    for (int j = 0; j < found; ++j) sum.add(row[static_cast<std::size_t>(j)]);
+    for (int j = 0; j < row.count; ++j) sum.add(row.indices[j]);
     return sum.plane();
   }
 
@@ -248,23 +244,23 @@ class Leaner {
     out[2] = n.z;
   }
 
+  MoreNeighbors& more_;
   const PointView& points_;
   const Neighborhoods& nb_;
   const std::vector<float>& toward_;
   const std::vector<std::uint8_t>& sure_;
   int threads_;
   std::vector<float>& normals_;
-  search::MedianHashIndex index_;
   std::vector<float> leaned_;
   std::vector<float> tolerance_;  // squares of distances
 };
 
 }  // namespace
 
-void leanToSensors(const PointView& points, const Neighborhoods& neighborhoods,
+void leanToSensors(MoreNeighbors& more, const Neighborhoods& neighborhoods,
                    const std::vector<float>& toward, const std::vector<std::uint8_t>& sure,
                    int threads, std::vector<float>& normals) {
-  Leaner(points, neighborhoods, toward, sure, threads, normals).run();
+  Leaner(more, neighborhoods, toward, sure, threads, normals).run();
 }
 
 }  // namespace segorient::detail

@@ -3,10 +3,11 @@
 #pragma once
 
 #include <segorient/common/neighborhoods.h>
-#include <segorient/common/point_view.h>
 
 #include <cstdint>
 #include <vector>
+
+#include "features/more_neighbors.h"
 
 namespace segorient::detail {
 
@@ -19,12 +20,14 @@ namespace segorient::detail {
 /// and in noise, where planes of several sizes and the normals around contradict each other, it
 /// leans to the sensor, so that no error of its line takes it to the other side.
 ///
+/// \param more the points, and neighbours beyond those of the table where planes contradict each
+///        other
 /// \param neighborhoods of the points
 /// \param toward 3 a point: unit vector to its sensor; 0 = unknown, and the normal stays
 /// \param sure one a point, or none: normals that stay as far as their side allows, whatever the
 ///        planes around say, which near an edge are of both faces
 /// \param normals 4 floats a point, oriented; changed but for the fourth
-void leanToSensors(const PointView& points, const Neighborhoods& neighborhoods,
+void leanToSensors(MoreNeighbors& more, const Neighborhoods& neighborhoods,
                    const std::vector<float>& toward, const std::vector<std::uint8_t>& sure,
                    int threads, std::vector<float>& normals);
 

@@ -114,8 +114,9 @@ AutoStages runAutoStages(PreparedCloud& cloud, const PipelineOptions& options,
   FinishedSegments finished;
   finished.options = segmentation::inUnitOf(cloud, {options.segmentation});
   finished.options.threads = options.threads;
+  MoreNeighbors more(points, options.threads);
   AutoNormals oriented =
-      orientPoints(points, table, settings, hints, options.threads, begin, record, &finished);
+      orientPoints(more, table, settings, hints, options.threads, begin, record, &finished);
   out.segmentation = std::move(finished.segmentation);
   // What sensors or the user know is better than what the field tells.
   if (settings.winding_normals && record == nullptr && knowsNothing(hints)) {
@@ -131,11 +132,11 @@ AutoStages runAutoStages(PreparedCloud& cloud, const PipelineOptions& options,
   if (settings.fit_normals && !out.denoised && few_tell) {
     begin("recomputation", 0.88);
     out.final_traits =
-        fitFinalNormals(cloud, out.segmentation, options.k > 0, options.threads,
+        fitFinalNormals(cloud, more, out.segmentation, options.k > 0, options.threads,
                         record != nullptr ? &record->final_traits : nullptr, oriented);
   }
   if (!oriented.orientation.toward.empty()) {
-    leanToSensors(points, table, oriented.orientation.toward, oriented.sure, options.threads,
+    leanToSensors(more, table, oriented.orientation.toward, oriented.sure, options.threads,
                   oriented.normals);
   }
   followFinalNormals(table, oriented.normals, options.threads, out.segmentation);

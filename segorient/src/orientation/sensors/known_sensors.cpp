@@ -5,8 +5,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <numeric>
+#include <unordered_map>
 
 #include "orientation/sensors/scan_checks.h"
 
@@ -35,24 +37,45 @@ bool isKnown(const float* place) {
 
 // The places in ascending order, and which of them each point has.
 std::vector<Place> numberPlaces(const std::vector<float>& sensors, std::vector<std::int32_t>& of) {
-  std::vector<std::uint32_t> order;
-  for (std::size_t i = 0; i < of.size(); ++i) {
-    if (isKnown(&sensors[3 * i])) order.push_back(static_cast<std::uint32_t>(i));
-  }
-  const auto place = [&](std::uint32_t i) {
-    return Place{sensors[3 * i], sensors[3 * i + 1], sensors[3 * i + 2]};
+  // Points of one place mostly come one after another, and there are few places or as many as
+  // points.
+  struct Hash {
+    std::size_t operator()(const Place& p) const {
+      std::size_t h = 0;
+      for (const float v : p) h = h * 1000003U + std::hash<float>()(v);
+      return h;
+    }
   };
-  std::sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {
-    const Place pa = place(a);
-    const Place pb = place(b);
-    return pa != pb ? pa < pb : a < b;
-  });
+  std::unordered_map<Place, std::int32_t, Hash> found;
   std::vector<Place> places;
-  for (const std::uint32_t i : order) {
-    if (places.empty() || places.back() != place(i)) places.push_back(place(i));
-    of[i] = static_cast<std::int32_t>(places.size() - 1);
+  std::int32_t last = -1;
+  for (std::size_t i = 0; i < of.size(); ++i) {
+    const float* v = &sensors[3 * i];
+    if (!isKnown(v)) continue;
+    const Place place{v[0], v[1], v[2]};
+    if (last < 0 || place != places[static_cast<std::size_t>(last)]) {
+      const auto next = static_cast<std::int32_t>(places.size());
+      const auto [at, is_new] = found.emplace(place, next);
+      if (is_new) places.push_back(place);
+      last = at->second;
+    }
+    of[i] = last;
   }
-  return places;
+  std::vector<std::int32_t> order(places.size());
+  std::iota(order.begin(), order.end(), 0);
+  std::sort(order.begin(), order.end(), [&](std::int32_t a, std::int32_t b) {
+    return places[static_cast<std::size_t>(a)] < places[static_cast<std::size_t>(b)];
+  });
+  std::vector<std::int32_t> rank(places.size());
+  std::vector<Place> sorted;
+  for (const std::int32_t p : order) {
+    rank[static_cast<std::size_t>(p)] = static_cast<std::int32_t>(sorted.size());
+    sorted.push_back(places[static_cast<std::size_t>(p)]);
+  }
+  for (std::int32_t& p : of) {
+    if (p >= 0) p = rank[static_cast<std::size_t>(p)];
+  }
+  return sorted;
 }
 
 class Finder {
@@ -151,7 +174,7 @@ class Finder {
       if (out_.scan[i] == static_cast<std::int32_t>(s))
         rows.push_back(static_cast<std::uint32_t>(i));
     }
-    const Scan scan(points_, rows, report.position, threads_);
+    Scan scan(points_, rows, report.position, threads_);
     const Scan::Density density = scan.density();
     report.density = density.ratio;
     std::vector<std::uint8_t> hidden = scan.hidden(false);

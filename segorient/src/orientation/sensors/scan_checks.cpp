@@ -2,8 +2,6 @@
 // Copyright (c) 2026, the segorient authors
 #include "orientation/sensors/scan_checks.h"
 
-#include <segorient/search/median_hash_index.h>
-
 #include <algorithm>
 #include <cmath>
 
@@ -24,19 +22,25 @@ constexpr int kPlane = 24;
 constexpr double kRayTime = 2000.0;
 constexpr double kPairTime = 1000.0;
 
-Plane planeOf(const PointView& points, const Neighborhoods& nb, std::size_t i, int k) {
+// Of those whose mean distance is the spacing.
+constexpr int kSpacing = 6;
+
+// \param row the point itself first
+Plane planeOf(const PointView& points, std::size_t i, const pcl::index_t* row, int count) {
   Moments m;
   m.addOrigin();
-  const pcl::index_t* row = nb.indices(i);
-  const int count = std::min(nb.count(i), k + 1);
   const float* p = points[i];
-  const float h = meanDistance(points, nb, i, 6);
+  const float h = meanDistance(points, i, row + 1, std::min(count - 1, kSpacing));
   const float scale = h > 0.F ? 1.F / h : 0.F;
   for (int j = 1; j < count; ++j) {
     const float* q = points[static_cast<std::size_t>(row[j])];
     m.add((q[0] - p[0]) * scale, (q[1] - p[1]) * scale, (q[2] - p[2]) * scale);
   }
   return fitPlane(m);
+}
+
+Plane planeOf(const PointView& points, const Neighborhoods& nb, std::size_t i, int k) {
+  return planeOf(points, i, nb.indices(i), std::min(nb.count(i), k + 1));
 }
 
 std::size_t strideOf(std::size_t points, std::size_t samples) {
@@ -53,12 +57,18 @@ float scatterOf(std::vector<float> r) {
 
 }  // namespace
 
+// The nearest of one point, itself first.
+struct Scan::Row {
+  std::array<pcl::index_t, kPlane + 1> room;
+  const pcl::index_t* indices = nullptr;
+  int count = 0;
+};
+
 Scan::Scan(const PointView& points, const std::vector<std::uint32_t>& rows,
            const std::array<float, 3>& sensor, int threads)
     : xyz_(4 * rows.size(), 0.F),
       direction_(4 * rows.size(), 0.F),
       distance_(rows.size()),
-      spacing_(rows.size()),
       threads_(threads) {
   for (std::size_t i = 0; i < rows.size(); ++i) {
     double v[3];
@@ -74,18 +84,35 @@ Scan::Scan(const PointView& points, const std::vector<std::uint32_t>& rows,
       direction_[4 * i + a] = static_cast<float>(v[a] / d);
     }
   }
-  search::MedianHashIndex index;
   search::MedianHashIndex::Options options;
   options.threads = threads;
-  index.build(view(), nullptr, options);
-  index.nearestKAll(kPlane + 1, near_, false);
-  for (std::size_t i = 0; i < rows.size(); ++i) spacing_[i] = meanDistance(view(), near_, i, 6);
+  index_.build(view(), nullptr, options);
 }
 
-std::vector<std::uint8_t> Scan::hidden(bool all) const {
-  constexpr int kAround = 24;      // in angle: of a nearer surface, and of the point's own
-  constexpr int kTwo = 2;          // a single point that floats before the others hides nothing
-  constexpr float kLeast = 0.15F;  // a surface that is seen at less rises by many spacings
+void Scan::nearest(std::size_t i, int entries, Row& out) const {
+  if (near_.k() > 0) {
+    out.indices = near_.indices(i);
+    out.count = std::min(near_.count(i), entries);
+    return;
+  }
+  std::array<float, kPlane + 1> squares;
+  out.indices = out.room.data();
+  out.count = index_.nearestK(view()[i], entries, out.room.data(), squares.data(), 0.F);
+}
+
+float Scan::spacingOf(std::size_t i) const {
+  if (!spacing_.empty()) return spacing_[i];
+  Row row;
+  nearest(i, kSpacing + 1, row);
+  return meanDistance(view(), i, row.indices + 1, row.count - 1);
+}
+
+std::vector<std::uint8_t> Scan::hidden(bool all) {
+  if (all && near_.k() == 0) {
+    index_.nearestKAll(kPlane + 1, near_, false);
+    spacing_.resize(size());
+    for (std::size_t i = 0; i < size(); ++i) spacing_[i] = meanDistance(view(), near_, i, kSpacing);
+  }
   const std::size_t step = all ? 1 : strideOf(size(), kSamples);
   const std::size_t n = (size() + step - 1) / step;
   search::MedianHashIndex index;
@@ -95,27 +122,35 @@ std::vector<std::uint8_t> Scan::hidden(bool all) const {
   std::vector<std::uint8_t> out(n, 0);
 #pragma omp parallel for num_threads(resolveThreads(threads_, n, kRayTime)) schedule(dynamic, 64)
   for (std::size_t s = 0; s < n; ++s) {
-    const std::size_t i = s * step;
-    const Plane plane = planeOf(view(), near_, i, kPlane);
-    const float incidence =
-        plane.valid ? std::fabs(dot(plane.normal.data(), &direction_[4 * i])) : 1.F;
-    // Four spacings before it, along the surface, and a thirtieth of its distance: steps of depth.
-    const float d = distance_[i];
-    const float margin = std::max(4.F * spacing_[i] / std::max(incidence, kLeast), 0.03F * d);
-    std::array<pcl::index_t, kAround> around;
-    std::array<float, kAround> squares;
-    const int found = index.nearestK(&direction_[4 * i], kAround, around.data(), squares.data());
-    int before = 0;
-    for (int j = 0; j < found; ++j) {
-      const auto at = static_cast<std::size_t>(j);
-      const auto q = static_cast<std::size_t>(around[at]);
-      if (distance_[q] >= d - margin) continue;
-      const float reach = spacing_[q] / distance_[q];
-      before += squares[at] < reach * reach ? 1 : 0;
-    }
-    out[s] = before >= kTwo ? 1 : 0;
+    out[s] = isHidden(s * step, index) ? 1 : 0;
   }
   return out;
+}
+
+bool Scan::isHidden(std::size_t i, const search::MedianHashIndex& directions) const {
+  constexpr int kAround = 24;      // in angle: of a nearer surface, and of the point's own
+  constexpr int kTwo = 2;          // a single point that floats before the others hides nothing
+  constexpr float kLeast = 0.15F;  // a surface that is seen at less rises by many spacings
+  Row row;
+  nearest(i, kPlane + 1, row);
+  const Plane plane = planeOf(view(), i, row.indices, row.count);
+  const float incidence =
+      plane.valid ? std::fabs(dot(plane.normal.data(), &direction_[4 * i])) : 1.F;
+  // Four spacings before it, along the surface, and a thirtieth of its distance: steps of depth.
+  const float d = distance_[i];
+  const float margin = std::max(4.F * spacingOf(i) / std::max(incidence, kLeast), 0.03F * d);
+  std::array<pcl::index_t, kAround> around;
+  std::array<float, kAround> squares;
+  const int found = directions.nearestK(&direction_[4 * i], kAround, around.data(), squares.data());
+  int before = 0;
+  for (int j = 0; j < found && before < kTwo; ++j) {
+    const auto at = static_cast<std::size_t>(j);
+    const auto q = static_cast<std::size_t>(around[at]);
+    if (distance_[q] >= d - margin) continue;
+    const float reach = spacingOf(q) / distance_[q];
+    before += squares[at] < reach * reach ? 1 : 0;
+  }
+  return before >= kTwo;
 }
 
 Scan::Density Scan::density() const {
@@ -139,13 +174,17 @@ Scan::Density Scan::density() const {
   }
   std::vector<float> constant;
   std::array<std::vector<float>, kLaws> laws;
+  Row row;
   for (std::size_t i = 0; i < size(); i += step) {
-    const Plane plane = planeOf(view(), near_, i, kPlane);
+    nearest(i, kPlane + 1, row);
+    const Plane plane = planeOf(view(), i, row.indices, row.count);
     const Eigen::Vector3f& l = plane.lambda;
+    const float spacing =
+        meanDistance(view(), i, row.indices + 1, std::min(row.count - 1, kSpacing));
     if (!plane.valid || !(l[0] < kFlat * l[1]) || !(l[1] > kWide * l[2])) continue;
-    if (!(distance_[i] > 0.F) || !(spacing_[i] > 0.F)) continue;
+    if (!(distance_[i] > 0.F) || !(spacing > 0.F)) continue;
     const float* u = &direction_[4 * i];
-    const float log_density = -0.5F * std::log(l[1] * l[2]) - 2.F * std::log(spacing_[i]);
+    const float log_density = -0.5F * std::log(l[1] * l[2]) - 2.F * std::log(spacing);
     const float incidence = std::max(std::fabs(dot(plane.normal.data(), u)), kGrazing);
     const float plain = log_density - std::log(incidence) + 2.F * std::log(distance_[i]);
     constant.push_back(log_density);

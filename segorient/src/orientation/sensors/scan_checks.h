@@ -4,6 +4,7 @@
 
 #include <segorient/common/neighborhoods.h>
 #include <segorient/common/point_view.h>
+#include <segorient/search/median_hash_index.h>
 
 #include <array>
 #include <cstddef>
@@ -13,7 +14,7 @@
 
 namespace segorient::detail {
 
-/// Points that one sensor is said to have seen, and their neighbours among themselves.
+/// Points that one sensor is said to have seen. Neighbours are those among themselves.
 class Scan {
  public:
   /// \param rows of the points
@@ -25,7 +26,7 @@ class Scan {
   /// Which of some thousand points, or of all, lie behind others: the point's ray passes two of
   /// them within their own spacing, well before it arrives.
   /// \return one a point that was looked at
-  std::vector<std::uint8_t> hidden(bool all) const;
+  std::vector<std::uint8_t> hidden(bool all);
 
   struct Density {
     /// Scatter of log density about that of a sensor here, over that about a constant.
@@ -37,13 +38,19 @@ class Scan {
   Density density() const;
 
  private:
+  struct Row;
+
   PointView view() const { return {xyz_.data(), 4, distance_.size()}; }
+  void nearest(std::size_t i, int entries, Row& out) const;
+  float spacingOf(std::size_t i) const;
+  bool isHidden(std::size_t i, const search::MedianHashIndex& directions) const;
 
   std::vector<float> xyz_;        ///< 4 floats: relative to the sensor
   std::vector<float> direction_;  ///< 4 floats: of length 1
   std::vector<float> distance_;
-  std::vector<float> spacing_;  ///< among its own
-  Neighborhoods near_;          ///< among its own
+  search::MedianHashIndex index_;
+  Neighborhoods near_;          ///< empty until all are asked for
+  std::vector<float> spacing_;  ///< the same
   int threads_;
 };
 
