@@ -3,8 +3,6 @@
 #include "features/automatic_normals.h"
 
 #include <algorithm>
-#include <array>
-#include <cmath>
 #include <iomanip>
 #include <limits>
 #include <numeric>
@@ -12,31 +10,20 @@
 #include <utility>
 
 #include "features/cloud_noise.h"
+#include "features/surface_sizes.h"
 
 namespace segorient {
 namespace {
 
 using detail::CloudNoise;
+using detail::cubicSize;
 using detail::Explained;
+using detail::kCleanNoise;
+using detail::kCubicNeighbors;
+using detail::kTriangulationNeighbors;
+using detail::kTriangulationNoise;
 using detail::Surfaces;
 
-// Neighbourhoods of the quadratic surfaces that are tried.
-constexpr std::array<int, 6> kSizes{10, 16, 24, 32, 48, kMostAutomaticNeighbors};
-// Up to this noise the smallest neighbourhood is the best one wherever it fits.
-constexpr double kCleanNoise = 0.03;
-// Up to this noise local triangulations beat small surfaces at edges.
-constexpr double kTriangulationNoise = 0.1;
-// Smallest neighbourhood beyond that.
-constexpr int kSmallestNoisy = 16;
-// The paper's number for clouds without noise.
-constexpr int kTriangulationNeighbors = 10;
-// Up to this noise cubic surfaces, which can bend at an edge, beat quadratic ones there.
-constexpr double kCubicNoise = 0.35;
-// Neighbourhoods of cubic surfaces, per unit of noise over spacing: they have nearly twice the
-// coefficients.
-constexpr double kCubicPerNoise = 150.0;
-// Points for each coefficient as with the smallest quadratic surfaces of noisy clouds.
-constexpr int kSmallestCubic = 24;
 // A cubic surface is the better one where it leaves so much less than a quadratic one does, in
 // standard deviations: noise alone makes one point in eight look so (F test). They are taken where
 // most points look so: what fits nothing on scans without edges are stray points, and they bend
@@ -45,76 +32,12 @@ constexpr double kBetter = 0.9;
 // Without noise, a quadratic surface that leaves less than this share of what a plane leaves has
 // found a bend, even a sharp one: of an edge through the middle it leaves a quarter.
 constexpr double kBend = 0.2;
-// On surfaces without noise that a formula makes, cubic surfaces of a few neighbours leave less
-// than half of what quadratic ones do. Meshes and scans have such places, but nowhere near so many.
-constexpr int kCubicNeighbors = 12;
+// Cubic surfaces that leave less than this share of what quadratic ones do have found the next term
+// of a series.
 constexpr double kNextTerm = 0.5;
 // Near edges, where a plane fits a few neighbours as well as noise lets it, they are all on one
 // side.
 constexpr int kPlaneNeighbors = 6;
-// Neighbourhoods that are worth trying, per unit of noise over spacing. Noise turns the normals of
-// k neighbours by about noise / (spacing k): with 400 it has sunk to a fraction of a degree, below
-// 90 it is several degrees, more than what the larger neighbourhood costs at an edge.
-constexpr double kLargestPerNoise = 400.0;
-constexpr double kSmallestPerNoise = 90.0;
-// Beyond this noise a few neighbours are a ball of points, whose residual hardly grows with the
-// noise and says nothing of the surface: then only the largest neighbourhood is left.
-constexpr double kSaturatedNoise = 0.45;
-
-/// The sizes to try, largest first.
-std::vector<int> sizesFor(double noise, int available) {
-  std::vector<int> sizes;
-  const bool clean = noise < kCleanNoise;
-  const double largest = clean ? kSizes.front() : kLargestPerNoise * noise;
-  const double least = noise < kTriangulationNoise ? kSizes.front() : kSmallestNoisy;
-  const double smallest = std::max(least, kSmallestPerNoise * noise);
-  for (std::size_t s = kSizes.size(); s-- > 0;) {
-    const bool enough = s > 0 && !sizes.empty() && kSizes[s] < smallest;
-    if (enough) break;
-    if (s == 0 || (kSizes[s] <= largest && kSizes[s] <= available)) sizes.push_back(kSizes[s]);
-  }
-  if (sizes.size() > 1 && sizes.back() < smallest) sizes.pop_back();
-  if (noise > kSaturatedNoise) sizes.resize(1);
-  return sizes;
-}
-
-/// Neighbours that the widest of what is tried needs.
-int neighborsFor(const CloudNoise& noise) {
-  const std::vector<int> sizes =
-      sizesFor(std::max(detail::kLeastNoise, noise.in_spacings), kMostAutomaticNeighbors);
-  return std::max({sizes.front(), kTriangulationNeighbors, kCubicNeighbors});
-}
-
-// Standard deviation of the nearest neighbours, the point itself among them, from their plane;
-// infinite where they have none.
-double planeResidual(const PointView& points, const Neighborhoods& table, std::size_t row, int k,
-                     const float* normal) {
-  const int count = std::min(table.count(row), k + 1);
-  const float* origin = points[row];
-  double sum = 0;
-  double squares = 0;
-  for (int j = 0; j < count; ++j) {
-    const float* p = points[static_cast<std::size_t>(table.indices(row)[j])];
-    double offset = 0;
-    for (int a = 0; a < 3; ++a) {
-      offset += (static_cast<double>(p[a]) - static_cast<double>(origin[a])) *
-                static_cast<double>(normal[a]);
-    }
-    sum += offset;
-    squares += offset * offset;
-  }
-  if (count < 4 || !isFinite(normal)) return std::numeric_limits<double>::infinity();
-  return std::sqrt(std::max(0.0, squares - sum * sum / count) / (count - 3));
-}
-
-/// The neighbourhood of cubic surfaces for so much noise, or 0.
-int cubicSize(double noise, int available) {
-  if (noise > kCubicNoise) return 0;
-  for (const int k : kSizes) {
-    if (k >= kSmallestCubic && k >= kCubicPerNoise * noise) return k <= available ? k : 0;
-  }
-  return 0;
-}
 
 std::vector<pcl::index_t> allRows(std::size_t size) {
   std::vector<pcl::index_t> rows(size);
@@ -188,7 +111,7 @@ class Estimation {
   }
 
   void takeQuadratics() {
-    for (const int k : sizesFor(in_spacings_, available())) {
+    for (const int k : detail::quadraticSizes(in_spacings_, available())) {
       quadratics_.fitInto(normals_, points_, table_, k, threads_, open_);
       report_.surfaces.emplace_back(
           k, closeExplained(k + 1 - 6, [&](std::size_t i) { return quadratics_.residuals[i]; }));
@@ -210,7 +133,8 @@ class Estimation {
     estimateNormals(points_, points_, table_, options, normals_, nullptr, &open_);
     const std::vector<pcl::index_t> rows = open_;
     report_.surfaces.back().second += close([&](std::size_t row) {
-      const double plane = planeResidual(points_, table_, row, options.k, normals_ + 4 * row);
+      const double plane =
+          detail::planeResidual(points_, table_, row, options.k, normals_ + 4 * row);
       return static_cast<double>(quadratics_.residuals[row]) < kBend * plane;
     });
     for (std::size_t r = 0; r < rows.size(); ++r)
@@ -238,8 +162,8 @@ class Estimation {
     const std::vector<pcl::index_t> rows = detail::sampleRows(rows_);
     const std::vector<float> cubic = detail::sampleResiduals(
         NormalEstimator::AWAS_CUBIC, points_, table_, kCubicNeighbors, threads_, rows);
-    return areCubic(
-        rows, [&](std::size_t r) { return cubic[r]; }, kNextTerm);
+    const auto of_row = [&](std::size_t r) { return cubic[r]; };
+    return areCubic(rows, of_row, kNextTerm);
   }
 
   /// Cubic surfaces wherever they leave less than the quadratic ones, and where only they fit.
@@ -266,7 +190,7 @@ class Estimation {
     options.threads = threads_;
     estimateNormals(points_, points_, table_, options, normals_, nullptr, &open_);
     report_.planes = closeExplained(kPlaneNeighbors + 1 - 3, [&](std::size_t row) {
-      return planeResidual(points_, table_, row, kPlaneNeighbors, normals_ + 4 * row);
+      return detail::planeResidual(points_, table_, row, kPlaneNeighbors, normals_ + 4 * row);
     });
   }
 
@@ -313,6 +237,10 @@ CloudNoise noiseOf(const PointView& points, const Neighborhoods& neighborhoods, 
                    const AutomaticNormalTraits* known) {
   if (known != nullptr) return {known->noise, known->in_spacings};
   return detail::sampleNoise(points, neighborhoods, threads);
+}
+
+int neighborsFor(const CloudNoise& noise) {
+  return detail::widestSize(std::max(detail::kLeastNoise, noise.in_spacings));
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "common/median.h"
@@ -129,6 +130,26 @@ Explained::Explained(const PointView& points, const Neighborhoods& table, double
 bool Explained::operator()(std::size_t row, double residual) const {
   const double least = kLeastNoise * spacingAt(points_, table_, row);
   return residual <= scatter_ * std::max(noise_, least);
+}
+
+double planeResidual(const PointView& points, const Neighborhoods& table, std::size_t row, int k,
+                     const float* normal) {
+  const int count = std::min(table.count(row), k + 1);
+  const float* origin = points[row];
+  double sum = 0;
+  double squares = 0;
+  for (int j = 0; j < count; ++j) {
+    const float* p = points[static_cast<std::size_t>(table.indices(row)[j])];
+    double offset = 0;
+    for (int a = 0; a < 3; ++a) {
+      offset += (static_cast<double>(p[a]) - static_cast<double>(origin[a])) *
+                static_cast<double>(normal[a]);
+    }
+    sum += offset;
+    squares += offset * offset;
+  }
+  if (count < 4 || !isFinite(normal)) return std::numeric_limits<double>::infinity();
+  return std::sqrt(std::max(0.0, squares - sum * sum / count) / (count - 3));
 }
 
 }  // namespace segorient::detail

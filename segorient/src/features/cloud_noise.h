@@ -71,4 +71,9 @@ class Explained {
   double scatter_;
 };
 
+/// Standard deviation of the nearest neighbours, the point itself among them, from their plane;
+/// infinite where they have none.
+double planeResidual(const PointView& points, const Neighborhoods& table, std::size_t row, int k,
+                     const float* normal);
+
 }  // namespace segorient::detail
