@@ -22,6 +22,7 @@
 #include <utility>
 
 #include "common/bulk_bounds.h"
+#include "orientation/report_fields.h"
 
 namespace py = pybind11;
 
@@ -181,47 +182,27 @@ const char* nameOf(NormalEstimator estimator) {
   return "auto";
 }
 
-void addSegments(const OrientedCloud& cloud, py::dict& out) {
-  static constexpr std::array<const char*, 3> kKinds{"regular", "connected", "isolated"};
-  py::list segments;
-  py::list hard;
-  for (std::size_t i = 0; i < cloud.segments.size(); ++i) {
-    const Segment& s = cloud.segmentation.segments[i];
-    const SegmentOrientationResult& r = cloud.segments[i];
-    py::dict segment;
-    segment["label"] = i;
-    segment["kind"] = kKinds[static_cast<std::size_t>(s.kind)];
-    segment["points"] = s.size;
-    segment["component"] = r.component;
-    segment["sign"] = static_cast<int>(r.sign);
-    segment["oriented_by"] = toString(r.by);
-    segment["confidence"] = r.confidence;
-    segment["extremal_agreement"] = r.extremal_agreement;
-    segment["hard"] = r.hard;
-    segments.append(segment);
-    if (r.hard) hard.append(i);
-  }
-  out["segments"] = segments;
-  out["hard_segments"] = hard;
-}
-
-py::list sensorList(const SensorReport& report) {
+// A list of what a report lists, one dictionary an item.
+template <typename Items>
+py::list listOf(const Items& items) {
   py::list out;
-  for (const FoundSensor& s : report.sensors) {
-    py::dict sensor;
-    sensor["kind"] = toString(s.kind);
-    sensor["evidence"] = toString(s.evidence);
-    static constexpr std::array<const char*, 3> kPosition{"x", "y", "z"};
-    static constexpr std::array<const char*, 3> kAxis{"axis_x", "axis_y", "axis_z"};
-    for (std::size_t a = 0; a < 3; ++a) sensor[kPosition[a]] = s.position[a];
-    for (std::size_t a = 0; a < 3; ++a) sensor[kAxis[a]] = s.axis[a];
-    sensor["points"] = s.points;
-    sensor["cost_ratio"] = s.cost_ratio;
-    sensor["suggested"] = s.suggested;
-    sensor["sure"] = s.sure;
-    out.append(sensor);
+  for (const auto& item : items) {
+    py::dict fields;
+    detail::fieldsOf(item, {}, [&](const char* name, auto value) { fields[name] = value; });
+    out.append(fields);
   }
   return out;
+}
+
+void addSegments(const OrientedCloud& cloud, py::dict& out) {
+  std::vector<detail::ReportedSegment> segments;
+  py::list hard;
+  for (std::size_t i = 0; i < cloud.segments.size(); ++i) {
+    segments.push_back({i, cloud.segmentation.segments[i], cloud.segments[i]});
+    if (cloud.segments[i].hard) hard.append(i);
+  }
+  out["segments"] = listOf(segments);
+  out["hard_segments"] = hard;
 }
 
 // The same names and values as --report.
@@ -250,67 +231,12 @@ py::dict reportOf(const OrientedCloud& cloud) {
   seconds["total"] = report.seconds;
   out["seconds"] = seconds;
   out["peak_memory_bytes"] = report.peak_memory;
-  py::list components;
-  for (const ComponentOrientationResult& c : report.components) {
-    py::dict component;
-    component["points"] = c.points;
-    component["oriented_by"] = toString(c.by);
-    component["sign"] = static_cast<int>(c.sign);
-    component["evidence"] = c.evidence;
-    component["votes"] = c.votes;
-    component["confidence"] = c.confidence;
-    component["contradiction"] = c.contradiction;
-    components.append(component);
-  }
-  out["components"] = components;
-  py::list clusters;
-  for (const ClusterOrientationResult& c : report.clusters) {
-    py::dict cluster;
-    cluster["points"] = c.points;
-    cluster["component"] = c.component;
-    cluster["confidence"] = c.confidence;
-    clusters.append(cluster);
-  }
-  out["clusters"] = clusters;
-  py::list scales;
-  for (const ScaleEnergy& s : report.scales) {
-    py::dict scale;
-    scale["radius_in_spacings"] = s.radius;
-    scale["outside"] = s.outside;
-    scale["facing"] = s.facing;
-    scale["backs"] = s.backs;
-    scale["energy"] = s.total;
-    scale["taken"] = s.taken;
-    scales.append(scale);
-  }
-  out["scales"] = scales;
-  py::list contradictions;
-  for (const Contradiction& c : report.contradictions) {
-    py::dict contradiction;
-    contradiction["x"] = c.where[0];
-    contradiction["y"] = c.where[1];
-    contradiction["z"] = c.where[2];
-    contradiction["weight"] = c.weight;
-    contradictions.append(contradiction);
-  }
-  out["contradictions"] = contradictions;
-  py::list sensors;
-  for (const KnownSensor& s : report.known_sensors) {
-    py::dict sensor;
-    sensor["x"] = s.position[0];
-    sensor["y"] = s.position[1];
-    sensor["z"] = s.position[2];
-    sensor["points"] = s.points;
-    sensor["seen"] = s.seen;
-    sensor["used"] = s.used;
-    sensor["moving"] = s.moving;
-    sensor["hidden"] = s.hidden;
-    sensor["contrary"] = s.contrary;
-    sensor["density"] = s.density;
-    sensors.append(sensor);
-  }
-  out["known_sensors"] = sensors;
-  out["sensors"] = sensorList(report.sensors);
+  out["components"] = listOf(report.components);
+  out["clusters"] = listOf(report.clusters);
+  out["scales"] = listOf(report.scales);
+  out["contradictions"] = listOf(report.contradictions);
+  out["known_sensors"] = listOf(report.known_sensors);
+  out["sensors"] = listOf(report.sensors.sensors);
   addSegments(cloud, out);
   return out;
 }
@@ -331,7 +257,7 @@ py::tuple sensors(const FloatArray& points, const py::object& suggestions, std::
     const py::gil_scoped_release unlocked;
     report = findSensors(rows, options);
   }
-  const py::list found = sensorList(report);
+  const py::list found = listOf(report.sensors);
   return py::make_tuple(found, column(std::move(report.sensor_of)), report.deviation, report.chance,
                         report.why);
 }
@@ -412,29 +338,8 @@ py::tuple check(const FloatArray& points, const FloatArray& normals, const py::d
                         : static_cast<double>(found.at_fault) / static_cast<double>(found.judged);
   report["without_normal"] = found.without_normal;
   report["unlike"] = found.unlike;
-  py::list places;
-  for (const FaultyPlace& p : found.places) {
-    py::dict place;
-    place["contradicts"] = toString(p.fault);
-    place["points"] = p.points;
-    place["x"] = p.center[0];
-    place["y"] = p.center[1];
-    place["z"] = p.center[2];
-    place["size"] = p.size;
-    place["confidence"] = p.confidence;
-    place["scan"] = p.scan;
-    places.append(place);
-  }
-  report["places"] = places;
-  py::list scans;
-  for (const ScanCheck& s : found.scans) {
-    py::dict scan;
-    scan["scan"] = s.scan;
-    scan["judged"] = s.judged;
-    scan["against_sensor"] = s.against_sensor;
-    scans.append(scan);
-  }
-  report["scans"] = scans;
+  report["places"] = listOf(found.places);
+  report["scans"] = listOf(found.scans);
   std::vector<std::uint8_t> faults;
   for (const NormalFault f : found.faults) faults.push_back(static_cast<std::uint8_t>(f));
   return py::make_tuple(column(std::move(faults)), column(std::move(found.place_of)), report);

@@ -17,6 +17,7 @@
 #include "support/json.h"
 #include "support/memory.h"
 #include "support/progress_bar.h"
+#include "support/report_lists.h"
 #include "support/stage_options.h"
 
 namespace segorient::program {
@@ -89,30 +90,8 @@ std::string reportText(const NormalCheck& check, const std::array<double, 3>& or
   json.field("share", percent(check.at_fault, check.judged) / 100.0);
   json.field("without_normal", check.without_normal);
   json.field("unlike", check.unlike);
-  json.beginArray("places");
-  for (const FaultyPlace& p : check.places) {
-    const std::array<double, 3> where = moved(p.center, origin);
-    json.beginItem();
-    json.field("contradicts", toString(p.fault));
-    json.field("points", p.points);
-    json.field("x", where[0]);
-    json.field("y", where[1]);
-    json.field("z", where[2]);
-    json.field("size", p.size);
-    json.field("confidence", p.confidence);
-    json.field("scan", p.scan);
-    json.endObject();
-  }
-  json.endArray();
-  json.beginArray("scans");
-  for (const ScanCheck& s : check.scans) {
-    json.beginItem();
-    json.field("scan", s.scan);
-    json.field("judged", s.judged);
-    json.field("against_sensor", s.against_sensor);
-    json.endObject();
-  }
-  json.endArray();
+  addList(json, "places", check.places, origin);
+  addList(json, "scans", check.scans);
   return json.finish();
 }
 

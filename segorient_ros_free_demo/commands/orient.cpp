@@ -5,16 +5,17 @@
 #include <array>
 #include <cstdio>
 #include <optional>
+#include <vector>
 
 #include "commands/commands.h"
 #include "io/output_file.h"
 #include "io/readers.h"
 #include "support/command_line.h"
-#include "support/component_report.h"
 #include "support/hint_options.h"
 #include "support/json.h"
 #include "support/memory.h"
 #include "support/progress_bar.h"
+#include "support/report_lists.h"
 #include "support/result_columns.h"
 #include "support/sensor_report.h"
 #include "support/stage_memory.h"
@@ -73,59 +74,12 @@ void printSummary(const PipelineReport& report, const StageMemory& memory,
   std::printf("written         %s\n", out.c_str());
 }
 
-void addKnownSensors(const PipelineReport& report, const std::array<double, 3>& origin,
-                     JsonWriter& json) {
-  json.beginArray("known_sensors");
-  for (const KnownSensor& s : report.known_sensors) {
-    json.beginItem();
-    json.field("x", origin[0] + static_cast<double>(s.position[0]));
-    json.field("y", origin[1] + static_cast<double>(s.position[1]));
-    json.field("z", origin[2] + static_cast<double>(s.position[2]));
-    json.field("points", s.points);
-    json.field("seen", s.seen);
-    json.field("used", s.used);
-    json.field("moving", s.moving);
-    json.field("hidden", s.hidden);
-    json.field("contrary", s.contrary);
-    json.field("density", s.density);
-    json.endObject();
-  }
-  json.endArray();
-}
-
-void addScales(const PipelineReport& report, JsonWriter& json) {
-  json.beginArray("scales");
-  for (const ScaleEnergy& s : report.scales) {
-    json.beginItem();
-    json.field("radius_in_spacings", s.radius);
-    json.field("outside", s.outside);
-    json.field("facing", s.facing);
-    json.field("backs", s.backs);
-    json.field("energy", s.total);
-    json.field("taken", s.taken);
-    json.endObject();
-  }
-  json.endArray();
-}
-
 void addSegments(const OrientedCloud& cloud, JsonWriter& json) {
-  json.beginArray("segments");
+  std::vector<detail::ReportedSegment> segments;
   for (std::size_t i = 0; i < cloud.segments.size(); ++i) {
-    const Segment& s = cloud.segmentation.segments[i];
-    const SegmentOrientationResult& r = cloud.segments[i];
-    json.beginItem();
-    json.field("label", i);
-    json.field("kind", kindName(s.kind));
-    json.field("points", s.size);
-    json.field("component", r.component);
-    json.field("sign", static_cast<int>(r.sign));
-    json.field("oriented_by", toString(r.by));
-    json.field("confidence", r.confidence);
-    json.field("extremal_agreement", r.extremal_agreement);
-    json.field("hard", r.hard);
-    json.endObject();
+    segments.push_back({i, cloud.segmentation.segments[i], cloud.segments[i]});
   }
-  json.endArray();
+  addList(json, "segments", segments);
   json.beginArray("hard_segments");
   for (std::size_t i = 0; i < cloud.segments.size(); ++i) {
     if (cloud.segments[i].hard) json.item(i);
@@ -161,29 +115,12 @@ std::string reportText(const OrientedCloud& cloud, const StageMemory& memory,
   json.endObject();
   json.field("peak_memory_bytes", memory.most());
   addTo(json, memory);
-  addTo(json, report.components);
-  json.beginArray("clusters");
-  for (const ClusterOrientationResult& c : report.clusters) {
-    json.beginItem();
-    json.field("points", c.points);
-    json.field("component", c.component);
-    json.field("confidence", c.confidence);
-    json.endObject();
-  }
-  json.endArray();
-  json.beginArray("contradictions");
-  for (const Contradiction& c : report.contradictions) {
-    json.beginItem();
-    json.field("x", origin[0] + static_cast<double>(c.where[0]));
-    json.field("y", origin[1] + static_cast<double>(c.where[1]));
-    json.field("z", origin[2] + static_cast<double>(c.where[2]));
-    json.field("weight", c.weight);
-    json.endObject();
-  }
-  json.endArray();
-  addScales(report, json);
-  addKnownSensors(report, origin, json);
-  addTo(json, report.sensors, origin);
+  addList(json, "components", report.components);
+  addList(json, "clusters", report.clusters);
+  addList(json, "contradictions", report.contradictions, origin);
+  addList(json, "scales", report.scales);
+  addList(json, "known_sensors", report.known_sensors, origin);
+  addList(json, "sensors", report.sensors.sensors, origin);
   addSegments(cloud, json);
   return json.finish();
 }

@@ -10,6 +10,7 @@
 #include "commands/commands.h"
 #include "io/output_file.h"
 #include "io/readers.h"
+#include "orientation/report_fields.h"
 #include "support/command_line.h"
 #include "support/hint_options.h"
 #include "support/json.h"
@@ -34,7 +35,7 @@ void printSummary(const OrientedCloud& cloud, std::size_t without_normal, const 
               without_normal);
   for (const SegmentKind kind :
        {SegmentKind::REGULAR, SegmentKind::CONNECTED, SegmentKind::ISOLATED}) {
-    std::printf("%-10s %zu segments of %zu points\n", kindName(kind),
+    std::printf("%-10s %zu segments of %zu points\n", detail::nameOf(kind),
                 count[static_cast<std::size_t>(kind)], points[static_cast<std::size_t>(kind)]);
   }
   std::printf("normals    %s\nseconds    %s\nwritten    %s\n", cloud.report.normals_chosen.c_str(),
@@ -66,7 +67,7 @@ std::string reportText(const OrientedCloud& cloud, const StageMemory& memory,
     const Segment& s = segmentation.segments[i];
     json.beginItem();
     json.field("label", i);
-    json.field("kind", kindName(s.kind));
+    json.field("kind", detail::nameOf(s.kind));
     json.field("points", s.size);
     json.field("area", s.area);
     json.field("rms", s.rms);

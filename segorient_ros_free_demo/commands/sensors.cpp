@@ -17,6 +17,7 @@
 #include "support/command_line.h"
 #include "support/hint_options.h"
 #include "support/json.h"
+#include "support/report_lists.h"
 #include "support/sensor_report.h"
 #include "support/stage_options.h"
 
@@ -84,7 +85,7 @@ std::string jsonText(std::size_t points, const std::vector<GivenSensor>& given,
     json.endObject();
   }
   json.endArray();
-  addTo(json, report, origin);
+  addList(json, "sensors", report.sensors, origin);
   json.field("deviation", report.deviation);
   json.field("chance", report.chance);
   json.field("why", report.why);

@@ -18,25 +18,4 @@ std::string describeSensor(const FoundSensor& sensor, const std::array<double, 3
   return text;
 }
 
-void addTo(JsonWriter& json, const SensorReport& report, const std::array<double, 3>& origin) {
-  json.beginArray("sensors");
-  for (const FoundSensor& s : report.sensors) {
-    json.beginItem();
-    json.field("kind", toString(s.kind));
-    json.field("evidence", toString(s.evidence));
-    json.field("x", origin[0] + static_cast<double>(s.position[0]));
-    json.field("y", origin[1] + static_cast<double>(s.position[1]));
-    json.field("z", origin[2] + static_cast<double>(s.position[2]));
-    json.field("axis_x", s.axis[0]);
-    json.field("axis_y", s.axis[1]);
-    json.field("axis_z", s.axis[2]);
-    json.field("points", s.points);
-    json.field("cost_ratio", s.cost_ratio);
-    json.field("suggested", s.suggested);
-    json.field("sure", s.sure);
-    json.endObject();
-  }
-  json.endArray();
-}
-
 }  // namespace segorient::program

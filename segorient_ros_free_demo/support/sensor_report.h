@@ -7,14 +7,9 @@
 #include <array>
 #include <string>
 
-#include "support/json.h"
-
 namespace segorient::program {
 
 /// "station at (x, y, z), ...": one sensor in a line. \param origin added to its position
 std::string describeSensor(const FoundSensor& sensor, const std::array<double, 3>& origin);
-
-/// An array "sensors" of what was found, as segorient/doc/report.md has it.
-void addTo(JsonWriter& json, const SensorReport& report, const std::array<double, 3>& origin);
 
 }  // namespace segorient::program

@@ -39,18 +39,6 @@ const char* estimatorName(NormalEstimator estimator) {
   return "auto";
 }
 
-const char* kindName(SegmentKind kind) {
-  switch (kind) {
-    case SegmentKind::REGULAR:
-      return "regular";
-    case SegmentKind::CONNECTED:
-      return "connected";
-    case SegmentKind::ISOLATED:
-      return "isolated";
-  }
-  return "regular";
-}
-
 void StageOptions::addMethod(CommandLine& line, bool orients) {
   auto options = orients ? line.options() : line.unlisted();
   options("method", po::value(&method_)->default_value("auto"),

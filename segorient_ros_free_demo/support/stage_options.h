@@ -55,7 +55,6 @@ void warnOfSharedOptions(const CommandLine& line, const CommonOptions& common, b
 
 /// auto, plane, lct, ldt, awas, awas3.
 const char* estimatorName(NormalEstimator estimator);
-const char* kindName(SegmentKind kind);
 /// "search 0.12  normals 0.03": one line of a summary.
 std::string timesText(const std::vector<StageTime>& times);
 

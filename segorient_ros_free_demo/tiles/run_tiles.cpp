@@ -11,7 +11,7 @@
 #include "common/peak_memory.h"
 #include "io/output_file.h"
 #include "support/command_line.h"
-#include "support/component_report.h"
+#include "support/report_lists.h"
 #include "support/json.h"
 #include "support/progress_bar.h"
 #include "tiles/input_state.h"
@@ -46,7 +46,7 @@ std::string reportText(const Plan& plan, const JoinSummary& joined, std::uint64_
   json.field("total", seconds);
   json.endObject();
   json.field("peak_memory_bytes", peakMemory());
-  addTo(json, joined.components);
+  addList(json, "components", joined.components);
   return json.finish();
 }
 
