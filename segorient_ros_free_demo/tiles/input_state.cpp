@@ -24,10 +24,10 @@ namespace {
 // Names of files that steps write, and of such files before they are moved to their places.
 bool isOurs(const std::string& name, bool unfinished_only) {
   static const std::regex kFinished(
-      "plan|join|labels|lock|input-[0-9]+\\.ply|"
+      "plan|join|field|labels|lock|input-[0-9]+\\.ply|"
       "tile-[0-9]+\\.(points|rows|share|ties|signs|rows2|ties2|patches)");
   static const std::regex kUnfinished(
-      "(plan|join|labels|input-[0-9]+\\.ply|"
+      "(plan|join|field|labels|input-[0-9]+\\.ply|"
       "tile-[0-9]+\\.(points|rows|share|ties|signs|rows2|ties2|patches))"
       "\\.([A-Za-z0-9]{6}|part)");
   return std::regex_match(name, kUnfinished) ||

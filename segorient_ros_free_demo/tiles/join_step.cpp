@@ -74,7 +74,7 @@ JoinSummary joinStep(const Plan& plan, const std::string& folder, int threads) {
     for (std::size_t a = 0; a < 3; ++a) offset[a] = plan.tile_origins[t][a] - plan.origin[a];
     const PatchFile patches =
         loadPatches(tilePath(folder, t, "patches"), plan.run, static_cast<std::uint32_t>(t));
-    joiner.addTile(share.piece_sizes, share.votes, patches.patches, offset);
+    joiner.addTile(share.piece_sizes, share.votes, patches.patches, patches.field_points, offset);
     options.hints.viewpoints.insert(options.hints.viewpoints.end(), patches.viewpoints.begin(),
                                     patches.viewpoints.end());
     options.hints.normals.insert(options.hints.normals.end(), patches.normals.begin(),
@@ -90,9 +90,12 @@ JoinSummary joinStep(const Plan& plan, const std::string& folder, int threads) {
   addTies(ties, joiner);
   JoinedTiles joined = joiner.join(options);
   JoinSummary summary;
+  const bool has_field = !joined.field.cells.empty();
+  if (has_field) saveField(joined.field, fieldPath(folder), plan.run);
   for (std::size_t t = 0; t < plan.tiles(); ++t) {
     SignsFile file;
-    file.again = needsFinishing(plan.traits, found[t], joined.tiles[t]);
+    file.field = has_field;
+    file.again = has_field || needsFinishing(plan.traits, found[t], joined.tiles[t]);
     file.signs = std::move(joined.tiles[t]);
     summary.again += file.again ? 1 : 0;
     saveSigns(file, tilePath(folder, t, "signs"), plan.run, static_cast<std::uint32_t>(t));

@@ -50,6 +50,10 @@ std::string joinPath(const std::string& folder) {
   return folder + "/join";
 }
 
+std::string fieldPath(const std::string& folder) {
+  return folder + "/field";
+}
+
 std::string labelsPath(const std::string& folder) {
   return folder + "/labels";
 }

@@ -119,6 +119,7 @@ void requireUnchanged(const Plan& plan);
 std::string tilePath(const std::string& folder, std::size_t tile, const char* ending);
 std::string planPath(const std::string& folder);
 std::string joinPath(const std::string& folder);
+std::string fieldPath(const std::string& folder);
 std::string labelsPath(const std::string& folder);
 
 }  // namespace segorient::program

@@ -24,7 +24,8 @@ enum class TileFileKind : std::uint32_t {
   SIGNS,
   JOIN,
   LABELS,
-  PATCHES
+  PATCHES,
+  FIELD
 };
 
 /// The first bytes of every file of a work folder.

@@ -33,6 +33,11 @@ StoredPatch storedOf(const TilePatch& patch) {
   return s;
 }
 
+struct StoredFieldPoint {
+  float position[3];
+  std::uint32_t normal;
+};
+
 TilePatch patchOf(const StoredPatch& s) {
   TilePatch patch;
   std::copy_n(s.position, 3, patch.position);
@@ -73,6 +78,13 @@ void savePatches(const PatchFile& patches, const std::string& path, std::uint64_
   stored.reserve(patches.patches.size());
   for (const TilePatch& patch : patches.patches) stored.push_back(storedOf(patch));
   file.list(stored);
+  std::vector<StoredFieldPoint> points(patches.field_points.size());
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const FieldPoint& p = patches.field_points[i];
+    std::copy_n(p.position, 3, points[i].position);
+    points[i].normal = packNormal(p.normal, kPatchNormalBits);
+  }
+  file.list(points);
   file.list(patches.viewpoints);
   file.list(patches.normals);
   file.commit();
@@ -82,6 +94,12 @@ PatchFile loadPatches(const std::string& path, std::uint64_t run, std::uint32_t 
   TileFileReader file(path, TileFileKind::PATCHES, run, tile);
   PatchFile patches;
   for (const StoredPatch& s : file.list<StoredPatch>()) patches.patches.push_back(patchOf(s));
+  for (const StoredFieldPoint& s : file.list<StoredFieldPoint>()) {
+    FieldPoint p;
+    std::copy_n(s.position, 3, p.position);
+    unpackNormal(s.normal, kPatchNormalBits, p.normal);
+    patches.field_points.push_back(p);
+  }
   patches.viewpoints = file.list<float>();
   patches.normals = file.list<float>();
   file.end();
@@ -92,6 +110,7 @@ void saveSigns(const SignsFile& signs, const std::string& path, std::uint64_t ru
                std::uint32_t tile) {
   TileFileWriter file(path, TileFileKind::SIGNS, run, tile);
   file.value(signs.again);
+  file.value(signs.field);
   file.list(signs.signs.pieces);
   // Without sensors, patches are turned as their pieces are.
   file.list(signs.signs.toward.empty() ? std::vector<std::int8_t>() : signs.signs.patches);
@@ -103,11 +122,32 @@ SignsFile loadSigns(const std::string& path, std::uint64_t run, std::uint32_t ti
   TileFileReader file(path, TileFileKind::SIGNS, run, tile);
   SignsFile signs;
   signs.again = file.value<bool>();
+  signs.field = file.value<bool>();
   signs.signs.pieces = file.list<std::int8_t>();
   signs.signs.patches = file.list<std::int8_t>();
   signs.signs.toward = file.list<float>();
   file.end();
   return signs;
+}
+
+void saveField(const CloudField& field, const std::string& path, std::uint64_t run) {
+  TileFileWriter file(path, TileFileKind::FIELD, run);
+  file.value(field.radius);
+  file.value(field.noise);
+  file.value(field.directions);
+  file.list(field.cells);
+  file.commit();
+}
+
+CloudField loadField(const std::string& path, std::uint64_t run) {
+  TileFileReader file(path, TileFileKind::FIELD, run);
+  CloudField field;
+  field.radius = file.value<float>();
+  field.noise = file.value<std::uint8_t>();
+  field.directions = file.value<std::uint8_t>();
+  field.cells = file.list<FieldCell>();
+  file.end();
+  return field;
 }
 
 void saveLabels(const LabelFile& labels, const std::string& path, std::uint64_t run) {

@@ -45,8 +45,9 @@ struct ShareFile {
 /// Its part of the far field.
 struct PatchFile {
   std::vector<TilePatch> patches;
-  std::vector<float> viewpoints;  ///< 3 a patch, relative to the plan's origin; or empty
-  std::vector<float> normals;     ///< 3 a patch, known beforehand, 0 = none; or empty
+  std::vector<FieldPoint> field_points;  ///< one a patch; or empty
+  std::vector<float> viewpoints;         ///< 3 a patch, relative to the plan's origin; or empty
+  std::vector<float> normals;            ///< 3 a patch, known beforehand, 0 = none; or empty
 };
 
 void savePatches(const PatchFile& file, const std::string& path, std::uint64_t run,
@@ -60,12 +61,17 @@ ShareFile loadShare(const std::string& path, std::uint64_t run, std::uint32_t ti
 /// What join says of a tile.
 struct SignsFile {
   TileSigns signs;
-  bool again = false;  ///< see needsFinishing()
+  bool again = false;  ///< whether the tile has to be worked on again
+  bool field = false;  ///< whether there is a file of the field, for that
 };
 
 void saveSigns(const SignsFile& file, const std::string& path, std::uint64_t run,
                std::uint32_t tile);
 SignsFile loadSigns(const std::string& path, std::uint64_t run, std::uint32_t tile);
+
+/// The field of all points, relative to the plan's origin.
+void saveField(const CloudField& field, const std::string& path, std::uint64_t run);
+CloudField loadField(const std::string& path, std::uint64_t run);
 
 /// Labels of the whole cloud, by tile and by its own label.
 using LabelFile = std::vector<std::vector<std::uint32_t>>;

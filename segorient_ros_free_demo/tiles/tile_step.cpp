@@ -87,6 +87,7 @@ void tileStep(const Plan& plan, const std::string& folder, std::size_t number, i
   file.votes = std::move(share.votes);
   PatchFile patches;
   patches.patches = std::move(share.patch_list);
+  patches.field_points = std::move(share.field_points);
   patches.viewpoints = ofPatches(work.points.viewpoints, patches.patches);
   patches.normals = ofPatches(work.points.normals, patches.patches);
   savePatches(patches, tilePath(folder, tile, "patches"), plan.run, tile);
@@ -100,8 +101,16 @@ void finishStep(const Plan& plan, const std::string& folder, std::size_t number,
   // The last file that is written.
   if (!file.again || std::filesystem::exists(ties_path)) return;
   const Work work = prepare(plan, folder, number, threads);
-  const TileShare share =
-      finishTile(work.view(), work.points.roles, work.points.whole, work.options, file.signs);
+  CloudField field;
+  if (file.field) field = loadField(fieldPath(folder), plan.run);
+  for (FieldCell& cell : field.cells) {
+    for (std::size_t a = 0; a < 3; ++a) {
+      cell.position[a] = static_cast<float>(static_cast<double>(cell.position[a]) + plan.origin[a] -
+                                            plan.tile_origins[number][a]);
+    }
+  }
+  const TileShare share = finishTile(work.view(), work.points.roles, work.points.whole,
+                                     work.options, file.signs, field);
   saveRows(ownRows(work.points, share), work.points.starts, tilePath(folder, tile, "rows2"),
            plan.run, tile);
   saveTies(work.points.shared, share, ties_path, plan.run, tile);

@@ -231,14 +231,14 @@ TEST(PatchSigns, LeaveAloneWhatIsNotInContact) {
     ComponentOrientationResult component;
     component.points = bodies.is_in_contact.size();
     component.residual = .2F;  // so that it is looked at
-    found.orientation.result.components = {component};
-    detail::solvePatchSigns(viewOf(bodies.xyz), 1, found);
+    const detail::CellSigns signs =
+        detail::findCellSigns(viewOf(bodies.xyz), found.normals, found.spacing, {component}, 1);
+    EXPECT_TRUE(signs.empty());
+    detail::takeCellSigns(viewOf(bodies.xyz), signs, found);
     EXPECT_EQ(found.normals, bodies.normals);
     EXPECT_EQ(found.confidences, std::vector<float>(bodies.is_in_contact.size(), 1.F));
   }
-  detail::AutoNormals none;
-  detail::solvePatchSigns({nullptr, 4, 0}, 1, none);
-  EXPECT_TRUE(none.normals.empty());
+  EXPECT_TRUE(detail::findCellSigns({nullptr, 4, 0}, {}, 0.F, {}, 1).empty());
 }
 
 }  // namespace

@@ -76,7 +76,7 @@ TEST(Join, NothingAndTilesWithoutPiecesAreJoined) {
   TileJoiner none;
   EXPECT_TRUE(none.join({}).tiles.empty());
   TileJoiner empty;
-  empty.addTile({}, {}, {}, {0.0, 0.0, 0.0});
+  empty.addTile({}, {}, {}, {}, {0.0, 0.0, 0.0});
   const JoinedTiles joined = empty.join({});
   ASSERT_EQ(joined.tiles.size(), 1U);
   EXPECT_TRUE(joined.tiles[0].patches.empty());

@@ -136,6 +136,40 @@ TEST(Tiles, OddCloudsAreOrientedOrGetNaN) {
   }
 }
 
+// What borders say of bodies in contact leads astray; the winding number of all points does not.
+TEST(Tiles, BodiesInContactHaveTheSidesOfTheWhole) {
+  const ScratchDirectory scratch;
+  const std::string in = writeDoubles(scratch.file("in.ply"), stackOfBoxes(4, 6000));
+  const std::string whole = scratch.file("whole.ply");
+  const std::string tiled = scratch.file("tiled.ply");
+  expectRuns({"orient", in, whole, "-q"});
+  expectRuns({"orient", in, tiled, "-q", "--memory", "1G", "--tile-points", "5000"});
+  // Faces in contact, a quarter of all, have no side.
+  EXPECT_GT(sameSides(whole, tiled), 23000U);
+}
+
+// In noise, normals follow the field of all points.
+TEST(Tiles, NormalsInNoiseAreThoseOfTheWhole) {
+  const ScratchDirectory scratch;
+  std::vector<double> body = hollowSphere(12000, 0.0, 0.0, 0.0);
+  std::mt19937 engine(5);
+  std::normal_distribution<double> noise(0.0, 0.015);
+  for (double& x : body) x += noise(engine);
+  const std::string in = writeDoubles(scratch.file("in.ply"), body);
+  expectRuns({"orient", in, scratch.file("whole.ply"), "-q"});
+  expectRuns(
+      {"orient", in, scratch.file("tiled.ply"), "-q", "--memory", "1G", "--tile-points", "4000"});
+  const program::CloudTable whole = program::readCloud(scratch.file("whole.ply"));
+  const program::CloudTable tiled = program::readCloud(scratch.file("tiled.ply"));
+  std::size_t same = 0;
+  for (std::size_t i = 0; i < whole.size; ++i) {
+    const auto n = whole.triple(whole.normals(), i);
+    const auto m = tiled.triple(tiled.normals(), i);
+    same += n[0] * m[0] + n[1] * m[1] + n[2] * m[2] > 0.9999 ? 1 : 0;
+  }
+  EXPECT_GT(same, 11900U);
+}
+
 TEST(Tiles, WhatDoesNotGoWithTilesIsWrongUsage) {
   const ScratchDirectory scratch;
   const std::string out = scratch.file("out.ply");

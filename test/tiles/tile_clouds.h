@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <cstring>
 #include <fstream>
+#include <random>
 #include <string>
 #include <vector>
 
@@ -32,6 +33,27 @@ inline std::vector<double> hollowSphere(std::size_t n, double x, double y, doubl
       add(i / 5, in_cavity, 0.5);
     } else {
       add(i - i / 5, n - in_cavity, 1.0);
+    }
+  }
+  return out;
+}
+
+/// Boxes one on the other, each 1 wide and deep and .5 high, the next a fifth farther out along x
+/// and y: faces in contact, with steps and overhangs around them.
+inline std::vector<double> stackOfBoxes(std::size_t boxes, std::size_t points_each) {
+  std::mt19937 engine(7);
+  std::uniform_real_distribution<double> uniform(0.0, 1.0);
+  const double size[3] = {1.0, 1.0, 0.5};
+  std::vector<double> out;
+  for (std::size_t b = 0; b < boxes; ++b) {
+    for (std::size_t i = 0; i < points_each; ++i) {
+      const double face = 4.0 * uniform(engine);  // by area: two of 1, four of 1/2
+      const std::size_t axis = face < 2.0 ? 2 : (face < 3.0 ? 0 : 1);
+      double p[3];
+      for (std::size_t a = 0; a < 3; ++a) p[a] = size[a] * uniform(engine);
+      p[axis] = uniform(engine) < 0.5 ? 0.0 : size[axis];
+      const double shift = 0.2 * static_cast<double>(b);
+      out.insert(out.end(), {p[0] + shift, p[1] + shift, p[2] + 0.5 * static_cast<double>(b)});
     }
   }
   return out;

@@ -7,8 +7,10 @@
 #include <map>
 #include <utility>
 
+#include "common/median.h"
 #include "orientation/automatic/orient_sheets.h"
 #include "search/prepared_cloud.h"
+#include "tiles/cloud_field.h"
 #include "tiles/piece_graph.h"
 
 namespace segorient {
@@ -69,6 +71,7 @@ struct TileJoiner::Impl {
   std::vector<std::uint32_t> piece_sizes;
   std::vector<TileVote> votes;
   std::vector<TilePatch> patches;
+  std::vector<FieldPoint> field_points;  // as many, or not all of them
   std::vector<PieceTie> piece_ties;
 
   // Patches as a cloud whose points know their sheets.
@@ -80,6 +83,8 @@ struct TileJoiner::Impl {
     Segmentation segmentation;
   };
   PatchCloud makeCloud(const PointView& places, int threads) const;
+  CloudField findField(const AutoOrientation& orientation, const PatchCloud& cloud,
+                       const JoinOptions& options) const;
   void distribute(const AutoOrientation& orientation, const PatchCloud& cloud,
                   JoinedTiles& out) const;
 };
@@ -106,6 +111,39 @@ TileJoiner::Impl::PatchCloud TileJoiner::Impl::makeCloud(const PointView& places
   for (std::size_t s = 0; s < piece_sizes.size(); ++s) {
     out.segmentation.segments[s].size = piece_sizes[s];
   }
+  return out;
+}
+
+// As runAutoStages() does of a cloud in memory.
+CloudField TileJoiner::Impl::findField(const AutoOrientation& orientation, const PatchCloud& cloud,
+                                       const JoinOptions& options) const {
+  std::vector<float> normals = cloud.normals;
+  for (std::size_t i = 0; i < cloud.cloud.size(); ++i) {
+    const auto sign = static_cast<float>(orientation.result.point_signs[i]);
+    for (std::size_t a = 0; a < 3; ++a) normals[4 * i + a] *= sign;
+  }
+  if (options.traits.noisy == 0) {
+    if (!orientation.toward.empty()) return {};
+    return detail::findSigns(cloud.cloud, normals, median(cloud.spacing),
+                             orientation.result.components, options.threads);
+  }
+  // Without field points it is a level's points that make the patches.
+  const bool level = field_points.size() != patches.size();
+  bool fine = !level;
+  std::vector<float> places;
+  std::vector<float> of_rows;
+  for (std::size_t p = 0; p < patches.size(); ++p) {
+    const TilePatch& patch = patches[p];
+    const float* at_patch = level ? patch.position : field_points[p].position;
+    const float* n = level ? patch.normal : field_points[p].normal;
+    const auto sign = static_cast<float>(orientation.result.segments[at(patch.piece)].sign);
+    places.insert(places.end(), at_patch, at_patch + 3);
+    for (std::size_t a = 0; a < 3; ++a) of_rows.push_back(sign * n[a]);
+    of_rows.push_back(0.F);
+    fine = fine && patch.points == 1;
+  }
+  CloudField out = detail::findNoise({places.data(), 3, patches.size()}, of_rows, options.threads);
+  out.directions = fine ? 1 : 0;
   return out;
 }
 
@@ -137,6 +175,7 @@ TileJoiner::~TileJoiner() = default;
 
 void TileJoiner::addTile(const std::vector<std::uint32_t>& piece_sizes,
                          const std::vector<TileVote>& votes, const std::vector<TilePatch>& patches,
+                         const std::vector<FieldPoint>& field_points,
                          const std::array<double, 3>& offset) {
   Impl& i = *impl_;
   const std::int32_t piece = i.first.back().piece;
@@ -145,12 +184,19 @@ void TileJoiner::addTile(const std::vector<std::uint32_t>& piece_sizes,
     v.b += piece;
     i.votes.push_back(v);
   }
+  const auto move = [&](float(&position)[3]) {
+    for (std::size_t a = 0; a < 3; ++a) {
+      position[a] = static_cast<float>(static_cast<double>(position[a]) + offset[a]);
+    }
+  };
   for (TilePatch p : patches) {
     p.piece += piece;
-    for (std::size_t a = 0; a < 3; ++a) {
-      p.position[a] = static_cast<float>(static_cast<double>(p.position[a]) + offset[a]);
-    }
+    move(p.position);
     i.patches.push_back(p);
+  }
+  for (FieldPoint p : field_points) {
+    move(p.position);
+    i.field_points.push_back(p);
   }
   i.piece_sizes.insert(i.piece_sizes.end(), piece_sizes.begin(), piece_sizes.end());
   i.first.push_back({static_cast<std::int32_t>(i.piece_sizes.size()), i.patches.size()});
@@ -200,6 +246,7 @@ JoinedTiles TileJoiner::join(const JoinOptions& options) {
                                              field, patches.segmentation, std::move(votes), count,
                                              AutomaticOptions{}, hints, options.threads);
   i.distribute(orientation, patches, out);
+  if (hints.nothing()) out.field = i.findField(orientation, patches, options);
   out.components = std::move(orientation.result.components);
   return out;
 }

@@ -42,6 +42,7 @@ struct JoinOptions {
 
 struct JoinedTiles {
   std::vector<TileSigns> tiles;
+  CloudField field;
   std::vector<ComponentOrientationResult> components;  ///< by descending number of points
   std::size_t pieces = 0;                              ///< of all tiles
 };
@@ -56,9 +57,11 @@ class SEGORIENT_TILES_EXPORT TileJoiner {
   TileJoiner(const TileJoiner&) = delete;
   TileJoiner& operator=(const TileJoiner&) = delete;
 
-  /// Tiles one after another. \param offset of the tile's origin
+  /// Tiles one after another. \param field_points as the tile has them, maybe none
+  /// \param offset of the tile's origin
   void addTile(const std::vector<std::uint32_t>& piece_sizes, const std::vector<TileVote>& votes,
-               const std::vector<TilePatch>& patches, const std::array<double, 3>& offset);
+               const std::vector<TilePatch>& patches, const std::vector<FieldPoint>& field_points,
+               const std::array<double, 3>& offset);
   /// Points that two tiles both have: entry i of both is one point.
   void tie(std::size_t tile_a, const std::vector<TileTie>& of_a, std::size_t tile_b,
            const std::vector<TileTie>& of_b);

@@ -12,6 +12,13 @@ std::size_t at(std::int32_t i) {
   return static_cast<std::size_t>(i);
 }
 
+void normalize(float (&normal)[3]) {
+  float length = 0.F;
+  for (const float n : normal) length += n * n;
+  length = std::sqrt(length);
+  for (float& n : normal) n = length > 0.F ? n / length : 0.F;
+}
+
 void copyEvidence(const Evidence& from, float* to) {
   to[0] = from.weight;
   to[1] = from.absolute;
@@ -112,6 +119,31 @@ void TileScale::cutPatches(const Segmentation& pieces, std::uint32_t most) {
   }
 }
 
+void TileScale::listFieldPoints(const std::vector<float>& normals,
+                                const std::vector<SegmentOrientationResult>& pieces,
+                                TileShare& out) const {
+  out.field_points.resize(out.patch_list.size());
+  std::vector<float> counts(out.patch_list.size(), 0.F);
+  for (std::size_t i = 0; i < points.size; ++i) {
+    if (patch_of[i] < 0) continue;
+    FieldPoint& f = out.field_points[at(patch_of[i])];
+    counts[at(patch_of[i])] += 1.F;
+    const float share = 1.F / counts[at(patch_of[i])];
+    const float* n = &normals[4 * i];
+    const auto sign = static_cast<float>(pieces[at(record.segments.labels[i])].sign);
+    const bool known = std::isfinite(n[0]);
+    for (std::size_t a = 0; a < 3; ++a) {
+      f.position[a] += share * (points[i][a] * unit - f.position[a]);
+      if (known) f.normal[a] += sign * n[a];
+    }
+  }
+  for (std::size_t p = 0; p < out.field_points.size(); ++p) {
+    float(&n)[3] = out.field_points[p].normal;
+    normalize(n);
+    if (n[0] == 0.F && n[1] == 0.F && n[2] == 0.F) std::copy_n(out.patch_list[p].normal, 3, n);
+  }
+}
+
 void TileScale::makePatches(TileShare& out) const {
   out.piece_sizes.assign(record.segments.segments.size(), 0);
   for (std::size_t i = 0; i < points.size; ++i) {
@@ -139,11 +171,7 @@ void TileScale::makePatches(TileShare& out) const {
     patch.reliable += record.sheets.reliable[i];
   }
   for (TilePatch& patch : out.patch_list) {
-    if (patch.points == 1) continue;
-    float length = 0.F;
-    for (const float n : patch.normal) length += n * n;
-    length = std::sqrt(length);
-    for (float& n : patch.normal) n = length > 0.F ? n / length : 0.F;
+    if (patch.points > 1) normalize(patch.normal);
   }
 }
 

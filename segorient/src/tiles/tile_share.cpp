@@ -9,6 +9,7 @@
 #include "orientation/automatic/coarse_levels.h"
 #include "orientation/automatic/stages.h"
 #include "search/prepared_cloud.h"
+#include "tiles/cloud_field.h"
 #include "tiles/tile_scale.h"
 
 namespace segorient {
@@ -38,8 +39,16 @@ class Tile {
   }
 
   TileShare work() {
+    // Filtered by signs of the tile's own, which are undone again.
+    std::vector<float> filtered;
+    fine_.record.field = [&](const PointView&, const detail::AutoNormals& found) {
+      if (options_.traits.noisy != 0 && hints_.nothing() && !hasLevel()) filtered = found.normals;
+    };
     run();
     joined().list(options_.patch_points, out_);
+    if (!filtered.empty()) {
+      fine_.listFieldPoints(filtered, stages_.orientation.result.segments, out_);
+    }
     listSigns();
     followed_.assign(cloud_.size(), -1);
     if (!hasLevel()) followPieces();
@@ -48,8 +57,12 @@ class Tile {
     return std::move(out_);
   }
 
-  TileShare finish(const TileSigns& signs) {
+  TileShare finish(const TileSigns& signs, const CloudField& field) {
     signs_ = &signs;
+    fine_.record.field = [&](const PointView& points, detail::AutoNormals& found) {
+      const PointView& at = field.noise != 0 ? cloud_.points() : points;
+      detail::takeField(at, cloud_.unit(), field, options_.threads, found);
+    };
     run();
     followed_.assign(cloud_.size(), -1);
     scatter();
@@ -239,8 +252,8 @@ TileShare workOnTile(const PointView& points, const std::vector<TileRole>& roles
 
 TileShare finishTile(const PointView& points, const std::vector<TileRole>& roles,
                      const std::vector<float>& whole, const TileOptions& options,
-                     const TileSigns& signs) {
-  return Tile(points, roles, whole, options).finish(signs);
+                     const TileSigns& signs, const CloudField& field) {
+  return Tile(points, roles, whole, options).finish(signs, field);
 }
 
 }  // namespace segorient

@@ -28,7 +28,7 @@ struct TileTraits {
   std::uint8_t analytic = 0;     ///< whether the surface is as smooth as one that a formula makes
   std::uint8_t cubic_edges = 0;  ///< whether cubic surfaces fit edges better
   std::uint8_t level_thin = 0;   ///< `thin` of the level
-  std::uint8_t unused = 0;       ///< no hidden bytes: they are stored as they are
+  std::uint8_t noisy = 0;        ///< whether borders tell too little of which way sheets go on
   float surface_noise = 0.F;     ///< standard deviation, in the points' unit
   float surface_ratio = 0.F;     ///< the same, in spacings
 
@@ -80,6 +80,12 @@ struct TilePatch {
   std::uint32_t row = 0;       ///< of the tile's input: the first of them
 };
 
+/// The points of a patch for the field of all points, where noise hides which way sheets go on.
+struct FieldPoint {
+  float position[3] = {0.F, 0.F, 0.F};  ///< as measured, relative to the tile's origin
+  float normal[3] = {0.F, 0.F, 0.F};    ///< filtered, as the piece is turned
+};
+
 /// A point that two tiles know, as one of them sees it.
 struct TileTie {
   std::uint32_t row = 0;  ///< of the tile's input
@@ -101,6 +107,7 @@ struct TileShare {
   std::vector<std::uint32_t> segment_sizes;  ///< own rows
   std::vector<TileVote> votes;               ///< of own points, or those of a level, as patches are
   std::vector<TilePatch> patch_list;         ///< of own points
+  std::vector<FieldPoint> field_points;      ///< one a patch, or none where they are not asked for
   std::vector<std::int8_t> piece_signs;      ///< that the tile alone found, and followed
   std::vector<TileTie> ties;                 ///< of HALO and SHARED rows, ascending by row
 };
@@ -110,6 +117,22 @@ struct TileSigns {
   std::vector<std::int8_t> pieces;   ///< what the normals of each piece are to be multiplied by
   std::vector<std::int8_t> patches;  ///< the same where sensors know single patches better
   std::vector<float> toward;  ///< 3 a patch: unit vector to its sensor, 0 = unknown; or empty
+};
+
+/// A cell of a CloudField.
+struct FieldCell {
+  float position[3] = {0.F, 0.F, 0.F};
+  float vector[3] = {0.F, 0.F, 0.F};  ///< in noise the normal times the area, else the normal
+  float value = 0.F;                  ///< in noise the area, else the sign that points take
+};
+
+/// What the field of all points tells where borders do not know: an even subset of the whole cloud.
+/// See NoiseField and CellSigns in orientation/automatic.
+struct CloudField {
+  std::vector<FieldCell> cells;  ///< none = it says nothing
+  float radius = 0.F;            ///< in noise: of the smoothing
+  std::uint8_t noise = 0;        ///< which of the two it is
+  std::uint8_t directions = 0;   ///< in noise: whether normals follow it, or only their signs
 };
 
 struct TileOptions {
@@ -147,9 +170,11 @@ SEGORIENT_TILES_EXPORT bool needsFinishing(const TileTraits& traits, const TileS
 
 /// The same work with the signs of the whole cloud: final normals and segments as they are in it.
 /// All else as for workOnTile(); there are no votes and patches.
+/// \param field relative to the tile's origin
 SEGORIENT_TILES_EXPORT TileShare finishTile(const PointView& points,
                                             const std::vector<TileRole>& roles,
                                             const std::vector<float>& whole,
-                                            const TileOptions& options, const TileSigns& signs);
+                                            const TileOptions& options, const TileSigns& signs,
+                                            const CloudField& field);
 
 }  // namespace segorient

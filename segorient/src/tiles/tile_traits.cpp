@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026, the segorient authors
+#include "orientation/automatic/noise_field.h"
 #include "orientation/automatic/stages.h"
 #include "search/prepared_cloud.h"
 #include "tiles/tile_share.h"
@@ -22,6 +23,7 @@ TileTraits measureTileTraits(const PointView& points, int k, const OrientationHi
   out.thin = found.sheets.noise.thin ? 1 : 0;
   out.residual = found.sheets.residual;
   out.scan = found.sheets.scan_scales ? 1 : 0;
+  out.noisy = found.noise >= detail::kFieldNoise ? 1 : 0;
   out.denoise = found.denoised ? 1 : 0;
   const AutomaticNormalTraits& surfaces = found.final_traits.surfaces;
   out.edges = found.final_traits.edges ? 1 : 0;

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "common/dot.h"
+#include "common/threads.h"
 #include "features/sheet_fit.h"
 #include "orientation/automatic/blue_noise.h"
 
@@ -18,6 +19,13 @@ constexpr int kSix = 6;     // neighbours of the spacing
 constexpr int kAround = 9;  // the cell itself and eight neighbours
 // Area per square of the mean distance to the six nearest of a blue-noise subset, see SignJudge.
 constexpr float kAreaPerSquare = 0.92F;
+
+void findAround(int threads, search::MedianHashIndex& index, EvenCells& cells) {
+  search::MedianHashIndex::Options options;
+  options.threads = threads;
+  index.build(cells.points(), nullptr, options);
+  index.nearestKAll(kAround, cells.around, false);
+}
 
 }  // namespace
 
@@ -47,16 +55,27 @@ EvenCells gatherCells(const PointView& points, const std::vector<float>& normals
     }
   }
   search::MedianHashIndex index;
-  search::MedianHashIndex::Options options;
-  options.threads = threads;
-  index.build(out.points(), nullptr, options);
-  index.nearestKAll(kAround, out.around, false);
+  findAround(threads, index, out);
   out.areas.resize(n);
   for (std::size_t c = 0; c < n; ++c) {
     const float h = meanDistance(out.points(), out.around, c, kSix);
     out.areas[c] = kAreaPerSquare * h * h;
   }
   return out;
+}
+
+void assignCells(const PointView& points, int threads, EvenCells& cells) {
+  search::MedianHashIndex index;
+  findAround(threads, index, cells);
+  cells.cell_of.assign(points.size, 0);
+#pragma omp parallel for schedule(static) num_threads(resolveThreads(threads, points.size, 1.0))
+  for (std::size_t i = 0; i < points.size; ++i) {
+    pcl::index_t cell = 0;
+    float square = 0.F;
+    if (index.nearestK(points[i], 1, &cell, &square) > 0) {
+      cells.cell_of[i] = static_cast<std::uint32_t>(cell);
+    }
+  }
 }
 
 }  // namespace segorient::detail

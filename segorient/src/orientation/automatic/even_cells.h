@@ -2,6 +2,7 @@
 // Copyright (c) 2026, the segorient authors
 #pragma once
 
+#include <segorient/common/export.h>
 #include <segorient/common/neighborhoods.h>
 #include <segorient/common/point_view.h>
 
@@ -27,5 +28,9 @@ struct EvenCells {
 /// \param radius no two cells' first points are nearer; nothing is kept if it is not above 0
 EvenCells gatherCells(const PointView& points, const std::vector<float>& normals, float radius,
                       int threads);
+
+/// Finds what is around each of some cells, and the nearest cell of each point.
+SEGORIENT_ORIENTATION_EXPORT void assignCells(const PointView& points, int threads,
+                                              EvenCells& cells);
 
 }  // namespace segorient::detail

@@ -117,40 +117,10 @@ void merge(const EvenCells& subset, const FieldSolver& solver, const std::vector
   }
 }
 
-// The field where each point was measured tells its side, and has a say in its direction. How
-// steep it is, by that of a plane without noise, limits the confidence: the two sides of a wall,
-// and what is turned the wrong way around, take from it.
-void takeDirections(const PointView& points, const EvenCells& subset, const FieldSolver& solver,
-                    const std::vector<float>& normals, float radius, int threads,
-                    AutoNormals& found) {
-  // Noise makes the field less steep everywhere; where it is .7 of a plane's and more, one normal
-  // in 1,000 was wrong.
-  constexpr float kSteep = 1.25F;
-  float factor = 0.F;
-  solver.spreadOf(solver.windingOf(normals), &factor);
-  const std::vector<float> dipoles = solver.dipolesOf(normals);
-  const std::vector<float> field =
-      steepestDescents(points, {subset.points(), dipoles}, radius, threads);
-  for (std::size_t i = 0; i < points.size; ++i) {
-    float* n = &found.normals[4 * i];
-    const float* g = &field[4 * i];
-    const float length = std::sqrt(dot(g, g));
-    if (!isFinite(n) || !(length > 0.F) || !std::isfinite(length)) continue;
-    const float sign = dot(n, g) < 0.F ? -1.F : 1.F;
-    float sum[3];
-    for (std::size_t a = 0; a < 3; ++a) sum[a] = sign * n[a] + g[a] / length;
-    const float total = std::sqrt(dot(sum, sum));
-    for (std::size_t a = 0; a < 3; ++a) n[a] = sum[a] / total;
-    // A plane's falls by 1 / (2 radius).
-    const float steepness = 2.F * radius * factor * length;
-    found.confidences[i] = std::min(found.confidences[i], std::max(0.F, kSteep * steepness));
-  }
-}
-
 }  // namespace
 
-void followField(const PointView& points, const Neighborhoods& neighborhoods, int threads,
-                 AutoNormals& found) {
+NoiseField findNoiseField(const PointView& points, const Neighborhoods& neighborhoods,
+                          const std::vector<float>& normals, int threads) {
   // Spread: noise of a spacing alone makes so much, and with less no patch was wrong.
   constexpr float kSure = 0.03F;
   // Rounds: 12 and 5 gave the same.
@@ -158,13 +128,14 @@ void followField(const PointView& points, const Neighborhoods& neighborhoods, in
   constexpr int kFromBest = 3;
   constexpr float kLess = 0.97F;  // so that solutions that are equally good stay as they are
   const float spacing = medianSpacing(points, neighborhoods);
-  const EvenCells subset = gatherCells(points, found.normals, kCell * spacing, threads);
-  if (subset.size() == 0) return;
+  EvenCells subset = gatherCells(points, normals, kCell * spacing, threads);
+  NoiseField out;
+  if (subset.size() == 0) return out;
   const FieldSolver solver(subset.points(), subset.around, subset.areas, kSmooth * spacing,
                            threads);
-  const auto solution = [&](std::vector<float> normals) {
-    const FieldEnergy energy = solver.energy(normals);
-    return Solution{std::move(normals), energy};
+  const auto solution = [&](std::vector<float> of_subset) {
+    const FieldEnergy energy = solver.energy(of_subset);
+    return Solution{std::move(of_subset), energy};
   };
   const Solution own = solution(subset.normals);
   Solution best = own;
@@ -183,11 +154,46 @@ void followField(const PointView& points, const Neighborhoods& neighborhoods, in
       best = std::move(relaxed);
     }
   }
-  takeDirections(points, subset, solver, best.normals, kFinal * spacing, threads, found);
+  solver.spreadOf(solver.windingOf(best.normals), &out.factor);
+  out.dipoles = solver.dipolesOf(best.normals);
+  out.radius = kFinal * spacing;
   // The signs as they came contradict the field by more than noise explains: the surface may be
   // open, or a wall whose two sides came out as one sheet, and which of them cannot be told.
-  const float most = kSure / std::max(kSure, own.energy.spread);
-  for (float& c : found.confidences) c = std::min(c, most);
+  out.most = kSure / std::max(kSure, own.energy.spread);
+  out.places = std::move(subset.places);
+  return out;
+}
+
+// How steep the field is, by that of a plane without noise, limits the confidence: the two sides of
+// a wall, and what is turned the wrong way around, take from it.
+void takeNoiseField(const PointView& points, const NoiseField& field, int threads,
+                    AutoNormals& found) {
+  // Noise makes the field less steep everywhere; where it is .7 of a plane's and more, one normal
+  // in 1,000 was wrong.
+  constexpr float kSteep = 1.25F;
+  if (field.empty()) return;
+  const PointView places{field.places.data(), 4, field.places.size() / 4};
+  const std::vector<float> falls =
+      steepestDescents(points, {places, field.dipoles}, field.radius, threads);
+  for (std::size_t i = 0; i < points.size; ++i) {
+    float* n = &found.normals[4 * i];
+    float& confidence = found.confidences[i];
+    const float* g = &falls[4 * i];
+    const float length = std::sqrt(dot(g, g));
+    if (isFinite(n) && length > 0.F && std::isfinite(length)) {
+      const float sign = dot(n, g) < 0.F ? -1.F : 1.F;
+      float sum[3];
+      for (std::size_t a = 0; a < 3; ++a) {
+        sum[a] = sign * n[a] + (field.directions ? g[a] / length : 0.F);
+      }
+      const float total = std::sqrt(dot(sum, sum));
+      for (std::size_t a = 0; a < 3; ++a) n[a] = sum[a] / total;
+      // A plane's falls by 1 / (2 radius).
+      const float steepness = 2.F * field.radius * field.factor * length;
+      confidence = std::min(confidence, std::max(0.F, kSteep * steepness));
+    }
+    confidence = std::min(confidence, field.most);
+  }
 }
 
 }  // namespace segorient::detail

@@ -2,25 +2,50 @@
 // Copyright (c) 2026, the segorient authors
 #pragma once
 
+#include <segorient/common/export.h>
 #include <segorient/common/neighborhoods.h>
 #include <segorient/common/point_view.h>
+
+#include <vector>
 
 #include "orientation/automatic/orient_points.h"
 
 namespace segorient::detail {
 
-/// Where noise hides which way sheets go on, the field of all points knows more than borders do.
-///
+/// In spacings, as NoiseLevel::fine measures it: with less, borders tell enough.
+constexpr float kFieldNoise = 0.2F;
+
+/// Where noise hides which way sheets go on, the field of all points knows more than borders do: an
+/// even subset of these, with normals that agree with it.
+struct NoiseField {
+  std::vector<float> places;   ///< 4 floats a cell: mean position
+  std::vector<float> dipoles;  ///< 4 floats a cell: normal times area, area
+  float radius = 0.F;          ///< of the smoothing
+  float factor = 0.F;          ///< that makes its winding number 1/2 on the surface
+  float most = 1.F;            ///< confidence of any point
+  /// Whether it is as fine as the points that take it; a coarser one tells only their sides.
+  bool directions = true;
+
+  bool empty() const { return places.empty(); }
+};
+
 /// On an even subset with averaged positions, normals are found that agree with the winding
 /// number's field (FieldSolver): from nothing, and from the oriented normals as they are. They
 /// replace those where FieldEnergy says that they are clearly better, first as a whole, then patch
-/// by patch where both differ. At last each point's normal is averaged with the direction of the
-/// field where the point was measured.
+/// by patch where both differ.
 ///
 /// \param points positions as measured, finite, near ones side by side
 /// \param neighborhoods of them, six at least
+/// \param normals 4 floats a point, oriented
+SEGORIENT_ORIENTATION_EXPORT NoiseField findNoiseField(const PointView& points,
+                                                       const Neighborhoods& neighborhoods,
+                                                       const std::vector<float>& normals,
+                                                       int threads);
+
+/// Each point's normal is averaged with the direction of the field where the point was measured.
+/// \param points those of the field, or some of them
 /// \param found normals and confidences may change
-void followField(const PointView& points, const Neighborhoods& neighborhoods, int threads,
-                 AutoNormals& found);
+SEGORIENT_ORIENTATION_EXPORT void takeNoiseField(const PointView& points, const NoiseField& field,
+                                                 int threads, AutoNormals& found);
 
 }  // namespace segorient::detail

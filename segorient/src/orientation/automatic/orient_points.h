@@ -67,6 +67,9 @@ struct SheetRecord {
   std::function<AutoOrientation(const Segmentation&)> known;
   /// Called with the part's oriented normals, where the whole asks for a coarser scale.
   std::function<void(const PointView&, AutoNormals&)> coarser;
+  /// Called with the part's oriented normals in the place of what the field of all points tells
+  /// about them; may be empty.
+  std::function<void(const PointView&, AutoNormals&)> field;
 
   SheetNormals sheets;  ///< found: normals not oriented
   Segmentation segments;

@@ -25,7 +25,7 @@ struct PatchSolution {
   bool allowed = false;  ///< what is decided bounds bodies, and what is not lies between them
 };
 
-/// The sum that signs of patches minimise, see solvePatchSigns().
+/// The sum that signs of patches minimise, see findCellSigns().
 class PatchEquations {
  public:
   /// \param cells must outlive this \param radius of the smoothing

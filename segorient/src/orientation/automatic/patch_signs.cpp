@@ -29,10 +29,10 @@ constexpr float kNoSurface = 0.1F;
 constexpr int kRounds = 5;        // each leaves out what the last one left undecided
 constexpr float kBetter = 0.75F;  // of two equally good ones one has up to .1 less
 
-bool isClosed(const AutoNormals& found) {
+bool isClosed(const std::vector<ComponentOrientationResult>& components) {
   double sum = 0.0;
   double points = 0.0;
-  for (const ComponentOrientationResult& component : found.orientation.result.components) {
+  for (const ComponentOrientationResult& component : components) {
     const auto size = static_cast<double>(component.points);
     sum += size * static_cast<double>(std::min(1.F, component.residual));
     points += size;
@@ -89,18 +89,6 @@ float signOf(const EvenCells& cells, const std::vector<float>& signs, const floa
   return sign;
 }
 
-void takeSigns(const PointView& points, const EvenCells& cells, const std::vector<float>& signs,
-               AutoNormals& found) {
-  for (std::size_t i = 0; i < points.size; ++i) {
-    float* n = &found.normals[4 * i];
-    if (!std::isfinite(n[0])) continue;
-    const float sign = signOf(cells, signs, points[i], n, cells.cell_of[i]);
-    found.confidences[i] = std::min(found.confidences[i], std::fabs(sign));
-    if (sign >= 0.F) continue;
-    for (std::size_t a = 0; a < 3; ++a) n[a] = -n[a];
-  }
-}
-
 // The one solution from nothing; not allowed where cells do not make a surface.
 PatchSolution solveFromNothing(const PatchEquations& equations) {
   float surface = 0.F;
@@ -110,24 +98,27 @@ PatchSolution solveFromNothing(const PatchEquations& equations) {
 }
 
 // A coarse look at a large cloud, for a tenth of the time: open sheets bound no bodies.
-bool mayBoundBodies(const PointView& points, int threads, const AutoNormals& found) {
+bool mayBoundBodies(const PointView& points, const std::vector<float>& normals, float spacing,
+                    int threads) {
   constexpr float kCoarse = 50000.F;  // cells
   const float size = std::sqrt(static_cast<float>(points.size) / kCoarse);
   if (size <= 2.F * kCell) return true;
-  const float radius = size * found.spacing;
-  const EvenCells cells = gatherCells(points, found.normals, radius, threads);
+  const float radius = size * spacing;
+  const EvenCells cells = gatherCells(points, normals, radius, threads);
   return solveFromNothing({cells, kSmooth / kCell * radius, threads}).allowed;
 }
 
 }  // namespace
 
-void solvePatchSigns(const PointView& points, int threads, AutoNormals& found) {
-  if (isClosed(found) || !mayBoundBodies(points, threads, found)) return;
-  const EvenCells cells = gatherCells(points, found.normals, kCell * found.spacing, threads);
-  const float radius = kSmooth * found.spacing;
-  const PatchEquations equations(cells, radius, threads);
+CellSigns findCellSigns(const PointView& points, const std::vector<float>& normals, float spacing,
+                        const std::vector<ComponentOrientationResult>& components, int threads) {
+  CellSigns out;
+  if (isClosed(components) || !mayBoundBodies(points, normals, spacing, threads)) return out;
+  out.cells = gatherCells(points, normals, kCell * spacing, threads);
+  const float radius = kSmooth * spacing;
+  const PatchEquations equations(out.cells, radius, threads);
   const PatchSolution first = solveFromNothing(equations);
-  if (!first.allowed) return;
+  if (!first.allowed) return out;
   const Signs own = Signs::Constant(first.signs.size(), equations.side());
   PatchSolution best;
   best.energy = kBetter * equations.judge(own).energy;
@@ -135,9 +126,20 @@ void solvePatchSigns(const PointView& points, int threads, AutoNormals& found) {
                                      equations.solve(own, kRounds, true)}) {
     if (other.allowed && other.energy < best.energy) best = other;
   }
-  if (!best.allowed) return;
-  takeSigns(points, cells, signsOfCells(cells, equations.patches(), best.signs, radius, threads),
-            found);
+  if (!best.allowed) return out;
+  out.signs = signsOfCells(out.cells, equations.patches(), best.signs, radius, threads);
+  return out;
+}
+
+void takeCellSigns(const PointView& points, const CellSigns& cells, AutoNormals& found) {
+  for (std::size_t i = 0; i < points.size && !cells.empty(); ++i) {
+    float* n = &found.normals[4 * i];
+    if (!std::isfinite(n[0])) continue;
+    const float sign = signOf(cells.cells, cells.signs, points[i], n, cells.cells.cell_of[i]);
+    found.confidences[i] = std::min(found.confidences[i], std::fabs(sign));
+    if (sign >= 0.F) continue;
+    for (std::size_t a = 0; a < 3; ++a) n[a] = -n[a];
+  }
 }
 
 }  // namespace segorient::detail

@@ -2,11 +2,24 @@
 // Copyright (c) 2026, the segorient authors
 #pragma once
 
+#include <segorient/common/export.h>
 #include <segorient/common/point_view.h>
+#include <segorient/orientation/orientation_result.h>
 
+#include <vector>
+
+#include "orientation/automatic/even_cells.h"
 #include "orientation/automatic/orient_points.h"
 
 namespace segorient::detail {
+
+/// An even subset of a cloud, and how the points around each cell are to be turned.
+struct CellSigns {
+  EvenCells cells;
+  std::vector<float> signs;  ///< one a cell, -1 to 1; empty where points are to stay as they are
+
+  bool empty() const { return signs.empty(); }
+};
 
 /// Where bodies touch or overlap, borders of segments lead astray: three sheets meet, each pair
 /// agrees on a side, and all three cannot. The winding number knows better.
@@ -23,10 +36,18 @@ namespace segorient::detail {
 /// from 1 to 2 and t_x is 3/2: which it is, is told by the solution before. Of these and of the
 /// normals as they are, the best by whole signs is taken if it is clearly better.
 ///
-/// Nothing is done where the winding number is that of a closed surface already.
+/// Nothing is found where the winding number is that of a closed surface already.
 ///
-/// \param points finite, near ones side by side
+/// \param points finite, near ones side by side \param normals 4 floats a point, oriented
+/// \param spacing of the points, median \param components as they were oriented
+SEGORIENT_ORIENTATION_EXPORT CellSigns
+findCellSigns(const PointView& points, const std::vector<float>& normals, float spacing,
+              const std::vector<ComponentOrientationResult>& components, int threads);
+
+/// Each point takes the sign of the nearest cell whose normal is alike.
+/// \param points those that the cells are about, see EvenCells::cell_of
 /// \param found normals and their confidences may change
-void solvePatchSigns(const PointView& points, int threads, AutoNormals& found);
+SEGORIENT_ORIENTATION_EXPORT void takeCellSigns(const PointView& points, const CellSigns& cells,
+                                                AutoNormals& found);
 
 }  // namespace segorient::detail

@@ -23,8 +23,6 @@ namespace {
 
 // Enough for a plane through a slab of one or two spacings of noise.
 constexpr int kDenoisingNeighbors = 48;
-// In spacings, as NoiseLevel::fine measures it. With less, borders tell enough.
-constexpr float kFieldNoise = 0.2F;
 // Of the residuals of 32 neighbours and of 8: noise of a surface makes them nearly the same, while
 // steps of depth, rings and rough ground hide from the few what they are to the many.
 constexpr float kSeenByFew = 2.F;
@@ -54,11 +52,6 @@ void findNeighbors(PreparedCloud& cloud, const PipelineOptions& options, const S
     index.nearestKAll(out.k + 1, of_smoothed, false);
   }
   cloud.dropIndex();
-}
-
-bool knowsNothing(const PointHints& hints) {
-  return hints.surface != SurfaceKind::OPEN && !hints.has_viewpoint && hints.sensors.empty() &&
-         hints.directions.empty() && hints.seeds.empty() && hints.toward.empty();
 }
 
 // Turns the segments as most of their points are.
@@ -119,11 +112,19 @@ AutoStages runAutoStages(PreparedCloud& cloud, const PipelineOptions& options,
       orientPoints(more, table, settings, hints, options.threads, begin, record, &finished);
   out.segmentation = std::move(finished.segmentation);
   // What sensors or the user know is better than what the field tells.
-  if (settings.winding_normals && record == nullptr && knowsNothing(hints)) {
+  if (record != nullptr) {
+    if (record->field) record->field(points, oriented);
+  } else if (settings.winding_normals && hints.nothing()) {
     if (out.noise >= kFieldNoise) {
-      followField(cloud.points(), cloud.neighborhoods(), options.threads, oriented);
+      takeNoiseField(
+          cloud.points(),
+          findNoiseField(cloud.points(), cloud.neighborhoods(), oriented.normals, options.threads),
+          options.threads, oriented);
     } else if (oriented.orientation.toward.empty()) {
-      solvePatchSigns(points, options.threads, oriented);
+      takeCellSigns(points,
+                    findCellSigns(points, oriented.normals, oriented.spacing,
+                                  oriented.orientation.result.components, options.threads),
+                    oriented);
     }
   }
   labelTheRest(table, oriented.normals, out.segmentation);

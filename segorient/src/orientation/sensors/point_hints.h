@@ -33,6 +33,12 @@ struct PointHints {
   /// 3 floats a point: unit vector to the sensor that saw it, 0 = unknown; empty unless it is
   /// already known which sensors are to be believed. Then `sensors` is empty.
   std::vector<float> toward;
+
+  /// Whether there is nothing that knows sides better than the points themselves.
+  bool nothing() const {
+    return surface != SurfaceKind::OPEN && !has_viewpoint && sensors.empty() &&
+           directions.empty() && seeds.empty() && toward.empty();
+  }
 };
 
 /// \param cloud that that `hints` is about

@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the segorient authors
+#include "tiles/cloud_field.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "orientation/automatic/noise_field.h"
+#include "orientation/automatic/patch_signs.h"
+
+namespace segorient::detail {
+namespace {
+
+constexpr int kSix = 6;  // neighbours of the spacing
+
+void addCells(const std::vector<float>& places, float unit, const std::vector<float>& vectors,
+              float vector_unit, CloudField& out) {
+  for (std::size_t c = 0; c < places.size(); c += 4) {
+    FieldCell cell;
+    for (std::size_t a = 0; a < 3; ++a) {
+      cell.position[a] = unit * places[c + a];
+      cell.vector[a] = vector_unit * vectors[c + a];
+    }
+    out.cells.push_back(cell);
+  }
+}
+
+// 4 floats a cell.
+std::vector<float> placesOf(const CloudField& field, float unit) {
+  std::vector<float> out;
+  for (const FieldCell& cell : field.cells) {
+    for (const float x : cell.position) out.push_back(x / unit);
+    out.push_back(0.F);
+  }
+  return out;
+}
+
+void takeNoise(const PointView& points, float unit, const CloudField& field, int threads,
+               AutoNormals& found) {
+  NoiseField noise;
+  noise.places = placesOf(field, unit);
+  for (const FieldCell& cell : field.cells) {
+    for (const float x : cell.vector) noise.dipoles.push_back(x / (unit * unit));
+    noise.dipoles.push_back(cell.value / (unit * unit));
+  }
+  noise.radius = field.radius / unit;
+  noise.directions = field.directions != 0;
+  takeNoiseField(points, noise, threads, found);
+}
+
+void takeSigns(const PointView& points, float unit, const CloudField& field, int threads,
+               AutoNormals& found) {
+  CellSigns signs;
+  signs.cells.places = placesOf(field, unit);
+  for (const FieldCell& cell : field.cells) {
+    signs.cells.normals.insert(signs.cells.normals.end(), cell.vector, cell.vector + 3);
+    signs.cells.normals.push_back(0.F);
+    signs.signs.push_back(cell.value);
+  }
+  assignCells(points, threads, signs.cells);
+  takeCellSigns(points, signs, found);
+}
+
+}  // namespace
+
+CloudField findNoise(const PointView& places, const std::vector<float>& normals, int threads) {
+  PreparedCloud cloud(places, nullptr, threads);
+  cloud.findNeighbors(kSix, false);
+  std::vector<float> of_points;
+  for (std::size_t i = 0; i < cloud.size(); ++i) {
+    const float* n = &normals[4 * cloud.rowOf(i)];
+    of_points.insert(of_points.end(), n, n + 4);
+  }
+  const NoiseField noise =
+      findNoiseField(cloud.points(), cloud.neighborhoods(), of_points, threads);
+  const float unit = cloud.unit();
+  CloudField out;
+  out.noise = 1;
+  out.radius = unit * noise.radius;
+  addCells(noise.places, unit, noise.dipoles, unit * unit, out);
+  for (std::size_t c = 0; c < out.cells.size(); ++c) {
+    out.cells[c].value = unit * unit * noise.dipoles[4 * c + 3];
+  }
+  return out;
+}
+
+CloudField findSigns(const PreparedCloud& cloud, const std::vector<float>& normals, float spacing,
+                     const std::vector<ComponentOrientationResult>& components, int threads) {
+  CloudField out;
+  const CellSigns signs = findCellSigns(cloud.points(), normals, spacing, components, threads);
+  if (signs.empty()) return out;
+  addCells(signs.cells.places, cloud.unit(), signs.cells.normals, 1.F, out);
+  for (std::size_t c = 0; c < out.cells.size(); ++c) out.cells[c].value = signs.signs[c];
+  return out;
+}
+
+void takeField(const PointView& points, float unit, const CloudField& field, int threads,
+               AutoNormals& found) {
+  if (field.cells.empty()) return;
+  (field.noise != 0 ? takeNoise : takeSigns)(points, unit, field, threads, found);
+}
+
+}  // namespace segorient::detail

@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the segorient authors
+#pragma once
+
+#include <segorient/common/point_view.h>
+#include <segorient/orientation/orientation_result.h>
+
+#include <vector>
+
+#include "orientation/automatic/orient_points.h"
+#include "search/prepared_cloud.h"
+#include "tiles/tile_share.h"
+
+namespace segorient::detail {
+
+/// What noise leaves of the field, see findNoiseField().
+/// \param places of the cloud as measured \param normals 4 floats a row, oriented; gathered
+CloudField findNoise(const PointView& places, const std::vector<float>& normals, int threads);
+
+/// What the field says of bodies that touch, see findCellSigns(); often nothing.
+/// \param normals 4 floats a point of the cloud, oriented \param spacing in the cloud's unit
+CloudField findSigns(const PreparedCloud& cloud, const std::vector<float>& normals, float spacing,
+                     const std::vector<ComponentOrientationResult>& components, int threads);
+
+/// Gives a tile's points what the field tells of them. \param points of the tile \param unit theirs
+/// \param field relative to the tile's origin
+void takeField(const PointView& points, float unit, const CloudField& field, int threads,
+               AutoNormals& found);
+
+}  // namespace segorient::detail
