@@ -39,6 +39,23 @@ void addTies(const std::vector<TieReader>& ties, Joiner& joiner) {
   }
 }
 
+// By tile, whether the field tells it something: all of them in noise, else where cells turn
+// points.
+std::vector<std::uint8_t> tilesOf(const CloudField& field, const Plan& plan) {
+  std::vector<std::uint8_t> out(plan.tiles(), field.noise);
+  for (const FieldCell& cell : field.cells) {
+    if (field.noise != 0 || cell.value >= 0.F) continue;
+    TileTree::Place place{};
+    for (std::size_t a = 0; a < 3; ++a) {
+      place[a] = static_cast<double>(cell.position[a]) + plan.origin[a];
+    }
+    double reach = 0.0;
+    plan.tree.owner(place, reach);
+    plan.tree.forEachWithin(place, reach, [&](std::uint32_t t, double) { out[t] = 1; });
+  }
+  return out;
+}
+
 JoinSummary readSummary(const Plan& plan, const std::string& folder) {
   TileFileReader file(joinPath(folder), TileFileKind::JOIN, plan.run);
   JoinSummary summary;
@@ -90,12 +107,12 @@ JoinSummary joinStep(const Plan& plan, const std::string& folder, int threads) {
   addTies(ties, joiner);
   JoinedTiles joined = joiner.join(options);
   JoinSummary summary;
-  const bool has_field = !joined.field.cells.empty();
-  if (has_field) saveField(joined.field, fieldPath(folder), plan.run);
+  const std::vector<std::uint8_t> has_field = tilesOf(joined.field, plan);
+  if (!joined.field.cells.empty()) saveField(joined.field, fieldPath(folder), plan.run);
   for (std::size_t t = 0; t < plan.tiles(); ++t) {
     SignsFile file;
-    file.field = has_field;
-    file.again = has_field || needsFinishing(plan.traits, found[t], joined.tiles[t]);
+    file.field = has_field[t] != 0;
+    file.again = file.field || needsFinishing(plan.traits, found[t], joined.tiles[t]);
     file.signs = std::move(joined.tiles[t]);
     summary.again += file.again ? 1 : 0;
     saveSigns(file, tilePath(folder, t, "signs"), plan.run, static_cast<std::uint32_t>(t));
@@ -127,7 +144,7 @@ std::uint64_t labelStep(const Plan& plan, const std::string& folder) {
     const auto tile = static_cast<std::uint32_t>(t);
     const bool again = loadSigns(tilePath(folder, t, "signs"), plan.run, tile).again;
     ties.emplace_back(tilePath(folder, t, again ? "ties2" : "ties"), plan.run, tile);
-    joiner.addTile(ties.back().segmentSizes());
+    joiner.addTile(ties.back().segmentSizes(), ties.back().segmentBorders());
   }
   addTies(ties, joiner);
   std::size_t segments = 0;

@@ -69,13 +69,20 @@ void saveTies(const std::vector<SharedPoints>& shared, const TileShare& share,
   ListWriter lists;
   lists.list(slices);
   lists.list(share.segment_sizes);
+  lists.list(share.segment_borders);
   file.commit(lists);
 }
 
 TieReader::TieReader(const std::string& path, std::uint64_t run, std::uint32_t tile)
     : file_(path, TileFileKind::TIES, run, tile),
       slices_(file_.list<TieSlice>()),
-      segment_sizes_(file_.list<std::uint32_t>()) {}
+      segment_sizes_(file_.list<std::uint32_t>()),
+      segment_borders_(file_.list<LabelBorder>()) {
+  const auto count = static_cast<std::int32_t>(segment_sizes_.size());
+  for (const LabelBorder& b : segment_borders_) {
+    if (b.a < 0 || b.a >= b.b || b.b >= count) fail();
+  }
+}
 
 std::vector<TileTie> TieReader::about(std::uint32_t other, std::uint32_t owner) const {
   const auto slice = std::find_if(slices_.begin(), slices_.end(), [&](const TieSlice& s) {

@@ -64,12 +64,27 @@ TEST(Join, LabelsOfOneSegmentBecomeOneAndAreNumberedBySize) {
   weak.most = false;
   std::size_t count = 0;
   const std::vector<std::uint32_t> labels =
-      detail::uniteLabels({5, 30, 40, 2, 0}, {tie(0, 2, 9.F, 9), weak}, count);
+      detail::uniteLabels({5, 30, 40, 2, 0}, {tie(0, 2, 9.F, 9), weak}, {}, count);
   EXPECT_EQ(labels[0], labels[2]);
   EXPECT_EQ(labels[0], 0U);
   EXPECT_EQ(labels[1], 1U);
   EXPECT_EQ(labels[3], 2U);
   EXPECT_EQ(count, 3U);
+}
+
+// 0 and 1 are next to each other in one tile; 2 of another one and 3 of a third one tie them
+// together.
+TEST(Join, SegmentsThatAreNextToEachOtherStayTwo) {
+  std::size_t count = 0;
+  const std::vector<PieceTie> ties{tie(0, 2, 5.F, 5), tie(2, 3, 9.F, 9), tie(1, 3, 7.F, 7)};
+  const std::vector<std::uint32_t> labels =
+      detail::uniteLabels({10, 20, 10, 10}, ties, {{0, 1}}, count);
+  EXPECT_EQ(count, 2U);
+  EXPECT_EQ(labels[2], labels[3]);
+  EXPECT_EQ(labels[1], labels[3]) << "the stronger tie";
+  EXPECT_NE(labels[0], labels[1]);
+  EXPECT_EQ(detail::uniteLabels({10, 20, 10, 10}, ties, {}, count)[0], 0U);
+  EXPECT_EQ(count, 1U);
 }
 
 TEST(Join, NothingAndTilesWithoutPiecesAreJoined) {

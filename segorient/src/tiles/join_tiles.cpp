@@ -251,7 +251,10 @@ JoinedTiles TileJoiner::join(const JoinOptions& options) {
   return out;
 }
 
-void LabelJoiner::addTile(const std::vector<std::uint32_t>& segment_sizes) {
+void LabelJoiner::addTile(const std::vector<std::uint32_t>& segment_sizes,
+                          const std::vector<LabelBorder>& borders) {
+  const auto first = static_cast<std::int32_t>(sizes_.size());
+  for (const LabelBorder& b : borders) borders_.push_back({first + b.a, first + b.b});
   sizes_.insert(sizes_.end(), segment_sizes.begin(), segment_sizes.end());
   first_.push_back(sizes_.size());
 }
@@ -265,7 +268,7 @@ void LabelJoiner::tie(std::size_t tile_a, const std::vector<TileTie>& of_a, std:
 }
 
 std::vector<std::vector<std::uint32_t>> LabelJoiner::join(std::size_t& count) const {
-  const std::vector<std::uint32_t> labels = detail::uniteLabels(sizes_, ties_, count);
+  const std::vector<std::uint32_t> labels = detail::uniteLabels(sizes_, ties_, borders_, count);
   std::vector<std::vector<std::uint32_t>> out;
   for (std::size_t t = 0; t + 1 < first_.size(); ++t) {
     out.emplace_back(labels.begin() + static_cast<std::ptrdiff_t>(first_[t]),

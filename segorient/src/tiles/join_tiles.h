@@ -74,11 +74,12 @@ class SEGORIENT_TILES_EXPORT TileJoiner {
 };
 
 /// Puts the segments of all tiles together: those that most of the points which two tiles both have
-/// tie together are one.
+/// tie together are one, unless a tile knows that they are two.
 class SEGORIENT_TILES_EXPORT LabelJoiner {
  public:
   /// Tiles one after another. \param segment_sizes own rows of each segment
-  void addTile(const std::vector<std::uint32_t>& segment_sizes);
+  void addTile(const std::vector<std::uint32_t>& segment_sizes,
+               const std::vector<LabelBorder>& borders);
   /// Points that two tiles both have: entry i of both is one point.
   void tie(std::size_t tile_a, const std::vector<TileTie>& of_a, std::size_t tile_b,
            const std::vector<TileTie>& of_b);
@@ -89,6 +90,7 @@ class SEGORIENT_TILES_EXPORT LabelJoiner {
  private:
   std::vector<std::size_t> first_{0};  // label of each tile, and behind the last one
   std::vector<std::uint32_t> sizes_;
+  std::vector<LabelBorder> borders_;
   std::vector<detail::PieceTie> ties_;
 };
 

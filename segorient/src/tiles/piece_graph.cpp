@@ -62,10 +62,34 @@ std::vector<BorderVote> gatherVotes(std::vector<TileVote> votes,
 }
 
 std::vector<std::uint32_t> uniteLabels(const std::vector<std::uint32_t>& sizes,
-                                       const std::vector<PieceTie>& pairs, std::size_t& count) {
+                                       std::vector<PieceTie> pairs,
+                                       const std::vector<LabelBorder>& borders,
+                                       std::size_t& count) {
   DisjointSets sets(sizes.size());
+  // By root: all that is next to one of its set.
+  std::vector<std::vector<std::int32_t>> beside(sizes.size());
+  for (const LabelBorder& b : borders) {
+    beside[at(b.a)].push_back(b.b);
+    beside[at(b.b)].push_back(b.a);
+  }
+  std::stable_sort(pairs.begin(), pairs.end(),
+                   [](const PieceTie& x, const PieceTie& y) { return x.count > y.count; });
   for (const PieceTie& pair : pairs) {
-    if (pair.most) sets.join(pair.a, pair.b);
+    const std::int32_t a = sets.find(pair.a);
+    const std::int32_t b = sets.find(pair.b);
+    if (!pair.most || a == b) continue;
+    const bool few_of_a = beside[at(a)].size() < beside[at(b)].size();
+    std::vector<std::int32_t> less = std::move(beside[at(few_of_a ? a : b)]);
+    std::vector<std::int32_t>& more = beside[at(few_of_a ? b : a)];
+    const std::int32_t other = few_of_a ? b : a;
+    if (std::any_of(less.begin(), less.end(),
+                    [&](std::int32_t s) { return sets.find(s) == other; })) {
+      beside[at(few_of_a ? a : b)] = std::move(less);
+      continue;
+    }
+    more.insert(more.end(), less.begin(), less.end());
+    sets.join(a, b);
+    if (sets.find(a) != other) beside[at(sets.find(a))] = std::move(more);
   }
   std::vector<std::uint32_t> united(sizes.size(), 0);
   std::vector<std::int32_t> roots;

@@ -20,11 +20,14 @@ namespace segorient::detail {
 SEGORIENT_TILES_EXPORT std::vector<BorderVote> gatherVotes(std::vector<TileVote> votes,
                                                            const std::vector<PieceTie>& ties);
 
-/// Unites labels that most of what each has in the other's tile ties together; numbered by
-/// descending size, then by the first that had it.
-/// \param pairs of labels \param count those with points \return by label
+/// Unites labels that most of what each has in the other's tile ties together, those that have most
+/// points in common first; numbered by descending size, then by the first that had it. Where tiles
+/// cut a smooth surface in different ways, each tie is right, but a chain of them would unite
+/// segments that are next to each other in one tile: such are never united.
+/// \param pairs of labels \param borders labels that are next to each other
+/// \param count those with points \return by label
 SEGORIENT_TILES_EXPORT std::vector<std::uint32_t> uniteLabels(
-    const std::vector<std::uint32_t>& sizes, const std::vector<PieceTie>& pairs,
-    std::size_t& count);
+    const std::vector<std::uint32_t>& sizes, std::vector<PieceTie> pairs,
+    const std::vector<LabelBorder>& borders, std::size_t& count);
 
 }  // namespace segorient::detail

@@ -94,6 +94,12 @@ struct TileTie {
   float normal[3] = {0.F, 0.F, 0.F};  ///< as the piece is turned; 0 where there is none
 };
 
+/// Two segments of a tile that are next to each other, a < b.
+struct LabelBorder {
+  std::int32_t a = 0;
+  std::int32_t b = 0;
+};
+
 /// A tile worked on alone. Pieces are parts of the surface that are oriented in themselves, sheet
 /// segments; which way each is turned is for the join.
 struct TileShare {
@@ -105,11 +111,12 @@ struct TileShare {
 
   std::vector<std::uint32_t> piece_sizes;    ///< own distinct points
   std::vector<std::uint32_t> segment_sizes;  ///< own rows
-  std::vector<TileVote> votes;               ///< of own points, or those of a level, as patches are
-  std::vector<TilePatch> patch_list;         ///< of own points
-  std::vector<FieldPoint> field_points;      ///< one a patch, or none where they are not asked for
-  std::vector<std::int8_t> piece_signs;      ///< that the tile alone found, and followed
-  std::vector<TileTie> ties;                 ///< of HALO and SHARED rows, ascending by row
+  std::vector<LabelBorder> segment_borders;
+  std::vector<TileVote> votes;           ///< of own points, or those of a level, as patches are
+  std::vector<TilePatch> patch_list;     ///< of own points
+  std::vector<FieldPoint> field_points;  ///< one a patch, or none where they are not asked for
+  std::vector<std::int8_t> piece_signs;  ///< that the tile alone found, and followed
+  std::vector<TileTie> ties;             ///< of HALO and SHARED rows, ascending by row
 };
 
 /// What the whole cloud says of a tile.
