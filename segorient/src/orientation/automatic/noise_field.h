@@ -30,9 +30,8 @@ struct NoiseField {
 };
 
 /// On an even subset with averaged positions, normals are found that agree with the winding
-/// number's field (FieldSolver): from nothing, and from the oriented normals as they are. They
-/// replace those where FieldEnergy says that they are clearly better, first as a whole, then patch
-/// by patch where both differ.
+/// number's field (FieldSolver), with the oriented normals as they are for evidence, which weighs
+/// more the more noise leaves of that number.
 ///
 /// \param points positions as measured, finite, near ones side by side
 /// \param neighborhoods of them, six at least

@@ -5,56 +5,53 @@
 #include <segorient/common/neighborhoods.h>
 #include <segorient/common/point_view.h>
 
-#include <cstdint>
 #include <vector>
 
 namespace segorient {
 
-/// What speaks against oriented normals of an even subset, whatever way they came from.
-struct FieldEnergy {
-  /// How unequal the winding number w is at the points, which all lie on the surface, where it is
-  /// 1/2: (1 - mean(w)^2 / mean(w^2)) / 4, least mean square of f w - 1/2 over all factors f. So
-  /// areas need not be known, which noise makes too large. 1/4 where w says nothing.
+/// How well the winding number w fits to the points, which all lie on the surface, where it is 1/2.
+struct FieldFit {
+  /// f that makes f w least different from 1/2: areas need not be known, which noise makes too
+  /// large. 0 and less where w says that the surface has its other side outward, or nothing.
+  float factor = 0.F;
+  /// Mean square of f w - 1/2, (1 - mean(w)^2 / mean(w^2)) / 4: 1/4 where w says nothing.
   float spread = 0.25F;
-  /// Mean of min(f |w|, 1/2) in front of the points: an open surface pays no more than for 1/2. As
-  /// its sign is arbitrary, the less of that and of the same with all normals turned over.
-  float outside = 0.F;
-  /// Mean over neighbours of max(0, -n.m).
-  float opposed = 0.F;
 };
 
 /// Oriented normals that agree with the field of all points.
 ///
-/// On a surface the winding number is 1/2, and its field falls along the normal. From any start,
-/// dipoles take a step of least squares towards 1/2, and then the direction of the field, each the
-/// size of its area: the iteration of WNNC (Lin, Shi and Liu 2024, "Fast and globally consistent
-/// normal orientation based on the winding number normal consistency"), here at one width.
-/// Normals are arrays of 4 floats a point, of which three count.
+/// Dipoles m, in units of area, minimise one convex sum over points with areas a:
+///
+///     sum a (S w - 1/2)^2 + weight * sum a |m - f n|^2
+///
+/// with w the winding number of the dipoles, S a mean over a point and its neighbours, as noise
+/// takes points to both sides of the surface, n normals that are evidence and f their factor.
+/// Without S and n this is PGR (Lin, Xiao, Shi and Wang 2022, "Surface reconstruction from point
+/// clouds without normals by parametrizing the Gauss formula"). Normals are arrays of 4 floats a
+/// point, of which three count.
 class FieldSolver {
  public:
   /// \param points an even set, finite, near ones side by side; must outlive this
-  /// \param neighborhoods of them \param areas one a point \param radius of the smoothing
+  /// \param neighborhoods of them, themselves first \param areas one a point
+  /// \param radius of the smoothing
   FieldSolver(const PointView& points, const Neighborhoods& neighborhoods,
               const std::vector<float>& areas, float radius, int threads);
 
-  /// \param normals start, all 0 for none
-  std::vector<float> relax(std::vector<float> normals, int rounds) const;
+  /// \return directions in which the field of the solution falls; unit
+  std::vector<float> solve(const std::vector<float>& evidence, float weight) const;
 
-  FieldEnergy energy(const std::vector<float>& normals) const;
-
-  /// The winding number at all points. \param rows points that have dipoles, ascending; null = all
-  std::vector<float> windingOf(const std::vector<float>& normals,
-                               const std::vector<std::uint32_t>* rows = nullptr) const;
-
-  /// See FieldEnergy::spread. \param factor may be null
-  float spreadOf(const std::vector<float>& winding, float* factor = nullptr) const;
+  FieldFit fit(const std::vector<float>& normals) const;
 
   /// Normals times areas, and areas.
   std::vector<float> dipolesOf(const std::vector<float>& normals) const;
 
  private:
-  float outside(const std::vector<float>& normals, float way, float factor) const;
-  void step(std::vector<float>& dipoles, bool is_first) const;
+  std::vector<float> windingOf(const std::vector<float>& normals) const;
+  std::vector<float> growthOf(const std::vector<float>& lack) const;
+  std::vector<float> meansOf(std::vector<float> values) const;
+  std::vector<float> sharesOf(std::vector<float> values) const;
+  FieldFit fitOf(const std::vector<float>& winding) const;
+  double squaresOf(const std::vector<float>& values) const;
 
   PointView points_;
   const Neighborhoods& neighborhoods_;

@@ -128,17 +128,8 @@ float total(const std::array<float, kLanes>& lanes) {
 
 }  // namespace
 
-void DipoleList::clear() {
-  for (std::vector<float>* v : {&x, &y, &z, &mx, &my, &mz}) v->clear();
-}
-
-void DipoleList::add(const float* place, const float* moment) {
-  x.push_back(place[0]);
-  y.push_back(place[1]);
-  z.push_back(place[2]);
-  mx.push_back(moment[0]);
-  my.push_back(moment[1]);
-  mz.push_back(moment[2]);
+void DipoleList::grow() {
+  for (std::vector<float>* v : {&x, &y, &z, &mx, &my, &mz}) v->resize(2 * size_ + 64);
 }
 
 void steepestDescent(const DipoleList& dipoles, const float* x, float radius, float* descent) {

@@ -14,14 +14,30 @@ namespace segorient {
 /// The part of all directions that a unit of solid angle is.
 constexpr float kOneOver4Pi = 0.07957747F;
 
-/// Dipoles as separate arrays: places, and area-weighted normals.
-struct DipoleList {
+/// Dipoles as separate arrays: places, and area-weighted normals. They are as long as they ever
+/// were; the first size() count.
+class DipoleList {
+ public:
   std::vector<float> x, y, z;
   std::vector<float> mx, my, mz;
 
-  std::size_t size() const { return x.size(); }
-  void clear();
-  void add(const float* place, const float* moment);
+  std::size_t size() const { return size_; }
+  void clear() { size_ = 0; }
+  void add(const float* place, const float* moment) {
+    if (size_ == x.size()) grow();
+    x[size_] = place[0];
+    y[size_] = place[1];
+    z[size_] = place[2];
+    mx[size_] = moment[0];
+    my[size_] = moment[1];
+    mz[size_] = moment[2];
+    ++size_;
+  }
+
+ private:
+  void grow();
+
+  std::size_t size_ = 0;
 };
 
 /// Where the winding number of dipoles that are smeared over a radius falls fastest, which is
