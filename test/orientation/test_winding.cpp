@@ -211,35 +211,6 @@ TEST(LooseParts, ThoseOfUnknownAreaStay) {
       (std::vector<std::int8_t>{1, 1, 1}));
 }
 
-// A ball with a cavity, whose wall faces the center when it is right, and a sheet far away.
-TEST(RiseIfTurned, TellsACavityFromAMistake) {
-  for (const float wall : {-1.F, 1.F}) {
-    Balls balls;
-    addBall(balls, {0, 0, 0}, 1, 3000, 1.F);
-    addBall(balls, {0.1, 0, 0}, 0.5, 1000, wall);
-    for (int i = 0; i < 900; ++i) {
-      const float x = 0.05F * static_cast<float>(i % 30);
-      const float y = 0.05F * static_cast<float>(i / 30);
-      balls.xyz.insert(balls.xyz.end(), {50.F + x, y, 0.F, 0.F});
-      balls.dipoles.insert(balls.dipoles.end(), {0.F, 0.F, 0.0025F, 0.0025F});
-      balls.components.push_back(2);
-      balls.spacing.push_back(0.05F);
-    }
-    const auto rise = [&](std::size_t fixed) {
-      return riseIfTurned(viewOf(balls.xyz), balls.dipoles, balls.spacing, balls.components, 4,
-                          fixed);
-    };
-    const std::vector<float> loose = rise(0);
-    ASSERT_EQ(loose.size(), 4U);
-    EXPECT_NEAR(loose[1], -wall, 0.1F);
-    EXPECT_NEAR(loose[2], 0.F, 0.02F);
-    EXPECT_EQ(loose[3], 0.F);  // has no points
-    const std::vector<float> held = rise(2);
-    EXPECT_EQ(held[1], 0.F);
-    EXPECT_EQ(held[2], loose[2]);
-  }
-}
-
 TEST(LooseParts, HalvesOfAPlaneStayAsTheyAre) {
   std::vector<float> xyz;
   std::vector<float> dipoles;

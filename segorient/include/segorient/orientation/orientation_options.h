@@ -66,8 +66,7 @@ struct AutomaticOptions {
   bool wind_components = true;   ///< in and out by the winding number; otherwise by convention
   bool turn_loose_parts = true;  ///< what borders hardly tell, the winding number does; needs
                                  ///< wind_components
-  bool infer_viewpoint = true;   ///< a scan from one place: what disagrees with it is turned over,
-                                 ///< but for cavities that the winding number vouches for
+  bool infer_viewpoint = true;   ///< a scan from one place: what disagrees with it is turned over
   /// Where points contradict each other, as in scans that do not quite fit, even subsets are
   /// oriented as well, and their signs taken where they explain the cloud better. Not where points
   /// have sensors of their own, which decide.

@@ -64,9 +64,7 @@ void followViewpoint(SheetSigns& sheets) {
     const std::size_t c = at(sheets.clusters.of(s));
     if (!sheets.hinted[c]) facing[c].add(seen[s], 1);
   }
-  std::vector<bool> turned_away = sheets.outvoted(facing, kSureBorders);
-  sheets.keepWhatWindsRight(turned_away);
-  sheets.turnClusters(turned_away);
+  sheets.turnClusters(sheets.outvoted(facing, kSureBorders));
 }
 
 }  // namespace segorient::detail

@@ -118,27 +118,4 @@ void SheetSigns::turnClusters(const std::vector<bool>& chosen) {
   }
 }
 
-void SheetSigns::keepWhatWindsRight(std::vector<bool>& chosen) const {
-  if (!options.wind_components || hints.surface == SurfaceKind::OPEN) return;
-  // About 1 for a cavity; .6 for a hemisphere and .8 for a box without a lid, which are open.
-  constexpr float kRises = 0.8F;
-  const std::size_t fixed = windings.size();
-  std::vector<std::int32_t> number(chosen.size(), -1);
-  std::vector<std::int32_t> numbered = component_of;
-  std::size_t count = fixed;
-  for (std::size_t s = 0; s < signs.size(); ++s) {
-    const std::size_t part = at(clusters.of(s));
-    if (!chosen[part]) continue;
-    if (number[part] < 0) number[part] = static_cast<std::int32_t>(count++);
-    numbered[s] = number[part];
-  }
-  if (count == fixed) return;
-  const std::vector<float> spacing(field.spacing, field.spacing + points.size);
-  const std::vector<float> rise = riseIfTurned(points, orientedNormals(true), spacing,
-                                               ofPoints(numbered), count, fixed, threads);
-  for (std::size_t part = 0; part < chosen.size(); ++part) {
-    if (number[part] >= 0 && rise[at(number[part])] > kRises) chosen[part] = false;
-  }
-}
-
 }  // namespace segorient::detail

@@ -65,9 +65,6 @@ struct SheetSigns {
   /// Clusters that nearly all of the ballot is against, unless their borders know better.
   std::vector<bool> outvoted(const std::vector<Ballot>& ballots, float sure_borders) const;
   void turnClusters(const std::vector<bool>& chosen);
-  /// Takes out of the clusters chosen what the winding number vouches for: the walls of a cavity
-  /// turn their backs to all that could have seen the body from within.
-  void keepWhatWindsRight(std::vector<bool>& chosen) const;
 
   const PointView& points;
   std::size_t cloud_points;  ///< of the cloud, which a point may stand for several of

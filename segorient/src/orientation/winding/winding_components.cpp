@@ -70,16 +70,6 @@ class Solver {
     return {signs_.begin(), signs_.end()};
   }
 
-  std::vector<float> riseIfTurned(std::size_t fixed) {
-    windAsTurned();
-    std::vector<float> rise(rows_.size(), 0.F);
-    for (std::size_t c = fixed; c < rows_.size(); ++c) {
-      const double change = ownResidual(c, true) - ownResidual(c, false);
-      if (std::isfinite(change)) rise[c] = static_cast<float>(change);
-    }
-    return rise;
-  }
-
  private:
   // The field of all parts as they are turned now.
   void windAsTurned() {
@@ -263,14 +253,6 @@ std::vector<std::int8_t> turnParts(const PointView& points, const std::vector<fl
                                    std::size_t fixed, const TurnRule& rule, int threads) {
   if (count == 0) return {};
   return Solver(points, dipoles, spacing, parts, count, threads).turnParts(fixed, rule);
-}
-
-std::vector<float> riseIfTurned(const PointView& points, const std::vector<float>& dipoles,
-                                const std::vector<float>& spacing,
-                                const std::vector<std::int32_t>& parts, std::size_t count,
-                                std::size_t fixed, int threads) {
-  if (count == 0) return {};
-  return Solver(points, dipoles, spacing, parts, count, threads).riseIfTurned(fixed);
 }
 
 std::vector<ComponentWinding> solveComponents(const PointView& points,

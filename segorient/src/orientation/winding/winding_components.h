@@ -59,15 +59,4 @@ std::vector<std::int8_t> turnParts(const PointView& points, const std::vector<fl
                                    const std::vector<std::int32_t>& parts, std::size_t count,
                                    std::size_t fixed, const TurnRule& rule = {}, int threads = 0);
 
-/// By how much the mean of (w - 1/2)^2 at a part's own points would rise if that part alone were
-/// turned over. Of a part that is closed in itself it is about 1 if it is turned as it should be,
-/// and -1 if it is not; of a flat sheet about 0, of a bowl or an open box up to .8. Parameters as
-/// above; dipoles as they are turned now.
-///
-/// \return one a part, 0 for the first `fixed`
-std::vector<float> riseIfTurned(const PointView& points, const std::vector<float>& dipoles,
-                                const std::vector<float>& spacing,
-                                const std::vector<std::int32_t>& parts, std::size_t count,
-                                std::size_t fixed, int threads = 0);
-
 }  // namespace segorient
