@@ -147,7 +147,7 @@ struct GridEdge {
     const Neighborhoods table = neighborsOf(xyz, 12);
     const std::vector<std::uint8_t> regular{1, 1};
     const detail::RecomputationScene scene{viewOf(xyz), table, regular, labels, normals, 13, 1};
-    return detail::applyOneSidedRule(scene, {}, detail::OneSidedNormal::EXPECTED);
+    return detail::OneSidedRule({}, detail::OneSidedNormal::EXPECTED).apply(scene);
   }
 };
 

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <memory>
 #include <utility>
 
 #include "common/threads.h"
@@ -127,19 +128,26 @@ Looks layPatches(const RecomputationScene& scene, std::vector<std::uint8_t>& sta
   return looks;
 }
 
-/// Proposals for the points of some patches, in their order.
+/// What the rule looked at in one round, and by which labels.
+struct Round {
+  Looks looks;
+  std::vector<Proposal> proposals;  // by the points looked at
+  std::vector<std::uint8_t> known;  // by patch: not 0 where there are proposals
+  std::vector<std::int32_t> labels;
+};
+
+/// Proposals for the points of some patches, in their order. Where no label has changed since the
+/// round before, its proposals stay: the surfaces on both sides are the same.
 class Proposer {
  public:
   Proposer(const RecomputationScene& scene, const RecomputationOptions& options,
-           OneSidedNormal which, const Looks& looks)
-      : scene_(scene),
-        options_(options),
-        which_(which),
-        looks_(looks),
-        proposals_(looks.points.size()) {
-    for (std::size_t r = 0; r < proposals_.size(); ++r) {
-      proposals_[r].result.point = looks.points[r];
-      proposals_[r].result.label = scene.labels[looks.points[r]];
+           OneSidedNormal which, Round& before, Round& now)
+      : scene_(scene), options_(options), which_(which), before_(before), now_(now) {
+    now_.known.assign(now_.looks.patches.size(), 0);
+    now_.proposals.resize(now_.looks.points.size());
+    for (std::size_t r = 0; r < now_.proposals.size(); ++r) {
+      now_.proposals[r].result.point = now_.looks.points[r];
+      now_.proposals[r].result.label = scene.labels[now_.looks.points[r]];
     }
   }
 
@@ -151,24 +159,65 @@ class Proposer {
       OneSidedView view(scene_, options_, which_);
 #pragma omp for schedule(dynamic, 16)
       for (std::ptrdiff_t p = 0; p < size; ++p) {
-        const Patch& patch = looks_.patches[patchAt(static_cast<std::size_t>(p))];
-        view.buildPatch(patch.middle);
-        for (std::size_t r = patch.begin; r < patch.end; ++r) {
-          view.propose(looks_.points[r], proposals_[r]);
-        }
+        const std::size_t at = patchAt(static_cast<std::size_t>(p));
+        if (now_.known[at] == 0 && !takeOver(at)) propose(now_.looks.patches[at], view);
+        now_.known[at] = 1;
       }
     }
   }
-  std::vector<Proposal>& proposals() {
-    return proposals_;
-  }
 
  private:
+  void propose(const Patch& patch, OneSidedView& view) {
+    view.buildPatch(patch.middle);
+    for (std::size_t r = patch.begin; r < patch.end; ++r) {
+      view.propose(now_.looks.points[r], now_.proposals[r]);
+    }
+  }
+
+  bool takeOver(std::size_t at) {
+    const Patch& patch = now_.looks.patches[at];
+    const std::vector<Patch>& patches = before_.looks.patches;
+    const auto same =
+        std::lower_bound(patches.begin(), patches.end(), patch.middle,
+                         [](const Patch& p, std::size_t middle) { return p.middle < middle; });
+    if (same == patches.end() || same->middle != patch.middle) return false;
+    if (before_.known[static_cast<std::size_t>(same - patches.begin())] == 0) return false;
+    const auto begin = now_.looks.points.begin();
+    const auto begin_before = before_.looks.points.begin();
+    const auto offset = [](std::size_t i) { return static_cast<std::ptrdiff_t>(i); };
+    if (!std::equal(begin + offset(patch.begin), begin + offset(patch.end),
+                    begin_before + offset(same->begin), begin_before + offset(same->end)) ||
+        hasChanged(patch)) {
+      return false;
+    }
+    std::move(before_.proposals.begin() + offset(same->begin),
+              before_.proposals.begin() + offset(same->end),
+              now_.proposals.begin() + offset(patch.begin));
+    return true;
+  }
+
+  // Whether a label has that a patch or one of its points looks at.
+  bool hasChanged(const Patch& patch) const {
+    for (int j = 0; j < scene_.count(patch.middle); ++j) {
+      if (changesAround(scene_.neighbor(patch.middle, j))) return true;
+    }
+    return std::any_of(now_.looks.points.begin() + static_cast<std::ptrdiff_t>(patch.begin),
+                       now_.looks.points.begin() + static_cast<std::ptrdiff_t>(patch.end),
+                       [&](std::size_t i) { return changesAround(i); });
+  }
+  bool changesAround(std::size_t i) const {
+    for (int j = 0; j < scene_.count(i); ++j) {
+      const std::size_t q = scene_.neighbor(i, j);
+      if (scene_.labels[q] != before_.labels[q]) return true;
+    }
+    return false;
+  }
+
   const RecomputationScene& scene_;
   const RecomputationOptions& options_;
   OneSidedNormal which_;
-  const Looks& looks_;
-  std::vector<Proposal> proposals_;
+  Round& before_;
+  Round& now_;
 };
 
 /// How far a point lies off one smooth surface through its nearest neighbours, whatever their
@@ -281,17 +330,27 @@ std::vector<Recomputed> elect(const RecomputationScene& scene, bool edged,
 
 }  // namespace
 
-std::vector<Recomputed> applyOneSidedRule(const RecomputationScene& scene,
-                                          const RecomputationOptions& options,
-                                          OneSidedNormal which) {
+struct OneSidedRule::Rounds {
+  Round last;
+};
+
+OneSidedRule::OneSidedRule(const RecomputationOptions& options, OneSidedNormal which)
+    : options_(options), which_(which), rounds_(std::make_unique<Rounds>()) {}
+OneSidedRule::~OneSidedRule() = default;
+
+std::vector<Recomputed> OneSidedRule::apply(const RecomputationScene& scene) {
   std::vector<std::uint8_t> state(scene.size());
-  const Looks looks = layPatches(scene, state);
-  Proposer proposer(scene, options, which, looks);
+  Round now;
+  now.looks = layPatches(scene, state);
+  Proposer proposer(scene, options_, which_, rounds_->last, now);
+  const Looks& looks = now.looks;
   proposer.run(looks.sample.size(), [&](std::size_t p) { return looks.sample[p]; });
-  const std::vector<Proposal>& proposals = proposer.proposals();
-  const bool edged = seesEdges(scene, looks, proposals);
+  const bool edged = seesEdges(scene, looks, now.proposals);
   if (edged) proposer.run(looks.patches.size(), [](std::size_t p) { return p; });
-  return elect(scene, edged, proposals, state);
+  std::vector<Recomputed> results = elect(scene, edged, now.proposals, state);
+  now.labels = scene.labels;
+  rounds_->last = std::move(now);
+  return results;
 }
 
 }  // namespace segorient::detail

@@ -26,7 +26,7 @@ RecomputationReport recomputeNormals(const PointView& points, const Neighborhood
                                          normals, entries,       options.threads};
   const std::vector<detail::Recomputed> results =
       options.rule == RecomputationRule::ONE_SIDED
-          ? detail::applyOneSidedRule(scene, options)
+          ? detail::OneSidedRule(options).apply(scene)
           : detail::applyModifiedNeighborhoods(scene, options);
   for (const detail::Recomputed& r : results) {
     ++report.examined;

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <vector>
 
 #include "features/recompute_normals.h"
@@ -85,10 +86,26 @@ enum class OneSidedNormal : std::uint8_t {
   EXPECTED
 };
 
-/// One entry for each point that was looked at, ascending by point.
-SEGORIENT_FEATURES_EXPORT std::vector<Recomputed> applyOneSidedRule(
-    const RecomputationScene& scene, const RecomputationOptions& options,
-    OneSidedNormal which = OneSidedNormal::LIKELIEST);
+/// Round after round on one cloud, whose labels and normals may change in between.
+class SEGORIENT_FEATURES_EXPORT OneSidedRule {
+ public:
+  explicit OneSidedRule(const RecomputationOptions& options,
+                        OneSidedNormal which = OneSidedNormal::LIKELIEST);
+  ~OneSidedRule();
+  OneSidedRule(const OneSidedRule&) = delete;
+  OneSidedRule& operator=(const OneSidedRule&) = delete;
+
+  /// One entry for each point that was looked at. What lies where no label has changed since the
+  /// last round is as it was then.
+  std::vector<Recomputed> apply(const RecomputationScene& scene);
+
+ private:
+  struct Rounds;
+
+  RecomputationOptions options_;
+  OneSidedNormal which_;
+  std::unique_ptr<Rounds> rounds_;
+};
 std::vector<Recomputed> applyModifiedNeighborhoods(const RecomputationScene& scene,
                                                    const RecomputationOptions& options);
 

@@ -146,9 +146,10 @@ class FinalNormals {
       regular.push_back(s.kind == SegmentKind::REGULAR ? 1 : 0);
     }
     const int entries = std::min(kEdgeNeighbors + 1, table_.k());
+    OneSidedRule rule({}, OneSidedNormal::EXPECTED);
     for (int round = 0; round < kRounds; ++round) {
       const RecomputationScene scene{points_, table_, regular, labels, fitted_, entries, threads_};
-      for (const Recomputed& r : applyOneSidedRule(scene, {}, OneSidedNormal::EXPECTED)) {
+      for (const Recomputed& r : rule.apply(scene)) {
         if (r.on_edge) fits_[r.point] = Fit::ON_EDGE;
         edges_sampled_ = edges_sampled_ || r.on_edge;
         if (!r.accepted || !isFinite(r.normal)) continue;
