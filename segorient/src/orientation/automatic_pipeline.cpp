@@ -11,6 +11,7 @@
 
 #include "orientation/automatic/stages.h"
 #include "orientation/pipeline_stages.h"
+#include "orientation/sensors/hiding_place.h"
 #include "orientation/sensors/point_hints.h"
 #include "orientation/sensors/sensor_hints.h"
 
@@ -38,10 +39,22 @@ const OrientationHints& givenHints(const PipelineOptions& options) {
   return options.orientation.hints ? *options.orientation.hints : kNone;
 }
 
+// As if no place had been given.
+PipelineOptions asIfUnseen(const PipelineOptions& options) {
+  PipelineOptions out = options;
+  out.orientation.hints = std::make_shared<OrientationHints>(withoutPlaces(givenHints(options)));
+  return out;
+}
+
+std::array<float, 3> inUnitOf(const PreparedCloud& cloud, std::array<float, 3> place) {
+  for (float& v : place) v /= cloud.unit();
+  return place;
+}
+
 // One place for all points that nothing was turned to.
 KnownSensor refusedPlace(const std::array<float, 3>& place, const PreparedCloud& cloud) {
   KnownSensor out;
-  for (std::size_t a = 0; a < 3; ++a) out.position[a] = place[a] / cloud.unit();
+  out.position = inUnitOf(cloud, place);
   out.points = cloud.size();
   out.used = false;
   return out;
@@ -50,8 +63,9 @@ KnownSensor refusedPlace(const std::array<float, 3>& place, const PreparedCloud&
 // What the caller knows, and where nothing is known of sensors, what can be found. One place for
 // all points may be a guess of whoever gives it: sensors that densities tell for sure are followed,
 // unless they are in that place, too.
+// \param hiding the place, where it is only to be compared with what is found without it
 PointHints findHints(const PointView& points, const PipelineOptions& options, PreparedCloud& cloud,
-                     PipelineReport& report) {
+                     PipelineReport& report, std::optional<HidingPlace>& hiding) {
   const OrientationHints& given = givenHints(options);
   const std::optional<std::array<float, 3>> place = onlyPlace(given);
   OrientationHints found = place ? withoutPlaces(given) : given;
@@ -64,7 +78,11 @@ PointHints findHints(const PointView& points, const PipelineOptions& options, Pr
   if (is_place && !contradictsPlace(points, sensors, *place)) {
     PointHints known = resolveHints(given, cloud);
     known.place_found = sensors.sure() && !sensors.sensors[0].suggested;
-    return known;
+    const bool is_fact = known.place_found || !given.viewpoints.empty();
+    if (is_fact || given.surface == SurfaceKind::OPEN) return known;
+    hiding = findHidingPlace(cloud.points(), inUnitOf(cloud, *place), options.threads);
+    if (!hiding) return known;
+    return findHints(points, asIfUnseen(options), cloud, report, hiding);
   }
   if (place) report.known_sensors.push_back(refusedPlace(*place, cloud));
   report.sensors = std::move(sensors);
@@ -72,31 +90,34 @@ PointHints findHints(const PointView& points, const PipelineOptions& options, Pr
   return resolveHints(found, cloud);
 }
 
-// Whether places were given, and none of them is believed.
-bool refusesAll(const std::vector<KnownSensor>& sensors) {
-  return !sensors.empty() &&
-         std::none_of(sensors.begin(), sensors.end(), [](const KnownSensor& s) { return s.used; });
+// Whether places were given, and no point was left to them: none is believed, or the surface knows
+// better everywhere.
+bool leavesAllToSurface(const AutoOrientation& found) {
+  return !found.sensors.empty() &&
+         std::all_of(found.toward.begin(), found.toward.end(), [](float v) { return v == 0.F; });
 }
 
 }  // namespace
 
 void runAutomatic(const PointView& points, const PipelineOptions& options, StageClock& clock,
                   OrientedStages& work, PipelineReport& report) {
-  const PointHints hints = findHints(points, options, work.surface.cloud, report);
+  std::optional<HidingPlace> hiding;
+  const PointHints hints = findHints(points, options, work.surface.cloud, report, hiding);
   AutoStages result =
       runAutoStages(work.surface.cloud, options, hints,
                     [&clock](const char* stage, double fraction) { clock.begin(stage, fraction); });
-  std::vector<KnownSensor> refused = std::move(report.known_sensors);
-  if (refused.empty() && refusesAll(result.orientation.sensors)) {
-    // As if nothing had been said.
-    PipelineOptions without = options;
-    without.orientation.hints =
-        std::make_shared<OrientationHints>(withoutPlaces(givenHints(options)));
-    refused = std::move(result.orientation.sensors);
-    const PointHints rest = findHints(points, without, work.surface.cloud, report);
+  std::vector<KnownSensor> doubted = std::move(report.known_sensors);
+  if (doubted.empty() && leavesAllToSurface(result.orientation)) {
+    doubted = std::move(result.orientation.sensors);
+    const PointHints rest =
+        findHints(points, asIfUnseen(options), work.surface.cloud, report, hiding);
     result = runAutoStages(
         work.surface.cloud, options, rest,
         [&clock](const char* stage, double fraction) { clock.begin(stage, fraction); });
+  }
+  if (hiding) {
+    hiding->report.used = hiding->isPlausible(work.surface.cloud.points(), result.normals);
+    doubted.push_back(hiding->report);
   }
   report.k = result.k;
   report.spacing = result.spacing;
@@ -106,7 +127,7 @@ void runAutomatic(const PointView& points, const PipelineOptions& options, Stage
   report.scales = std::move(result.scales);
   report.contradictions = std::move(result.orientation.contradictions);
   report.clusters = std::move(result.orientation.clusters);
-  report.known_sensors = std::move(refused);
+  report.known_sensors = std::move(doubted);
   report.known_sensors.insert(report.known_sensors.end(), result.orientation.sensors.begin(),
                               result.orientation.sensors.end());
   work.surface.normals = std::move(result.normals);

@@ -107,13 +107,17 @@ float Scan::spacingOf(std::size_t i) const {
   return meanDistance(view(), i, row.indices + 1, row.count - 1);
 }
 
+std::size_t Scan::stride() const {
+  return strideOf(size(), kSamples);
+}
+
 std::vector<std::uint8_t> Scan::hidden(bool all) {
   if (all && near_.k() == 0) {
     index_.nearestKAll(kPlane + 1, near_, false);
     spacing_.resize(size());
     for (std::size_t i = 0; i < size(); ++i) spacing_[i] = meanDistance(view(), near_, i, kSpacing);
   }
-  const std::size_t step = all ? 1 : strideOf(size(), kSamples);
+  const std::size_t step = all ? 1 : stride();
   const std::size_t n = (size() + step - 1) / step;
   search::MedianHashIndex index;
   search::MedianHashIndex::Options options;
@@ -162,7 +166,7 @@ Scan::Density Scan::density() const {
   // Equal angles crowd at the poles of the sensor's axis: no nearer than 6 degrees.
   constexpr float kPole = 0.1F;
   constexpr std::size_t kLaws = 5;  // no axis, three axes, an image
-  const std::size_t step = strideOf(size(), kSamples);
+  const std::size_t step = stride();
   std::array<double, 3> mean{0.0, 0.0, 0.0};
   for (std::size_t i = 0; i < size(); ++i) {
     for (std::size_t a = 0; a < 3; ++a) mean[a] += static_cast<double>(direction_[4 * i + a]);

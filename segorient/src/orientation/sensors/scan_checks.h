@@ -28,6 +28,9 @@ class Scan {
   /// \return one a point that was looked at
   std::vector<std::uint8_t> hidden(bool all);
 
+  /// From one of those some thousand to the next.
+  std::size_t stride() const;
+
   struct Density {
     /// Scatter of log density about that of a sensor here, over that about a constant.
     float ratio = std::numeric_limits<float>::infinity();
