@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 #include <segorient/orientation/pipeline.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
@@ -187,6 +188,34 @@ TEST(KnownSensors, OneViewpointDoesNotTurnTheFarSideOfAMergedSolid) {
   ASSERT_EQ(cloud.report.known_sensors.size(), 1U);
   EXPECT_TRUE(cloud.report.known_sensors[0].used);
   EXPECT_GT(cloud.report.known_sensors[0].hidden, 0.1F);
+}
+
+// Stray points open what is closed to the winding number, and the place then had its way with it.
+TEST(KnownSensors, APlaceThatHidesMostOfACloudChangesNothingAndIsReported) {
+  LabelledCloud solid = sample("bracket", bracket(), 12000, 72, 0.0);
+  std::mt19937 rng(8);
+  std::uniform_real_distribution<float> anywhere(-1.2F, 1.2F);
+  std::array<float, 3> low{1e9F, 1e9F, 1e9F};
+  std::array<float, 3> high{-1e9F, -1e9F, -1e9F};
+  for (std::size_t i = 0; i < solid.xyz.size() / 4; ++i) {
+    for (std::size_t a = 0; a < 3; ++a) {
+      low[a] = std::min(low[a], solid.xyz[4 * i + a]);
+      high[a] = std::max(high[a], solid.xyz[4 * i + a]);
+    }
+  }
+  for (int k = 0; k < 2000; ++k) {
+    for (std::size_t a = 0; a < 3; ++a) {
+      solid.xyz.push_back(0.5F * (low[a] + high[a]) + anywhere(rng) * 0.5F * (high[a] - low[a]));
+    }
+    solid.xyz.push_back(0.F);
+  }
+  const OrientedCloud free = orient(solid.xyz, {});
+  const auto middle = [&](std::size_t a) { return 0.5 * static_cast<double>(low[a] + high[a]); };
+  const OrientedCloud inside = orient(solid.xyz, seenFrom({middle(0), middle(1), middle(2)}));
+  EXPECT_EQ(inside.normals, free.normals);
+  ASSERT_EQ(inside.report.known_sensors.size(), 1U);
+  EXPECT_EQ(inside.report.known_sensors[0].seen, 0U);
+  EXPECT_GT(inside.report.known_sensors[0].hidden, 1.F / 3.F);
 }
 
 TEST(KnownSensors, OnePlaceGivesWayToSensorsThatAreFoundElsewhere) {

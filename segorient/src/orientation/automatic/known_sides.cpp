@@ -11,7 +11,8 @@ namespace segorient::detail {
 namespace {
 
 // As kMostContrary of scans: of votes within sheets, against what most of their sheet says. True
-// places leave .007 of them and less; on open surfaces wrong ones leave .011 and more.
+// places leave .007 of them and less; on open surfaces wrong ones leave .011 and more. Times the
+// density ratio, true places leave up to .0075, wrong ones for layers from .013 on.
 constexpr float kMostSplit = 0.01F;
 
 // How far one place sees smooth sheets from both sides, which no sensor does: share of the votes
@@ -60,7 +61,9 @@ void weighOnePlace(SheetSigns& sheets, const std::vector<Ballot>& ballots) {
   if (!report.used) report.seen = 0;
   if (!sheets.sensors.doubtful) return;
   report.contrary = splitOf(sheets, ballots, own);
-  if (report.contrary <= kMostSplit) return;
+  // The less its density is that of a sensor there, the less may contradict it.
+  const float unlike = std::isfinite(report.density) ? std::max(1.F, report.density) : 1.F;
+  if (report.contrary * unlike <= kMostSplit) return;
   sheets.sensors.drop(0);
   sheets.facing.assign(sheets.points.size, 0.F);
 }
