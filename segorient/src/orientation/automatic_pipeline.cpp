@@ -90,11 +90,12 @@ PointHints findHints(const PointView& points, const PipelineOptions& options, Pr
   return resolveHints(found, cloud);
 }
 
-// Whether places were given, and no point was left to them: none is believed, or the surface knows
+// Whether places were given, and they decided nothing: none is believed, or the surface knows
 // better everywhere.
 bool leavesAllToSurface(const AutoOrientation& found) {
   return !found.sensors.empty() &&
-         std::all_of(found.toward.begin(), found.toward.end(), [](float v) { return v == 0.F; });
+         (found.place_idle || std::none_of(found.sensors.begin(), found.sensors.end(),
+                                           [](const KnownSensor& s) { return s.used; }));
 }
 
 }  // namespace

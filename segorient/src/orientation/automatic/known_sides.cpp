@@ -60,6 +60,9 @@ void weighOnePlace(SheetSigns& sheets, const std::vector<Ballot>& ballots) {
   report.used = 2 * believed > sheets.cloud_points;
   if (!report.used) report.seen = 0;
   if (!sheets.sensors.doubtful) return;
+  // What hides points has turned nothing that closes before, see followHints().
+  sheets.found.place_idle =
+      report.hidden > kFewHidden && std::all_of(own.begin(), own.end(), [](bool o) { return o; });
   report.contrary = splitOf(sheets, ballots, own);
   // The less its density is that of a sensor there, the less may contradict it.
   const float unlike = std::isfinite(report.density) ? std::max(1.F, report.density) : 1.F;
