@@ -138,6 +138,29 @@ Bodies wave(int side) {
   return out;
 }
 
+// A sheet rolled up, two turns of a spiral: with a false wall between them it would bound a body.
+Bodies roll(std::size_t n) {
+  std::mt19937 rng(5);
+  std::uniform_real_distribution<float> unit(0.F, 1.F);
+  Bodies out;
+  for (std::size_t i = 0; i < n; ++i) {
+    const float angle = 12.6F * std::pow(unit(rng), .7F);
+    const float r = .4F + .12F * angle;
+    const float x = .12F * std::cos(angle) - r * std::sin(angle);
+    const float y = .12F * std::sin(angle) + r * std::cos(angle);
+    const float length = std::sqrt(x * x + y * y);
+    out.add({r * std::cos(angle), r * std::sin(angle), 2.F * unit(rng)},
+            {y / length, -x / length, 0.F}, false);
+  }
+  return out;
+}
+
+TEST(PatchSigns, RolledSheetStaysOneSheet) {
+  const Bodies sheet = roll(20000);
+  const OrientedCloud found = orientCloud(viewOf(sheet.xyz), nullptr, PipelineOptions{});
+  EXPECT_GT(std::fabs(sheet.shareRight(found.normals) - .5), .49);
+}
+
 TEST(SignPatches, AreFlatPiecesThatEndAtEdges) {
   const Bodies cube = sampleBoxes({{{0.F, 0.F, 0.F}, {1.F, 1.F, 1.F}}}, 2000.F, 3);
   const EvenCells cells = detail::gatherCells(viewOf(cube.xyz), cube.normals, .02F, 1);
