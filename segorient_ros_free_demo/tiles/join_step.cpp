@@ -42,6 +42,8 @@ void addTies(const std::vector<TieReader>& ties, Joiner& joiner) {
 // By tile, whether the field tells it something: all of them in noise, else where cells turn
 // points.
 std::vector<std::uint8_t> tilesOf(const CloudField& field, const Plan& plan) {
+  // Cells are .8 radii wide; a point looks at those around its own.
+  constexpr double kFarthestCell = 3.0;
   std::vector<std::uint8_t> out(plan.tiles(), field.noise);
   for (const FieldCell& cell : field.cells) {
     if (field.noise != 0 || cell.value >= 0.F) continue;
@@ -51,6 +53,7 @@ std::vector<std::uint8_t> tilesOf(const CloudField& field, const Plan& plan) {
     }
     double reach = 0.0;
     plan.tree.owner(place, reach);
+    reach = std::max(reach, kFarthestCell * static_cast<double>(field.radius));
     plan.tree.forEachWithin(place, reach, [&](std::uint32_t t, double) { out[t] = 1; });
   }
   return out;

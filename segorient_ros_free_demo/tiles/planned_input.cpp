@@ -20,7 +20,7 @@ constexpr double kMostScan = 2147483647.0;
 // The points of one input.
 class InputBlocks {
  public:
-  // \param first_scan its number among those of all inputs
+  // \param first_scan its number among those of all inputs of one output
   InputBlocks(const Plan& plan, const PlanInput& input, const Trajectory& trajectory,
               std::uint64_t first_scan)
       : plan_(plan),

@@ -11,9 +11,9 @@
 #include "common/peak_memory.h"
 #include "io/output_file.h"
 #include "support/command_line.h"
-#include "support/report_lists.h"
 #include "support/json.h"
 #include "support/progress_bar.h"
+#include "support/report_lists.h"
 #include "tiles/input_state.h"
 #include "tiles/plan_inputs.h"
 

@@ -137,7 +137,8 @@ struct Round {
 };
 
 /// Proposals for the points of some patches, in their order. Where no label has changed since the
-/// round before, its proposals stay: the surfaces on both sides are the same.
+/// round before, its proposals stay: the surfaces on both sides are the same, but for which way
+/// their points' normals faced then.
 class Proposer {
  public:
   Proposer(const RecomputationScene& scene, const RecomputationOptions& options,

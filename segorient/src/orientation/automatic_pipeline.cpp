@@ -90,6 +90,11 @@ PointHints findHints(const PointView& points, const PipelineOptions& options, Pr
   return resolveHints(found, cloud);
 }
 
+// Whether places are given: those that are found would be found again.
+bool saysPlaces(const OrientationHints& hints) {
+  return hints.has_viewpoint || !hints.viewpoints.empty();
+}
+
 // Whether places were given, and they decided nothing: none is believed, or the surface knows
 // better everywhere.
 bool leavesAllToSurface(const AutoOrientation& found) {
@@ -108,7 +113,8 @@ void runAutomatic(const PointView& points, const PipelineOptions& options, Stage
       runAutoStages(work.surface.cloud, options, hints,
                     [&clock](const char* stage, double fraction) { clock.begin(stage, fraction); });
   std::vector<KnownSensor> doubted = std::move(report.known_sensors);
-  if (doubted.empty() && leavesAllToSurface(result.orientation)) {
+  if (!hiding && doubted.empty() && saysPlaces(givenHints(options)) &&
+      leavesAllToSurface(result.orientation)) {
     doubted = std::move(result.orientation.sensors);
     const PointHints rest =
         findHints(points, asIfUnseen(options), work.surface.cloud, report, hiding);

@@ -73,8 +73,9 @@ CloudField findNoise(const PointView& places, const std::vector<float>& normals,
   }
   const NoiseField noise =
       findNoiseField(cloud.points(), cloud.neighborhoods(), of_points, threads);
-  const float unit = cloud.unit();
   CloudField out;
+  if (noise.empty()) return out;
+  const float unit = cloud.unit();
   out.noise = 1;
   out.radius = unit * noise.radius;
   addCells(noise.places, unit, noise.dipoles, unit * unit, out);
@@ -89,6 +90,7 @@ CloudField findSigns(const PreparedCloud& cloud, const std::vector<float>& norma
   CloudField out;
   const CellSigns signs = findCellSigns(cloud.points(), normals, spacing, components, threads);
   if (signs.empty()) return out;
+  out.radius = cloud.unit() * spacing;
   addCells(signs.cells.places, cloud.unit(), signs.cells.normals, 1.F, out);
   for (std::size_t c = 0; c < out.cells.size(); ++c) out.cells[c].value = signs.signs[c];
   return out;

@@ -137,7 +137,7 @@ struct FieldCell {
 /// See NoiseField and CellSigns in orientation/automatic.
 struct CloudField {
   std::vector<FieldCell> cells;  ///< none = it says nothing
-  float radius = 0.F;            ///< in noise: of the smoothing
+  float radius = 0.F;            ///< of the smoothing in noise, else the spacing of patches
   std::uint8_t noise = 0;        ///< which of the two it is
   std::uint8_t directions = 0;   ///< in noise: whether normals follow it, or only their signs
 };

@@ -22,8 +22,10 @@ struct KnownSensor {
   std::array<float, 3> position{0.F, 0.F, 0.F};  ///< in input coordinates
   std::size_t points = 0;                        ///< distinct points that are said to be its own
   std::size_t seen = 0;  ///< of these, those that it could see: others were left to the surface
-  bool used = true;      ///< false: it contradicts the surface, and nothing was turned to it
-  bool moving = false;   ///< many places together
+  /// False: it contradicts the surface, and nothing was turned to it. A place that hides a third of
+  /// all points and more turns nothing anyway; of it this says whether the result suits it.
+  bool used = true;
+  bool moving = false;  ///< many places together
   /// Share of its points that lie behind others of its own, as seen from there. A sensor sees no
   /// such points: noise and stray points make up to .09 of them.
   float hidden = 0.F;

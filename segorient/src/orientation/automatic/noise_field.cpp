@@ -51,8 +51,9 @@ NoiseField findNoiseField(const PointView& points, const Neighborhoods& neighbor
   // a half. 1 and 4 are as good in the mean.
   constexpr float kEvidence = 2.F;
   const float spacing = medianSpacing(points, neighborhoods);
-  EvenCells subset = gatherCells(points, normals, kCell * spacing, threads);
   NoiseField out;
+  if (!(spacing > 0.F)) return out;  // one place
+  EvenCells subset = gatherCells(points, normals, kCell * spacing, threads);
   if (subset.size() == 0) return out;
   const FieldSolver solver(subset.points(), subset.around, subset.areas, kSmooth * spacing,
                            threads);
@@ -96,7 +97,7 @@ void takeNoiseField(const PointView& points, const NoiseField& field, int thread
         sum[a] = sign * n[a] + (field.directions ? g[a] / length : 0.F);
       }
       const float total = std::sqrt(dot(sum, sum));
-      for (std::size_t a = 0; a < 3; ++a) n[a] = sum[a] / total;
+      for (std::size_t a = 0; total > 0.F && a < 3; ++a) n[a] = sum[a] / total;
       // A plane's falls by 1 / (2 radius).
       const float steepness = 2.F * field.radius * field.factor * length;
       confidence = std::min(confidence, std::max(0.F, kSteep * steepness));
