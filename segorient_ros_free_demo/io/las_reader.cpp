@@ -6,21 +6,11 @@
 #include <tuple>
 
 #include "io/cloud_stream.h"
-#include "io/las_format.h"
+#include "io/las_header.h"
 #include "io/readers.h"
 
 namespace segorient::program {
 namespace {
-
-constexpr std::size_t kHeader12 = 227;  // bytes of the header of LAS 1.0 to 1.2
-constexpr std::size_t kHeader14 = 375;
-
-template <typename T>
-T load(const std::uint8_t* from) {
-  T v;
-  std::memcpy(&v, from, sizeof(T));
-  return v;
-}
 
 // An extra dimension: a field of the table, and how its numbers are stored.
 struct Extra {
@@ -32,151 +22,6 @@ struct Extra {
   std::array<double, 3> shift{0.0, 0.0, 0.0};
   bool scaled = false;
 };
-
-struct Header {
-  LasOrigin origin;
-  std::size_t record_bytes = 0;
-  std::uint64_t points = 0;
-  std::uint64_t header_bytes = 0;
-  std::uint64_t points_begin = 0;
-  std::uint64_t extended_begin = 0;
-  std::uint32_t records = 0;
-  std::uint32_t extended_records = 0;
-  std::vector<std::uint8_t> extra;  // contents of the record about extra bytes
-};
-
-[[noreturn]] void failCompressed(const InputFile& file) {
-  file.fail(
-      "is compressed (LAZ), which is not read; unpack it first: 'laszip -i IN.laz -o OUT.las' "
-      "(LAStools) or 'pdal translate IN.laz OUT.las'");
-}
-
-void checkScales(const InputFile& file, const LasOrigin& origin) {
-  for (std::size_t a = 0; a < 3; ++a) {
-    if (!std::isfinite(origin.scale[a]) || origin.scale[a] == 0.0 ||
-        !std::isfinite(origin.offset[a])) {
-      file.fail("has a scale or an offset of coordinates that is no number, or 0");
-    }
-  }
-}
-
-// The part of the header that all versions have, then what the version adds.
-Header readHeader(InputFile& file) {
-  std::array<std::uint8_t, kHeader14> h{};
-  file.read(h.data(), kHeader12);
-  if (std::memcmp(h.data(), "LASF", 4) != 0) file.fail("is not a LAS file");
-  Header out;
-  LasOrigin& o = out.origin;
-  o.source_id = load<std::uint16_t>(&h[4]);
-  o.global_encoding = load<std::uint16_t>(&h[6]);
-  std::copy_n(h.begin() + 8, 16, o.project_id.begin());
-  o.minor_version = h[25];
-  if (h[24] != 1 || o.minor_version > 4) {
-    file.fail("is of a version of LAS that is not known: " + std::to_string(h[24]) + "." +
-              std::to_string(h[25]));
-  }
-  std::memcpy(o.system_id.data(), &h[26], 32);
-  o.creation_day = load<std::uint16_t>(&h[90]);
-  o.creation_year = load<std::uint16_t>(&h[92]);
-  out.header_bytes = load<std::uint16_t>(&h[94]);
-  out.points_begin = load<std::uint32_t>(&h[96]);
-  out.records = load<std::uint32_t>(&h[100]);
-  constexpr unsigned kCompressed = 0xc0;  // LASzip marks the format
-  if ((h[104] & kCompressed) != 0) failCompressed(file);
-  o.point_format = h[104];
-  if (o.point_format > 10) {
-    file.fail("has points of a format that is not known: " + std::to_string(o.point_format));
-  }
-  out.record_bytes = load<std::uint16_t>(&h[105]);
-  if (out.record_bytes < kLasPointBytes[static_cast<std::size_t>(o.point_format)]) {
-    file.fail("has records too short for its point format");
-  }
-  out.points = load<std::uint32_t>(&h[107]);
-  std::memcpy(o.scale.data(), &h[131], 24);
-  std::memcpy(o.offset.data(), &h[155], 24);
-  checkScales(file, o);
-  if (out.header_bytes < kHeader12 || out.points_begin < out.header_bytes) {
-    file.fail("has a header that contradicts itself: no room for it before the points");
-  }
-  std::size_t read = kHeader12;
-  if (o.minor_version == 4) {
-    if (out.header_bytes < kHeader14) file.fail("has a header too short for LAS 1.4");
-    file.read(h.data() + read, kHeader14 - read);
-    read = kHeader14;
-    out.extended_begin = load<std::uint64_t>(&h[235]);
-    out.extended_records = load<std::uint32_t>(&h[243]);
-    const auto points = load<std::uint64_t>(&h[247]);
-    if (points != 0) out.points = points;
-  }
-  file.skip(out.header_bytes - read);
-  return out;
-}
-
-// Records that the points' new layout makes wrong, or that belong to what is not kept.
-bool isAboutLayout(const std::string& user, std::uint16_t id) {
-  const bool waveforms = (id > 99 && id < 355) || id == 65535;
-  if (user == kLasSpecUser) return id == kLasExtraBytesId || waveforms;
-  return user == "laszip encoded" || user == "copc";
-}
-
-std::string userOf(const std::uint8_t* record) {
-  const char* text = reinterpret_cast<const char*>(record + 2);
-  return {text, strnlen(text, 16)};
-}
-
-// Everything between header and points; the records in it, as far as they are whole.
-void readRecords(InputFile& file, Header& header, std::uint64_t bytes) {
-  if (bytes > file.remaining()) file.fail("is cut short: it ends before its points");
-  std::vector<std::uint8_t> area(static_cast<std::size_t>(bytes));
-  if (!area.empty()) file.read(area.data(), area.size());
-  std::size_t at = 0;
-  for (std::uint32_t r = 0; r < header.records; ++r) {
-    if (area.size() - at < kLasRecordHeader) {
-      file.fail("says that it has more variable length records than there is room for");
-    }
-    const std::size_t length = load<std::uint16_t>(&area[at + 20]);
-    if (area.size() - at - kLasRecordHeader < length) {
-      file.fail("has a variable length record that reaches into its points");
-    }
-    const auto first = area.begin() + static_cast<std::ptrdiff_t>(at);
-    const auto last = first + static_cast<std::ptrdiff_t>(kLasRecordHeader + length);
-    const std::string user = userOf(&area[at]);
-    const auto id = load<std::uint16_t>(&area[at + 18]);
-    if (user == "laszip encoded") failCompressed(file);
-    if (user == kLasSpecUser && id == kLasExtraBytesId) {
-      header.extra.assign(first + kLasRecordHeader, last);
-    } else if (!isAboutLayout(user, id)) {
-      header.origin.records.emplace_back(first, last);
-    }
-    at += kLasRecordHeader + length;
-  }
-}
-
-// The records behind the points. Nothing of the cloud depends on them: what is not whole is left
-// out.
-void readExtendedRecords(InputFile& file, Header& header, std::uint64_t position) {
-  if (header.extended_records == 0 || header.extended_begin < position ||
-      header.extended_begin - position > file.remaining()) {
-    return;
-  }
-  file.skip(header.extended_begin - position);
-  for (std::uint32_t r = 0; r < header.extended_records; ++r) {
-    if (file.remaining() < kLasExtendedRecordHeader) return;
-    std::vector<std::uint8_t> record(kLasExtendedRecordHeader);
-    file.read(record.data(), record.size());
-    const auto length = load<std::uint64_t>(&record[20]);
-    if (length > file.remaining()) return;
-    if (isAboutLayout(userOf(record.data()), load<std::uint16_t>(&record[18]))) {
-      file.skip(length);
-      continue;
-    }
-    record.resize(kLasExtendedRecordHeader + static_cast<std::size_t>(length));
-    if (length > 0) {
-      file.read(record.data() + kLasExtendedRecordHeader, static_cast<std::size_t>(length));
-    }
-    header.origin.extended_records.push_back(std::move(record));
-  }
-}
 
 // One description of 192 bytes. Types 1 to 10 are numbers, 11 to 30 pairs and triples of them, 0 is
 // bytes without a meaning.
@@ -207,8 +52,8 @@ bool describe(const std::uint8_t* description, std::size_t number, std::size_t& 
   constexpr unsigned kHasScale = 8;
   constexpr unsigned kHasOffset = 16;
   for (std::size_t e = 0; e < 3; ++e) {
-    if ((options & kHasScale) != 0) extra.scale[e] = load<double>(description + 112 + 8 * e);
-    if ((options & kHasOffset) != 0) extra.shift[e] = load<double>(description + 136 + 8 * e);
+    if ((options & kHasScale) != 0) extra.scale[e] = loadLas<double>(description + 112 + 8 * e);
+    if ((options & kHasOffset) != 0) extra.shift[e] = loadLas<double>(description + 136 + 8 * e);
   }
   extra.scaled = (options & (kHasScale | kHasOffset)) != 0;
   extra.field.type = extra.scaled ? 'F' : extra.type;
@@ -217,7 +62,7 @@ bool describe(const std::uint8_t* description, std::size_t number, std::size_t& 
   return true;
 }
 
-std::vector<Extra> readExtras(const InputFile& file, const Header& header, CloudTable& table) {
+std::vector<Extra> readExtras(const InputFile& file, const LasHeader& header, CloudTable& table) {
   std::vector<Extra> extras;
   std::size_t offset = kLasPointBytes[static_cast<std::size_t>(header.origin.point_format)];
   for (std::size_t at = 0; at + kLasExtraBytes <= header.extra.size(); at += kLasExtraBytes) {
@@ -257,13 +102,13 @@ void readItem(const LasItem& item, const std::uint8_t* record, std::uint8_t* to)
       *to = static_cast<std::uint8_t>(static_cast<unsigned>(*from) >> item.shift & item.mask);
       return;
     case LasItem::Kind::Intensity:
-      real = static_cast<float>(load<std::uint16_t>(from));
+      real = static_cast<float>(loadLas<std::uint16_t>(from));
       break;
     case LasItem::Kind::Rank:
-      real = static_cast<float>(load<std::int8_t>(from));
+      real = static_cast<float>(loadLas<std::int8_t>(from));
       break;
     case LasItem::Kind::Angle:
-      real = 0.006F * static_cast<float>(load<std::int16_t>(from));
+      real = 0.006F * static_cast<float>(loadLas<std::int16_t>(from));
       break;
   }
   std::memcpy(to, &real, sizeof(real));
@@ -316,7 +161,7 @@ void readRecord(const LasOrigin& origin, const std::vector<LasItem>& items,
                 const std::vector<Extra>& extras, const std::uint8_t* record, std::size_t row,
                 CloudTable& table) {
   for (std::size_t a = 0; a < 3; ++a) {
-    const double stored = load<std::int32_t>(record + 4 * a);
+    const double stored = loadLas<std::int32_t>(record + 4 * a);
     table.setReal(table.fields[a], row, origin.scale[a] * stored + origin.offset[a]);
   }
   for (std::size_t f = 0; f < items.size(); ++f) {
@@ -328,8 +173,7 @@ void readRecord(const LasOrigin& origin, const std::vector<LasItem>& items,
 }  // namespace
 
 CloudTable readLas(InputFile& file) {
-  Header header = readHeader(file);
-  readRecords(file, header, header.points_begin - header.header_bytes);
+  LasHeader header = readLasHeader(file);
   const int format = header.origin.point_format;
   CloudTable table;
   const std::vector<LasItem> items = lasItems(format);
@@ -349,19 +193,18 @@ CloudTable readLas(InputFile& file) {
                  table);
     }
   }
-  readExtendedRecords(file, header, header.points_begin + header.points * header.record_bytes);
+  readLasRecordsBehind(file, header, header.points_begin + header.points * header.record_bytes);
   if (lasHasColor(format)) packColors(table);
   table.las = std::make_shared<LasOrigin>(std::move(header.origin));
   return table;
 }
 
 std::optional<RowFormat> lasRows(InputFile& file) {
-  Header header = readHeader(file);
-  readRecords(file, header, header.points_begin - header.header_bytes);
+  LasHeader header = readLasHeader(file);
   const std::uint64_t points_end = header.points_begin + header.points * header.record_bytes;
   if (header.extended_records > 0 && points_end - header.points_begin <= file.remaining()) {
     file.seek(points_end);
-    readExtendedRecords(file, header, points_end);
+    readLasRecordsBehind(file, header, points_end);
     file.seek(header.points_begin);
   }
   RowFormat rows;

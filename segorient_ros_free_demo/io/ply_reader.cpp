@@ -2,117 +2,14 @@
 // Copyright (c) 2026, the segorient authors
 #include <algorithm>
 #include <cstring>
-#include <map>
 
 #include "io/cloud_stream.h"
+#include "io/ply_header.h"
 #include "io/readers.h"
 #include "io/text_numbers.h"
 
 namespace segorient::program {
 namespace {
-
-struct PlyType {
-  char type = 'F';
-  std::uint32_t size = 4;
-};
-
-struct Property {
-  std::string name;
-  PlyType value;
-  bool is_list = false;
-  PlyType length;  // of a list's number of entries
-};
-
-struct Element {
-  std::string name;
-  std::uint64_t count = 0;
-  std::vector<Property> properties;
-
-  bool hasLists() const {
-    return std::any_of(properties.begin(), properties.end(),
-                       [](const Property& p) { return p.is_list; });
-  }
-  // Bytes that a row takes at least.
-  std::uint64_t leastBytes(bool ascii) const {
-    std::uint64_t bytes = 0;
-    for (const Property& p : properties) bytes += ascii ? 2 : (p.is_list ? p.length : p.value).size;
-    return bytes;
-  }
-};
-
-struct PlyHeader {
-  bool ascii = false;
-  bool swap = false;
-  std::vector<Element> elements;
-};
-
-PlyType plyType(const InputFile& file, std::string_view name) {
-  static const std::map<std::string_view, PlyType> kTypes{
-      {"char", {'I', 1}},  {"int8", {'I', 1}},    {"uchar", {'U', 1}},  {"uint8", {'U', 1}},
-      {"short", {'I', 2}}, {"int16", {'I', 2}},   {"ushort", {'U', 2}}, {"uint16", {'U', 2}},
-      {"int", {'I', 4}},   {"int32", {'I', 4}},   {"uint", {'U', 4}},   {"uint32", {'U', 4}},
-      {"float", {'F', 4}}, {"float32", {'F', 4}}, {"double", {'F', 8}}, {"float64", {'F', 8}}};
-  const auto it = kTypes.find(name);
-  if (it == kTypes.end()) file.failLine("'" + std::string(name) + "' is no type of a PLY property");
-  return it->second;
-}
-
-void readFormat(const InputFile& file, std::string_view line, PlyHeader& header) {
-  const std::string_view format = nextWord(line);
-  header.ascii = format == "ascii";
-  header.swap = format == "binary_big_endian";
-  if (!header.ascii && !header.swap && format != "binary_little_endian") {
-    file.failLine("'" + std::string(format) + "' is no format of PLY");
-  }
-}
-
-void readElement(const InputFile& file, std::string_view line, PlyHeader& header) {
-  Element element;
-  element.name = std::string(nextWord(line));
-  if (!parseNumber(nextWord(line), element.count))
-    file.failLine("the element's count is no number");
-  header.elements.push_back(std::move(element));
-}
-
-void readProperty(const InputFile& file, std::string_view line, PlyHeader& header) {
-  if (header.elements.empty()) file.failLine("is a property of no element");
-  Property p;
-  std::string_view word = nextWord(line);
-  p.is_list = word == "list";
-  if (p.is_list) {
-    p.length = plyType(file, nextWord(line));
-    if (p.length.type == 'F') file.failLine("a list's length is no whole number");
-    word = nextWord(line);
-  }
-  p.value = plyType(file, word);
-  p.name = std::string(nextWord(line));
-  if (p.name.empty()) file.failLine("the property has no name");
-  header.elements.back().properties.push_back(std::move(p));
-}
-
-PlyHeader readHeader(InputFile& file) {
-  PlyHeader header;
-  std::string_view line;
-  if (!file.line(line) || nextWord(line) != "ply") file.fail("is not a PLY file");
-  bool has_format = false;
-  for (;;) {
-    if (!file.line(line)) file.fail("is cut short: its header has no end");
-    const std::string_view key = nextWord(line);
-    if (key == "end_header") break;
-    if (key == "format") {
-      readFormat(file, line, header);
-      has_format = true;
-    } else if (key == "element") {
-      readElement(file, line, header);
-    } else if (key == "property") {
-      readProperty(file, line, header);
-    } else if (!key.empty() && key != "comment" && key != "obj_info") {
-      file.failLine("is not of a PLY header");
-    }
-  }
-  if (!has_format) file.fail("its header does not name a format");
-  return header;
-}
 
 // Values of a PLY's body one after another, text or binary.
 class Body {
@@ -156,10 +53,10 @@ class Body {
   std::string_view line_;
 };
 
-void skipElement(Body& body, const Element& element) {
+void skipElement(Body& body, const PlyElement& element) {
   for (std::uint64_t row = 0; row < element.count; ++row) {
     body.beginRow();
-    for (const Property& p : element.properties) {
+    for (const PlyProperty& p : element.properties) {
       const std::uint64_t n = p.is_list ? body.length(p.length) : 1;
       for (std::uint64_t i = 0; i < n; ++i) body.number(p.value);
     }
@@ -167,10 +64,10 @@ void skipElement(Body& body, const Element& element) {
 }
 
 // Polygons as fans of triangles.
-void readFaces(InputFile& file, Body& body, const Element& element, CloudTable& table) {
+void readFaces(InputFile& file, Body& body, const PlyElement& element, CloudTable& table) {
   for (std::uint64_t row = 0; row < element.count; ++row) {
     body.beginRow();
-    for (const Property& p : element.properties) {
+    for (const PlyProperty& p : element.properties) {
       const std::uint64_t n = p.is_list ? body.length(p.length) : 1;
       const bool corners = p.is_list && (p.name == "vertex_indices" || p.name == "vertex_index");
       Triangle t{0, 0, 0};
@@ -191,7 +88,7 @@ void readFaces(InputFile& file, Body& body, const Element& element, CloudTable& 
 }
 
 // Where red, green and blue of 8 bits go: byte 2, 1, 0 of a packed rgb; -1 for any other property.
-int colourByte(const Property& p) {
+int colourByte(const PlyProperty& p) {
   if (p.is_list || p.value.type != 'U' || p.value.size != 1) return -1;
   if (p.name == "red" || p.name == "diffuse_red") return 2;
   if (p.name == "green" || p.name == "diffuse_green") return 1;
@@ -219,12 +116,12 @@ void dropTwinOfLabel(CloudTable& table) {
 
 // Gives the table its fields. \return where each property goes; npos: it is dropped. Lists have no
 // place in a table.
-std::vector<std::size_t> placeProperties(const Element& element, CloudTable& table) {
+std::vector<std::size_t> placeProperties(const PlyElement& element, CloudTable& table) {
   const auto& properties = element.properties;
   std::vector<std::size_t> offsets;
   const bool colours = std::count_if(properties.begin(), properties.end(),
-                                     [](const Property& p) { return colourByte(p) >= 0; }) == 3;
-  for (const Property& p : properties) {
+                                     [](const PlyProperty& p) { return colourByte(p) >= 0; }) == 3;
+  for (const PlyProperty& p : properties) {
     const int byte = colours ? colourByte(p) : -1;
     if (p.is_list) {
       table.dropped.push_back(p.name);
@@ -247,7 +144,7 @@ void dropTwinName(CloudTable& table) {
   table.fields.erase(table.fields.begin() + (twin - table.fields.data()));
 }
 
-void readVertices(InputFile& file, Body& body, const Element& element, bool ascii,
+void readVertices(InputFile& file, Body& body, const PlyElement& element, bool ascii,
                   CloudTable& table) {
   const auto& properties = element.properties;
   const std::vector<std::size_t> offsets = placeProperties(element, table);
@@ -275,11 +172,11 @@ void readVertices(InputFile& file, Body& body, const Element& element, bool asci
 }  // namespace
 
 CloudTable readPly(InputFile& file) {
-  const PlyHeader header = readHeader(file);
+  const PlyHeader header = readPlyHeader(file);
   Body body(file, header);
   CloudTable table;
   bool has_vertices = false;
-  for (const Element& element : header.elements) {
+  for (const PlyElement& element : header.elements) {
     const std::uint64_t least = element.leastBytes(header.ascii);
     if (least == 0 && element.name != "vertex") continue;  // rows without properties take no bytes
     if (element.count > (file.remaining() + 1) / std::max<std::uint64_t>(1, least)) {
@@ -302,8 +199,8 @@ CloudTable readPly(InputFile& file) {
 }
 
 std::optional<RowFormat> plyRows(InputFile& file) {
-  const PlyHeader header = readHeader(file);
-  const auto is_vertex = [](const Element& e) { return e.name == "vertex"; };
+  const PlyHeader header = readPlyHeader(file);
+  const auto is_vertex = [](const PlyElement& e) { return e.name == "vertex"; };
   const auto vertex = std::find_if(header.elements.begin(), header.elements.end(), is_vertex);
   if (vertex == header.elements.end()) file.fail("has no vertices");
   for (auto e = header.elements.begin(); e != vertex; ++e) {

@@ -10,123 +10,27 @@
 #include <utility>
 
 #include "common/threads.h"
+#include "features/one_sided_looks.h"
 #include "features/one_sided_view.h"
 #include "features/recompute_scene.h"
 
 namespace segorient::detail {
 namespace {
 
-// Normals that differ by less than this (11 degrees) around a point need no second look.
-const double kFlat = std::cos(0.2);
-// A point shares the patch of one of this many nearest: within that distance patches differ little.
-constexpr int kPatchNeighbors = 12;
 // Share of the points around, of the points along the same border, and of all points looked at,
 // that must see the edge as well: an edge is a line of points, and one that stands alone is noise
 // or curvature.
 constexpr double kAgreement = 0.5;
 // Neighbours of the smallest surfaces that estimates without noise are made of.
 constexpr int kSmoothNeighbors = 10;
-// Patches that shares of all points are measured on: they are then known to a few hundredths.
-constexpr std::size_t kSampledPatches = 512;
 // Distances to the other face, in spacings, that tell whether points lie on the edges themselves:
-// of points anywhere on two faces a twentieth of those within one spacing are within .05 (seen on
-// clouds: .04 to .06), of the vertices of a mesh the row on the edge is (.33).
+// of points anywhere on two faces a twentieth of those within one spacing are within .05. Four
+// times as many are no chance, but vertices of a mesh, a third of which are the row on the edge.
 constexpr double kOnEdge = 0.05;
 constexpr double kNearEdge = 1.0;
 constexpr double kManyOnEdge = 0.2;
 // Half a row of vertices: what is nearer belongs to the row on the edge.
 constexpr double kHalfRow = 0.5;
-
-/// What is known of a point while the votes are counted.
-enum State : std::uint8_t { kUntouched, kExamined, kMiddle, kSharp };
-
-/// A patch and the points that it serves: a range of the points looked at.
-struct Patch {
-  std::size_t middle = 0;
-  std::size_t begin = 0;
-  std::size_t end = 0;
-};
-
-/// The points to look at, patch by patch, and some patches spread evenly over the cloud.
-struct Looks {
-  std::vector<std::size_t> points;
-  std::vector<Patch> patches;
-  std::vector<std::size_t> sample;
-};
-
-std::vector<std::size_t> pointsAtBorders(const RecomputationScene& scene,
-                                         std::vector<std::uint8_t>& state) {
-  const auto size = static_cast<std::ptrdiff_t>(scene.size());
-#pragma omp parallel for schedule(static) \
-    num_threads(resolveThreads(scene.threads, scene.size(), 20.0))
-  for (std::ptrdiff_t i = 0; i < size; ++i) {
-    const auto point = static_cast<std::size_t>(i);
-    state[point] = scene.meetsBorder(point, kFlat) ? kExamined : kUntouched;
-  }
-  std::vector<std::size_t> points;
-  for (std::size_t i = 0; i < scene.size(); ++i) {
-    if (state[i] == kExamined) points.push_back(i);
-  }
-  return points;
-}
-
-/// By coordinates, so that nothing depends on the order of the points.
-std::vector<std::size_t> inOrderOfPlace(const RecomputationScene& scene,
-                                        const std::vector<std::size_t>& points) {
-  std::vector<std::pair<std::array<float, 3>, std::size_t>> places;
-  places.reserve(points.size());
-  for (const std::size_t i : points) {
-    const float* p = scene.points[i];
-    places.push_back({{p[0], p[1], p[2]}, i});
-  }
-  std::sort(places.begin(), places.end());
-  std::vector<std::size_t> out;
-  out.reserve(places.size());
-  for (const auto& [place, i] : places) out.push_back(i);
-  return out;
-}
-
-/// Greedily, each point becomes the middle of a patch that has none among its nearest.
-Looks layPatches(const RecomputationScene& scene, std::vector<std::uint8_t>& state) {
-  const auto middleNear = [&](std::size_t i) {
-    const int count = std::min(scene.count(i), kPatchNeighbors + 1);
-    for (int j = 0; j < count; ++j) {
-      if (state[scene.neighbor(i, j)] == kMiddle) return scene.neighbor(i, j);
-    }
-    return scene.size();
-  };
-  const std::vector<std::size_t> examined = pointsAtBorders(scene, state);
-  std::vector<std::size_t> middles;
-  for (const std::size_t i : inOrderOfPlace(scene, examined)) {
-    if (middleNear(i) < scene.size()) continue;
-    state[i] = kMiddle;
-    middles.push_back(i);
-  }
-  std::vector<std::uint64_t> pairs;  // middle above, point below
-  pairs.reserve(examined.size());
-  for (const std::size_t i : examined) pairs.push_back(std::uint64_t{middleNear(i)} << 32U | i);
-  std::sort(pairs.begin(), pairs.end());
-
-  Looks looks;
-  looks.points.reserve(pairs.size());
-  for (const std::uint64_t pair : pairs) {
-    const auto middle = static_cast<std::size_t>(pair >> 32U);
-    const auto point = static_cast<std::size_t>(pair & 0xffffffffU);
-    if (looks.patches.empty() || looks.patches.back().middle != middle) {
-      looks.patches.push_back({middle, looks.points.size(), looks.points.size()});
-    }
-    looks.points.push_back(point);
-    looks.patches.back().end = looks.points.size();
-  }
-  const std::size_t step = std::max<std::size_t>(1, middles.size() / kSampledPatches);
-  for (std::size_t m = 0; m < middles.size(); m += step) {
-    const auto at = std::lower_bound(
-        looks.patches.begin(), looks.patches.end(), middles[m],
-        [](const Patch& patch, std::size_t middle) { return patch.middle < middle; });
-    looks.sample.push_back(static_cast<std::size_t>(at - looks.patches.begin()));
-  }
-  return looks;
-}
 
 /// What the rule looked at in one round, and by which labels.
 struct Round {
@@ -278,14 +182,14 @@ bool includeEdges(const std::vector<Proposal>& proposals) {
   return static_cast<double>(on) > kManyOnEdge * static_cast<double>(near);
 }
 
-bool neighborsAgree(const RecomputationScene& scene, const std::vector<std::uint8_t>& state,
+bool neighborsAgree(const RecomputationScene& scene, const std::vector<LookState>& state,
                     std::size_t i) {
   int examined = 0;
   int sharp = 0;
   for (int j = 0; j < scene.count(i); ++j) {
-    const std::uint8_t s = state[scene.neighbor(i, j)];
-    examined += s != kUntouched ? 1 : 0;
-    sharp += s == kSharp ? 1 : 0;
+    const LookState s = state[scene.neighbor(i, j)];
+    examined += s != LookState::UNTOUCHED ? 1 : 0;
+    sharp += s == LookState::SHARP ? 1 : 0;
   }
   return sharp >= kAgreement * examined;
 }
@@ -299,10 +203,10 @@ struct Votes {
 /// Accepts what the points around and along the same border agree with.
 std::vector<Recomputed> elect(const RecomputationScene& scene, bool edged,
                               const std::vector<Proposal>& proposals,
-                              std::vector<std::uint8_t>& state) {
+                              std::vector<LookState>& state) {
   std::map<std::pair<std::int32_t, std::int32_t>, Votes> votes;
   for (const Proposal& p : proposals) {
-    if (p.result.accepted) state[p.result.point] = kSharp;
+    if (p.result.accepted) state[p.result.point] = LookState::SHARP;
     for (const SeenBorder& border : p.borders) {
       Votes& v = votes[border.labels];
       ++v.all;
@@ -340,7 +244,7 @@ OneSidedRule::OneSidedRule(const RecomputationOptions& options, OneSidedNormal w
 OneSidedRule::~OneSidedRule() = default;
 
 std::vector<Recomputed> OneSidedRule::apply(const RecomputationScene& scene) {
-  std::vector<std::uint8_t> state(scene.size());
+  std::vector<LookState> state(scene.size());
   Round now;
   now.looks = layPatches(scene, state);
   Proposer proposer(scene, options_, which_, rounds_->last, now);

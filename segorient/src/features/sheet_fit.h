@@ -9,7 +9,6 @@
 
 #include <array>
 #include <cstddef>
-#include <limits>
 
 #include "features/sheet_normals.h"
 
@@ -93,15 +92,5 @@ AdaptivePlane fitAdaptive(const Offsets& offsets, int smallest);
 /// The plane through the point that most of its neighbours lie on, within `tolerance` spacings;
 /// invalid where none is clearly a plane.
 Plane fitDominant(const Offsets& offsets, const Plane& start, float tolerance);
-
-/// Which offsets along the normal belong to the point's own wall.
-struct WallSplit {
-  float below = -std::numeric_limits<float>::infinity();
-  float above = std::numeric_limits<float>::infinity();
-  bool found = false;
-};
-/// \param most_apart walls farther apart than that many spacings are left to their offset alone
-WallSplit splitWalls(const Offsets& offsets, const Eigen::Vector3f& normal, float most_apart);
-Plane fitWithin(const Offsets& offsets, const Eigen::Vector3f& normal, const WallSplit& split);
 
 }  // namespace segorient::detail

@@ -12,6 +12,7 @@
 #include "features/more_neighbors.h"
 #include "features/scan_scale.h"
 #include "features/sheet_fit.h"
+#include "features/sheet_walls.h"
 
 namespace segorient {
 namespace {

@@ -23,8 +23,6 @@ constexpr double kSmallestPerNoise = 90.0;
 // Beyond this noise a few neighbours are a ball of points, whose residual hardly grows with the
 // noise and says nothing of the surface: then only the largest neighbourhood is left.
 constexpr double kSaturatedNoise = 0.45;
-// Up to this noise cubic surfaces, which can bend at an edge, beat quadratic ones there.
-constexpr double kCubicNoise = 0.35;
 // Neighbourhoods of cubic surfaces, per unit of noise over spacing: they have nearly twice the
 // coefficients.
 constexpr double kCubicPerNoise = 150.0;

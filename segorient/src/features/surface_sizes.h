@@ -12,6 +12,9 @@ namespace segorient::detail {
 constexpr double kCleanNoise = 0.03;
 /// Up to this noise local triangulations beat small surfaces at edges.
 constexpr double kTriangulationNoise = 0.1;
+/// Up to this noise cubic surfaces, which can bend at an edge, beat quadratic ones there. Beyond it
+/// the faces at an edge cannot be told apart.
+constexpr double kCubicNoise = 0.35;
 /// The paper's number for clouds without noise.
 constexpr int kTriangulationNeighbors = 10;
 /// On surfaces without noise that a formula makes, cubic surfaces of so few neighbours leave less

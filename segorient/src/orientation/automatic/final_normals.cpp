@@ -15,6 +15,7 @@
 #include "features/recompute_normals.h"
 #include "features/recompute_scene.h"
 #include "features/sheet_normals.h"
+#include "features/surface_sizes.h"
 
 namespace segorient::detail {
 namespace {
@@ -22,10 +23,7 @@ namespace {
 // Up to this noise, in spacings, a fitted surface is nearer than any mean with its surroundings: it
 // turns the normal of ten neighbours by half a degree.
 constexpr float kClean = 0.05F;
-// Beyond this noise the faces at an edge cannot be told apart, as estimateNormalsAutomatically()
-// has it for cubic surfaces.
-constexpr float kEdgesHidden = 0.35F;
-// Without that, surfaces of the fewest neighbours are all that is tried.
+// Without noise, surfaces of the fewest neighbours are all that is tried.
 constexpr int kFewest = 10;
 // Neighbours for the surfaces on both sides of an edge, as `normals --recompute` has them.
 constexpr int kEdgeNeighbors = 12;
@@ -60,7 +58,7 @@ class FinalNormals {
     // Depth cameras round what they measure: that is no noise which a mean could lessen.
     if (!toward_.empty() && tooNoisy()) return {};
     fitSurfaces(only_known);
-    if (noise_ <= kEdgesHidden) recomputeAtEdges();
+    if (static_cast<double>(noise_) <= kCubicNoise) recomputeAtEdges();
     if (known_ != nullptr) has_edges_ = known_->edges;
     traits_.edges = has_edges_;
     if (noise_ < kClean) sure_.assign(points_.size, 0);
@@ -98,7 +96,7 @@ class FinalNormals {
                                  : sampleNoise(points_, table_, threads_);
     traits_.surfaces.noise = noise.length;
     traits_.surfaces.in_spacings = noise.in_spacings;
-    return static_cast<float>(noise.in_spacings) > kEdgesHidden;
+    return noise.in_spacings > kCubicNoise;
   }
 
   void fitSurfaces(bool only_known) {
