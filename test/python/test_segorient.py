@@ -435,8 +435,8 @@ class Memory(unittest.TestCase):
 
 
 class Running(unittest.TestCase):
-    def test_other_threads_go_on(self):
-        points = sphere(300000)[0].astype(np.float32)
+    def longest_pause_of_others(self, points):
+        """While neighbours are searched, as a share of the time that this takes."""
         ticks = []
         done = threading.Event()
 
@@ -453,8 +453,13 @@ class Running(unittest.TestCase):
         done.set()
         thread.join()
         inside = [begin] + [t for t in ticks if begin < t < end] + [end]
-        # With the lock held nothing would happen between begin and end.
-        self.assertLess(np.diff(inside).max(), 0.5 * (end - begin))
+        return np.diff(inside).max() / (end - begin)
+
+    def test_other_threads_go_on(self):
+        points = sphere(300000)[0].astype(np.float32)
+        # With the lock held nothing would ever happen in between. Without it, a machine that is
+        # busy with other things may still leave a thread waiting now and then.
+        self.assertTrue(any(self.longest_pause_of_others(points) < 0.5 for _ in range(5)))
 
     def test_progress_is_told_and_may_end_the_work(self):
         told = []
