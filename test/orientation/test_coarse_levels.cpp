@@ -90,6 +90,34 @@ double right(const Cloud& cloud, bool coarse_levels = true, const OrientationHin
   return shareOutward(orient(cloud.xyz, coarse_levels, 1, hints).normals, cloud.normals);
 }
 
+// Two scans of a flat plate, one of them moved by so many of their spacings, most of that across
+// its faces; or, hollow, both faces of a wall so thick.
+Cloud plateOfTwo(std::size_t n, double apart, bool hollow, unsigned seed) {
+  const Vector half{1.0, 0.7, 0.15};
+  const Vector areas{half[1] * half[2], half[0] * half[2], half[0] * half[1]};
+  const double area = 8 * (areas[0] + areas[1] + areas[2]);
+  const double by = apart * std::sqrt(area / (static_cast<double>(n) / 2));
+  std::mt19937 rng(seed);
+  std::uniform_real_distribution<double> unit(-1, 1);
+  std::discrete_distribution<std::size_t> axis({areas[0], areas[1], areas[2]});
+  Cloud out;
+  for (std::size_t i = 0; i < n; ++i) {
+    const std::size_t a = axis(rng);
+    const bool second = i % 2 == 1;
+    Vector normal{0, 0, 0};
+    normal[a] = unit(rng) < 0 ? -1 : 1;
+    Vector p{};
+    for (std::size_t b = 0; b < 3; ++b) {
+      const double size = half[b] - (second && hollow ? by : 0.0);
+      p[b] = size * (b == a ? normal[b] : unit(rng));
+    }
+    if (second && hollow) normal[a] = -normal[a];
+    if (second && !hollow) p = {p[0] + 0.35 * by, p[1] + 0.25 * by, p[2] + 0.9 * by};
+    out.add(p, normal);
+  }
+  return out;
+}
+
 class Layers : public testing::TestWithParam<double> {};
 
 TEST_P(Layers, AreOneSurface) {
@@ -98,6 +126,13 @@ TEST_P(Layers, AreOneSurface) {
 }
 
 INSTANTIATE_TEST_SUITE_P(CoarseLevels, Layers, testing::Values(0.25, 0.5, 0.75, 1.0));
+
+TEST(CoarseLevels, TellAPlateFromABoxOfThinWalls) {
+  for (const unsigned seed : {31U, 32U, 33U}) {
+    EXPECT_GE(right(plateOfTwo(16000, 1.0, false, seed)), 0.995) << seed;
+    EXPECT_GE(right(plateOfTwo(16000, 0.8, true, seed)), 0.995) << seed;
+  }
+}
 
 TEST(CoarseLevels, AreWhatMakesThemOne) {
   const Cloud cloud = twoScans(6000, 1.0, 1);
@@ -258,6 +293,29 @@ TEST(LayerTest, TellsLayersFromWalls) {
     EXPECT_LT(scatter(hollowSphere(6000, 0.6, 0.0, seed)), 0.2F);
     EXPECT_LT(scatter(hollowSphere(6000, 0.6, 0.2, seed)), 0.2F);
     EXPECT_LT(scatter(hollowSphere(6000, 1.2, 0.3, seed)), 0.2F);
+  }
+}
+
+// Nearly all of a plate is two faces, which any motion leaves as far apart as a wall's.
+TEST(LayerTest, AsksTheRimsOfAPlateToo) {
+  const auto scatter = [](bool hollow, unsigned seed) {
+    const Cloud cloud = plateOfTwo(12000, 0.8, hollow, seed);
+    std::vector<float> around;
+    for (std::size_t i = 0; i < cloud.size(); ++i) {
+      // Near edges, coarse normals are spread.
+      int near = 0;
+      for (std::size_t a = 0; a < 3; ++a) {
+        constexpr std::array<float, 3> kHalf{1.F, 0.7F, 0.15F};
+        near += std::fabs(cloud.xyz[4 * i + a]) > kHalf[a] - 0.06F ? 1 : 0;
+        around.push_back(std::fabs(cloud.normals[4 * i + a]));
+      }
+      around.push_back(near == 1 ? 1.F : 0.F);
+    }
+    return detail::thicknessScatter(viewOf(cloud.xyz), neighborsOf(cloud.xyz), around, 1);
+  };
+  for (const unsigned seed : {21U, 22U, 23U}) {
+    EXPECT_GT(scatter(false, seed), 0.3F);
+    EXPECT_LT(scatter(true, seed), 0.2F);
   }
 }
 

@@ -15,6 +15,7 @@
 
 #include "common/compact_cloud.h"
 #include "common/dot.h"
+#include "orientation/automatic/noise_field.h"
 #include "orientation/winding/dipole_fields.h"
 #include "orientation/winding/field_solver.h"
 #include "sheet_fixture.h"
@@ -255,8 +256,8 @@ TEST(NoiseField, ThinPartsAreToldApart) {
     with += 0.5 * right(cloud, true);
     without += 0.5 * right(cloud, false);
   }
-  // It gains .013 as Clang compiles it, .015 and more as GCC does.
-  EXPECT_GT(with, without + 0.008) << without;
+  // It gains .007; coarser scales find the most of what is left.
+  EXPECT_GT(with, without + 0.004) << without;
 }
 
 TEST(NoiseField, CleanCloudsAreNotTouched) {
@@ -275,6 +276,43 @@ TEST(NoiseField, DoesNotDependOnThreads) {
   const OrientedCloud one = orientCloud(viewOf(cloud.xyz), nullptr, options);
   options.threads = 4;
   EXPECT_EQ(one.normals, orientCloud(viewOf(cloud.xyz), nullptr, options).normals);
+}
+
+// Where the field is coarser than the points it mends what is far off, and leaves the rest.
+TEST(NoiseField, MendsOnlyNormalsThatAreFarOff) {
+  std::mt19937 rng(8);
+  std::normal_distribution<double> normal;
+  Noisy ball;
+  for (int i = 0; i < 4000; ++i) {
+    const Vector d = draw(rng, normal).normalized();
+    add(d, d, ball);
+  }
+  detail::NoiseField field;
+  field.places = ball.xyz;
+  field.dipoles = ball.normals;
+  for (float& v : field.dipoles) v *= static_cast<float>(4 * M_PI / 4000);
+  for (std::size_t i = 3; i < field.dipoles.size(); i += 4) {
+    field.dipoles[i] = static_cast<float>(4 * M_PI / 4000);
+  }
+  field.radius = 0.1F;
+  field.factor = 1.F;
+  field.averaged_below = 0.7F;
+  const auto cosineAfter = [&](std::size_t i, double degrees) {
+    const Eigen::Map<const Eigen::Vector3f> n(&ball.normals[4 * i]);
+    const Eigen::Vector3f across = n.unitOrthogonal();
+    const auto angle = static_cast<float>(degrees * M_PI / 180);
+    const Eigen::Vector3f tilted = std::cos(angle) * n + std::sin(angle) * across;
+    detail::AutoNormals found;
+    found.normals = {tilted[0], tilted[1], tilted[2], 0.F};
+    found.confidences = {1.F};
+    detail::takeNoiseField({&ball.xyz[4 * i], 4, 1}, field, 1, found);
+    return Eigen::Map<const Eigen::Vector3f>(found.normals.data()).dot(n);
+  };
+  for (std::size_t i = 0; i < 50; ++i) {
+    EXPECT_NEAR(cosineAfter(i, 20), std::cos(20 * M_PI / 180), 1e-5) << i;
+    EXPECT_GT(cosineAfter(i, 70), std::cos(50 * M_PI / 180)) << i;
+    EXPECT_GT(cosineAfter(i, 160), std::cos(21 * M_PI / 180)) << i;
+  }
 }
 
 std::ptrdiff_t countSure(const Noisy& cloud) {

@@ -150,10 +150,14 @@ class Choice {
 CoarseLevel makeLevel(const PointView& points, float radius, int threads) {
   CoarseLevel level;
   const BlueNoise even = thinOut(points, radius);
-  std::vector<float> places;
-  for (const std::uint32_t i : even.kept) {
-    places.insert(places.end(), points[i], points[i] + 3);
-    places.push_back(0.F);
+  std::vector<float> places(4 * even.kept.size(), 0.F);
+  for (std::size_t i = 0; i < points.size; ++i) {
+    float* place = &places[std::size_t{4} * even.cell_of[i]];
+    for (std::size_t a = 0; a < 3; ++a) place[a] += points[i][a];
+    place[3] += 1.F;
+  }
+  for (std::size_t c = 0; c < even.kept.size(); ++c) {
+    for (std::size_t a = 0; a < 3; ++a) places[4 * c + a] /= places[4 * c + 3];
   }
   level.cloud = PreparedCloud({places.data(), 4, places.size() / 4}, nullptr, threads);
   if (level.cloud.size() == 0) return level;

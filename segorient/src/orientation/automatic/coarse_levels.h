@@ -27,7 +27,9 @@ struct CoarseLevel {
   AutoNormals found;                   ///< its orientation, by whoever makes that
 };
 
-/// \param radius no two points of the subset are nearer; in the unit of the points
+/// Each point of the subset is where the points that it stands for are in the mean, which is on the
+/// one surface that scans on both sides of it make.
+/// \param radius no two first points of these are nearer; in the unit of the points
 /// \return without points where there is nothing to thin out
 SEGORIENT_ORIENTATION_EXPORT CoarseLevel makeLevel(const PointView& points, float radius,
                                                    int threads);

@@ -2,6 +2,9 @@
 // Copyright (c) 2026, the segorient authors
 #include "orientation/automatic/layer_test.h"
 
+#include <Eigen/Core>
+#include <Eigen/LU>
+
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
@@ -35,6 +38,15 @@ float thickness(const PointView& points, const Neighborhoods& table, std::size_t
   return std::sqrt(std::max(0.F, squares / n - (sum / n) * (sum / n)));
 }
 
+// The inverse of the normals' mean square: the square of a normal by it is large for rare ones.
+Eigen::Matrix3d rarityOf(const std::vector<Eigen::Vector3d>& normals) {
+  constexpr double kLeast = 0.01;  // of a direction that has less surface, single points would tell
+  Eigen::Matrix3d squares = Eigen::Matrix3d::Zero();
+  for (const Eigen::Vector3d& n : normals) squares += n * n.transpose();
+  squares /= std::max(1.0, static_cast<double>(normals.size()));
+  return (squares + kLeast * Eigen::Matrix3d::Identity()).inverse();
+}
+
 }  // namespace
 
 float thicknessScatter(const PointView& points, const Neighborhoods& neighborhoods,
@@ -47,14 +59,23 @@ float thicknessScatter(const PointView& points, const Neighborhoods& neighborhoo
     const float* mean = &around[4 * r * stride];
     if (mean[3] >= kFlat) values[r] = thickness(points, neighborhoods, r * stride, mean);
   }
+  std::vector<Eigen::Vector3d> normals;
+  std::vector<double> found;
+  for (std::size_t r = 0; r < rows; ++r) {
+    if (values[r] < 0.F) continue;
+    const float* n = &around[4 * r * stride];
+    normals.push_back(Eigen::Vector3f(n[0], n[1], n[2]).cast<double>());
+    found.push_back(static_cast<double>(values[r]));
+  }
+  const Eigen::Matrix3d rarity = rarityOf(normals);
   double count = 0.0;
   double sum = 0.0;
   double squares = 0.0;
-  for (const float v : values) {
-    if (v < 0.F) continue;
-    count += 1.0;
-    sum += static_cast<double>(v);
-    squares += static_cast<double>(v) * static_cast<double>(v);
+  for (std::size_t i = 0; i < found.size(); ++i) {
+    const double weight = normals[i].dot(rarity * normals[i]);
+    count += weight;
+    sum += weight * found[i];
+    squares += weight * found[i] * found[i];
   }
   if (!(sum > 0.0)) return 0.F;
   const double mean = sum / count;

@@ -10,7 +10,8 @@
 namespace segorient::detail {
 
 /// How much the thickness of what coarser points take for one surface varies: the standard
-/// deviation of a local measure of it, over its mean; 0 where it cannot be measured.
+/// deviation of a local measure of it, over its mean; 0 where it cannot be measured. Samples count
+/// as if all directions were equally common, so that the faces of a plate are not all that is seen.
 ///
 /// The measure is the standard deviation of the offsets of the 16 nearest points along the coarse
 /// normal, where that is well defined.

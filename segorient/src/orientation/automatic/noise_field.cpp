@@ -92,9 +92,10 @@ void takeNoiseField(const PointView& points, const NoiseField& field, int thread
     const float length = std::sqrt(dot(g, g));
     if (isFinite(n) && length > 0.F && std::isfinite(length)) {
       const float sign = dot(n, g) < 0.F ? -1.F : 1.F;
+      const bool averaged = sign * dot(n, g) < field.averaged_below * length;
       float sum[3];
       for (std::size_t a = 0; a < 3; ++a) {
-        sum[a] = sign * n[a] + (field.directions ? g[a] / length : 0.F);
+        sum[a] = sign * n[a] + (averaged ? g[a] / length : 0.F);
       }
       const float total = std::sqrt(dot(sum, sum));
       for (std::size_t a = 0; total > 0.F && a < 3; ++a) n[a] = sum[a] / total;

@@ -23,8 +23,9 @@ struct NoiseField {
   float radius = 0.F;          ///< of the smoothing
   float factor = 0.F;          ///< that makes its winding number 1/2 on the surface
   float most = 1.F;            ///< confidence of any point
-  /// Whether it is as fine as the points that take it; a coarser one tells only their sides.
-  bool directions = true;
+  /// Cosine below which normals are averaged with the field's direction: all of them, unless it is
+  /// coarser than what the points themselves tell; with 0 it tells only their sides.
+  float averaged_below = 1.F;
 
   bool empty() const { return places.empty(); }
 };

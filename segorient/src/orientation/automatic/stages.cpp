@@ -26,6 +26,8 @@ constexpr int kDenoisingNeighbors = 48;
 // Of the residuals of 32 neighbours and of 8: noise of a surface makes them nearly the same, while
 // steps of depth, rings and rough ground hide from the few what they are to the many.
 constexpr float kSeenByFew = 2.F;
+// 45 degrees: normals of layers that are farther off what all layers make were fitted across them.
+constexpr float kAcross = 0.7F;
 
 // Finds the neighbours unless they are known, and those of smoothed positions where the noise asks
 // for that.
@@ -115,11 +117,12 @@ AutoStages runAutoStages(PreparedCloud& cloud, const PipelineOptions& options,
   if (record != nullptr) {
     if (record->field) record->field(points, oriented);
   } else if (settings.winding_normals && hints.nothing()) {
-    if (out.noise >= kFieldNoise) {
-      takeNoiseField(
-          cloud.points(),
-          findNoiseField(cloud.points(), cloud.neighborhoods(), oriented.normals, options.threads),
-          options.threads, oriented);
+    const bool noisy = out.noise >= kFieldNoise;
+    if (noisy || oriented.level > 0.F) {
+      NoiseField field =
+          findNoiseField(cloud.points(), cloud.neighborhoods(), oriented.normals, options.threads);
+      if (!noisy) field.averaged_below = kAcross;
+      takeNoiseField(cloud.points(), field, options.threads, oriented);
     } else if (oriented.orientation.toward.empty()) {
       takeCellSigns(points,
                     findCellSigns(points, oriented.normals, oriented.spacing,
