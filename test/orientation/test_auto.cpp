@@ -112,6 +112,54 @@ TEST(Auto, OpenGroundFacesUp) {
   }
 }
 
+// Most of a street is walls, and it is hollow; but each column over the ground has one layer.
+TEST(Auto, GroundBetweenWallsFacesUp) {
+  std::mt19937 rng(49);
+  std::uniform_real_distribution<float> unit(0.F, 1.F);
+  std::vector<float> xyz;
+  std::vector<float> normals;
+  for (int i = 0; i < 9000; ++i) {
+    const float x = 4.F * unit(rng);
+    const float across = 3.2F * unit(rng);  // up a wall of 1, over the ground of 1.2, down a wall
+    if (across < 1.F) {
+      xyz.insert(xyz.end(), {x, 0.F, 1.F - across, 0.F});
+      normals.insert(normals.end(), {0.F, 1.F, 0.F, 0.F});
+    } else if (across < 2.2F) {
+      xyz.insert(xyz.end(), {x, across - 1.F, 0.F, 0.F});
+      normals.insert(normals.end(), {0.F, 0.F, 1.F, 0.F});
+    } else {
+      xyz.insert(xyz.end(), {x, 1.2F, across - 2.2F, 0.F});
+      normals.insert(normals.end(), {0.F, -1.F, 0.F, 0.F});
+    }
+  }
+  EXPECT_GE(shareOutward(orient(xyz).normals, normals), 0.999);
+}
+
+// Its top is steep where its bottom is level: what counts is that there is one for the other.
+TEST(Auto, ConeFacesOutward) {
+  std::mt19937 rng(50);
+  std::uniform_real_distribution<float> unit(0.F, 1.F);
+  const float height = 4.F;
+  const float slant = std::hypot(1.F, height);
+  std::vector<float> xyz;
+  std::vector<float> normals;
+  for (int i = 0; i < 9000; ++i) {
+    const float r = std::sqrt(unit(rng));
+    const float angle = 2.F * static_cast<float>(M_PI) * unit(rng);
+    const float x = r * std::cos(angle);
+    const float y = r * std::sin(angle);
+    if (unit(rng) * (1.F + slant) < 1.F) {
+      xyz.insert(xyz.end(), {x, y, 0.F, 0.F});
+      normals.insert(normals.end(), {0.F, 0.F, -1.F, 0.F});
+    } else {
+      xyz.insert(xyz.end(), {x, y, height * (1.F - r), 0.F});
+      normals.insert(normals.end(),
+                     {height * x / (r * slant), height * y / (r * slant), 1.F / slant, 0.F});
+    }
+  }
+  EXPECT_GE(shareOutward(orient(xyz).normals, normals), 0.999);
+}
+
 TEST(Auto, MoebiusStripIsReported) {
   std::mt19937 rng(44);
   std::uniform_real_distribution<double> unit(0, 1);

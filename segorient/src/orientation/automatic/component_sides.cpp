@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "orientation/automatic/ground_sides.h"
 #include "orientation/automatic/loose_parts.h"
 #include "orientation/automatic/sheet_stages.h"
 
@@ -59,13 +60,11 @@ void turnLooseParts(SheetSigns& sheets) {
   if (turnLooseParts(sheets, part_of, clean, {0.1, kClosedResidual})) sheets.windComponents();
 }
 
-struct Convention {
-  std::int8_t sign = 1;
-  bool lies = false;  // an upward or downward sheet: ground, or what is seen from above
-};
+// Two of three columns have one layer, which faces up: ground, or what is seen from above.
+constexpr float kLies = 1.F / 3.F;
 
-// By convention +z, then +y, then +x.
-std::vector<Convention> conventions(const SheetSigns& sheets) {
+// By convention ground up, else +z, then +y, then +x.
+std::vector<std::int8_t> conventions(const SheetSigns& sheets, const std::vector<float>& up) {
   const std::size_t count = sheets.windings.size();
   std::vector<std::array<double, 3>> sum(count, {0.0, 0.0, 0.0});
   std::vector<double> points(count, 0.0);
@@ -79,15 +78,13 @@ std::vector<Convention> conventions(const SheetSigns& sheets) {
     }
     points[c] += 1.0;
   }
-  constexpr double kLies = 0.5;  // mean of a hemisphere's normals along its axis
-  std::vector<Convention> out(count);
+  std::vector<std::int8_t> out(count, 1);
   for (std::size_t c = 0; c < count; ++c) {
     const double least = 1e-6 * points[c];
-    double direction = sum[c][2];
+    double direction = sheets.ground[c] ? static_cast<double>(up[c]) : sum[c][2];
     if (std::fabs(direction) <= least) direction = sum[c][1];
     if (std::fabs(direction) <= least) direction = sum[c][0];
-    out[c].sign = direction < 0.0 ? std::int8_t{-1} : std::int8_t{1};
-    out[c].lies = std::fabs(sum[c][2]) > kLies * points[c];
+    if (direction < 0.0) out[c] = -1;
   }
   return out;
 }
@@ -95,15 +92,14 @@ std::vector<Convention> conventions(const SheetSigns& sheets) {
 // What decides the side of a component: the winding number, or what is known beforehand, or else
 // convention.
 ComponentOrientationResult sideOf(const SheetSigns& sheets, std::size_t component,
-                                  const Convention& convention, const HintVotes& hints) {
+                                  std::int8_t convention, const HintVotes& hints) {
   // Nothing to tell in from out: a plane, or an isolated point.
   constexpr float kNoEvidence = 0.01F;
   const ComponentWinding& winding = sheets.windings[component];
   ComponentOrientationResult out = sheets.found.result.components[component];
   // Of open ground the winding number tells bulge from hollow, not outside from inside.
-  const bool ground = convention.lies && !sheets.isClosed(component, kOpenResidual);
-  const bool unknown = ground || winding.evidence < kNoEvidence;
-  out.sign = unknown ? convention.sign : winding.sign;
+  const bool unknown = sheets.ground[component] || winding.evidence < kNoEvidence;
+  out.sign = unknown ? convention : winding.sign;
   out.by = unknown ? DecidedBy::NOTHING : DecidedBy::GLOBAL;
   out.evidence = winding.evidence;
   out.confidence = unknown ? 0.F : winding.evidence;
@@ -124,7 +120,9 @@ void turnComponentsOut(SheetSigns& sheets) {
     sheets.windComponents();
     if (sheets.options.turn_loose_parts) turnLooseParts(sheets);
   }
-  const std::vector<Convention> conventional = conventions(sheets);
+  const std::vector<float> up = facingUp(sheets);
+  for (std::size_t c = 0; c < up.size(); ++c) sheets.ground[c] = std::fabs(up[c]) > kLies;
+  const std::vector<std::int8_t> conventional = conventions(sheets, up);
   std::vector<HintVotes> hinted(sheets.windings.size());
   for (std::size_t s = 0; s < sheets.signs.size(); ++s) {
     hinted[at(sheets.component_of[s])].add(sheets.hint_votes[s], sheets.signs[s]);

@@ -52,6 +52,7 @@ void SheetSigns::numberComponents() {
   component_of.resize(n);
   for (std::size_t s = 0; s < n; ++s) component_of[s] = rank[at(clusters.root(clusters.of(s)))];
   windings.assign(order.size(), ComponentWinding{});
+  ground.assign(order.size(), false);
   found.result.components.resize(order.size());
   for (std::size_t c = 0; c < order.size(); ++c) {
     found.result.components[c].points = size[at(order[c])];
@@ -99,7 +100,7 @@ void SheetSigns::windComponents() {
 
 bool SheetSigns::isClosed(std::size_t component, float residual) const {
   if (hints.surface != SurfaceKind::UNKNOWN) return hints.surface == SurfaceKind::CLOSED;
-  return windings[component].residual <= residual;
+  return !ground[component] && windings[component].residual <= residual;
 }
 
 std::vector<bool> SheetSigns::outvoted(const std::vector<Ballot>& ballots,

@@ -81,7 +81,9 @@ struct SheetSigns {
   std::vector<std::int8_t> signs;          ///< of each segment
   std::vector<std::int32_t> component_of;  ///< of each segment, 0.. by descending size
   std::vector<ComponentWinding> windings;  ///< of each component
-  std::vector<bool> hinted;                ///< clusters with points that hints say something about
+  /// Components that are ground, so that nothing closes in them; none before turnComponentsOut().
+  std::vector<bool> ground;
+  std::vector<bool> hinted;  ///< clusters with points that hints say something about
   AutoOrientation found;
 
  private:

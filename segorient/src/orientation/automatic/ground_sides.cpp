@@ -1,0 +1,111 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the segorient authors
+#include "orientation/automatic/ground_sides.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+
+namespace segorient::detail {
+namespace {
+
+// Points that a column has on the average, were all of them in one layer: walls stand in few
+// columns then.
+constexpr double kPointsOfColumn = 16.0;
+// Layers: as far apart as two columns are wide, which slopes of 60 degrees stay below.
+constexpr float kApart = 2.F;
+// Sine of 10 degrees: as far as normals err, so that walls closer to vertical face neither way.
+constexpr float kSteep = 0.17F;
+// A share of the columns is known to a hundredth by then.
+constexpr std::size_t kSample = 65536;
+constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
+
+/// The columns over one component.
+class Columns {
+ public:
+  void include(const float* p) {
+    ++points_;
+    for (std::size_t a = 0; a < 2; ++a) {
+      low_[a] = std::min(low_[a], p[a]);
+      high_[a] = std::max(high_[a], p[a]);
+    }
+  }
+
+  /// Once all points are included: the lowest and the highest point of each column are to be found.
+  void divide() {
+    if (points_ == 0) return;
+    const float width = high_[0] - low_[0];
+    const float depth = high_[1] - low_[1];
+    const double most = std::max(1.0, static_cast<double>(points_) / kPointsOfColumn);
+    const float side = std::max({std::sqrt(width * depth / static_cast<float>(most)),
+                                 std::max(width, depth) / static_cast<float>(most),
+                                 std::numeric_limits<float>::min()});
+    across_ = static_cast<std::size_t>(width / side) + 1;
+    const std::size_t along = static_cast<std::size_t>(depth / side) + 1;
+    side_ = side;
+    lowest_.assign(across_ * along, kNone);
+    highest_.assign(across_ * along, kNone);
+  }
+
+  void add(const PointView& points, std::uint32_t i) {
+    const auto x = static_cast<std::size_t>((points[i][0] - low_[0]) / side_);
+    const auto y = static_cast<std::size_t>((points[i][1] - low_[1]) / side_);
+    std::uint32_t& lowest = lowest_[y * across_ + x];
+    std::uint32_t& highest = highest_[y * across_ + x];
+    if (lowest == kNone || points[i][2] < points[lowest][2]) lowest = i;
+    if (highest == kNone || points[i][2] > points[highest][2]) highest = i;
+  }
+
+  float facingUp(const SheetSigns& sheets) const {
+    float sum = 0.F;
+    float count = 0.F;
+    for (std::size_t c = 0; c < lowest_.size(); ++c) {
+      if (lowest_[c] == kNone) continue;
+      const bool one_layer =
+          sheets.points[highest_[c]][2] - sheets.points[lowest_[c]][2] < kApart * side_;
+      for (const std::uint32_t i : {lowest_[c], highest_[c]}) {
+        const float up = sheets.pointSign(i) * sheets.field.normals[4 * std::size_t{i} + 2];
+        if (std::fabs(up) < kSteep) continue;
+        count += 1.F;
+        if (one_layer) sum += up > 0.F ? 1.F : -1.F;
+      }
+    }
+    return count > 0.F ? sum / count : 0.F;
+  }
+
+ private:
+  std::size_t points_ = 0;
+  std::array<float, 2> low_{std::numeric_limits<float>::max(), std::numeric_limits<float>::max()};
+  std::array<float, 2> high_{std::numeric_limits<float>::lowest(),
+                             std::numeric_limits<float>::lowest()};
+  float side_ = 1.F;
+  std::size_t across_ = 1;
+  std::vector<std::uint32_t> lowest_;
+  std::vector<std::uint32_t> highest_;
+};
+
+}  // namespace
+
+std::vector<float> facingUp(const SheetSigns& sheets) {
+  const std::size_t count = sheets.windings.size();
+  if (sheets.hints.surface == SurfaceKind::CLOSED) return std::vector<float>(count, 0.F);
+  const std::size_t step = std::max<std::size_t>(1, sheets.points.size / kSample);
+  const auto forEachPoint = [&](const auto& act) {
+    for (std::size_t i = 0; i < sheets.points.size; i += step) {
+      const std::int32_t s = sheets.segmentation.labels[i];
+      if (s >= 0) act(at(sheets.component_of[at(s)]), static_cast<std::uint32_t>(i));
+    }
+  };
+  std::vector<Columns> columns(count);
+  forEachPoint([&](std::size_t c, std::uint32_t i) { columns[c].include(sheets.points[i]); });
+  for (Columns& c : columns) c.divide();
+  forEachPoint([&](std::size_t c, std::uint32_t i) { columns[c].add(sheets.points, i); });
+  std::vector<float> out;
+  for (const Columns& c : columns) out.push_back(c.facingUp(sheets));
+  return out;
+}
+
+}  // namespace segorient::detail
