@@ -10,6 +10,7 @@
 #include <cmath>
 #include <memory>
 #include <random>
+#include <type_traits>
 #include <vector>
 
 #include "sensor_scans.h"
@@ -17,8 +18,11 @@
 namespace segorient {
 namespace {
 
-TEST(Sensors, SeveralStationsAreFoundAndShareThePoints) {
-  const std::array<Vector, 3> truth{{{1.0, 3.2, 1.5}, {5.2, 3.0, 1.4}, {3.0, 0.8, 1.6}}};
+class SeveralStations : public testing::TestWithParam<double> {};
+
+// Also where no wall runs along an axis.
+TEST_P(SeveralStations, AreFoundAndShareThePoints) {
+  std::array<Vector, 3> truth{{{1.0, 3.2, 1.5}, {5.2, 3.0, 1.4}, {3.0, 0.8, 1.6}}};
   Scan scan;
   std::vector<std::size_t> seen_by;
   for (std::size_t s = 0; s < truth.size(); ++s) {
@@ -26,6 +30,17 @@ TEST(Sensors, SeveralStationsAreFoundAndShareThePoints) {
     seen_by.insert(seen_by.end(), one.view().size, s);
     scan.rows().insert(scan.rows().end(), one.rows().begin(), one.rows().end());
   }
+  const double cosine = std::cos(GetParam());
+  const double sine = std::sin(GetParam());
+  const auto turn = [&](auto* p) {
+    using Real = std::decay_t<decltype(*p)>;
+    const auto x = static_cast<double>(p[0]);
+    const auto y = static_cast<double>(p[1]);
+    p[0] = static_cast<Real>(cosine * x - sine * y);
+    p[1] = static_cast<Real>(sine * x + cosine * y);
+  };
+  for (std::size_t i = 0; i < scan.view().size; ++i) turn(&scan.rows()[3 * i]);
+  for (Vector& t : truth) turn(t.data());
   const SensorReport report = findSensors(scan.view());
   ASSERT_EQ(report.sensors.size(), truth.size());
   std::size_t points = 0;
@@ -41,6 +56,8 @@ TEST(Sensors, SeveralStationsAreFoundAndShareThePoints) {
   }
   EXPECT_EQ(points, scan.view().size);
 }
+
+INSTANTIATE_TEST_SUITE_P(Sensors, SeveralStations, testing::Values(0.0, 0.8));
 
 // A lidar of few beams that turns while it goes along.
 TEST(Sensors, AMovingScannerIsFoundAlongItsWay) {

@@ -172,8 +172,9 @@ class Sum {
       least = squared;
       plane = static_cast<double>(center[i]);
     }
+    if (least < 0.0) return false;
     position[axis] = 2.0 * plane - position[axis];
-    return least >= 0.0;
+    return true;
   }
 
   void look() {
