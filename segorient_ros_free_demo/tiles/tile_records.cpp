@@ -36,6 +36,7 @@ StoredPatch storedOf(const TilePatch& patch) {
 struct StoredFieldPoint {
   float position[3];
   std::uint32_t normal;
+  std::int32_t piece;
 };
 
 TilePatch patchOf(const StoredPatch& s) {
@@ -83,6 +84,7 @@ void savePatches(const PatchFile& patches, const std::string& path, std::uint64_
     const FieldPoint& p = patches.field_points[i];
     std::copy_n(p.position, 3, points[i].position);
     points[i].normal = packNormal(p.normal, kPatchNormalBits);
+    points[i].piece = p.piece;
   }
   file.list(points);
   file.list(patches.viewpoints);
@@ -98,6 +100,7 @@ PatchFile loadPatches(const std::string& path, std::uint64_t run, std::uint32_t 
     FieldPoint p;
     std::copy_n(s.position, 3, p.position);
     unpackNormal(s.normal, kPatchNormalBits, p.normal);
+    p.piece = s.piece;
     patches.field_points.push_back(p);
   }
   patches.viewpoints = file.list<float>();

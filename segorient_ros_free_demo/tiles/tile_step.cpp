@@ -43,6 +43,11 @@ Work prepare(const Plan& plan, const std::string& folder, std::size_t number, in
   options.epsilon = plan.epsilon;
   options.patch_points = plan.patch_points;
   options.threads = threads;
+  options.frame = plan.bulk;
+  for (std::size_t a = 0; a < 3; ++a) {
+    options.frame.low[a] -= plan.tile_origins[number][a];
+    options.frame.high[a] -= plan.tile_origins[number][a];
+  }
   options.hints = hintsOf(plan, plan.tile_origins[number]);
   options.hints.viewpoints = work.points.viewpoints;
   options.hints.normals = work.points.normals;

@@ -128,7 +128,8 @@ std::array<double, 3> inDouble(const float* p) {
 /// The cell of each point along a curve through a fine grid.
 class ZOrder {
  public:
-  ZOrder(const Source& source, int threads) : source_(source), bulk_(boundsOf(source, threads)) {
+  ZOrder(const Source& source, int threads, const Bounds* frame)
+      : source_(source), bulk_(frame != nullptr ? *frame : boundsOf(source, threads)) {
     const double extent = bulk_.extent();
     if (extent > 0.0) scale_ = kLastCell / extent;
   }
@@ -214,9 +215,9 @@ bool isFirst(const Source& source, const Items& items, std::size_t i) {
 }  // namespace
 
 CompactCloud compactCloud(const PointView& points, const std::vector<pcl::index_t>* indices,
-                          int threads) {
+                          int threads, const Bounds* frame) {
   const Source source(points, indices);
-  Items items = ZOrder(source, threads).items(threads);
+  Items items = ZOrder(source, threads, frame).items(threads);
   radixSort(items, threads);
   sortWithinCells(source, items);
 

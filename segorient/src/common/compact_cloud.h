@@ -10,6 +10,8 @@
 
 namespace segorient {
 
+struct Bounds;
+
 /// The distinct finite points of a cloud but for strays beyond the reach of floats, in an order
 /// that depends on where they are and not on where they stood in the input.
 ///
@@ -34,8 +36,11 @@ struct CompactCloud {
 /// \param indices rows to use, or null for all; out of range entries are left out. With indices,
 ///        row_of and source refer to positions in `indices`
 /// \param threads see resolveThreads()
+/// \param frame of the cloud that these points are part of, which have the order that they have
+///        there then; null = of the points themselves, see bulkBounds()
 CompactCloud compactCloud(const PointView& points,
-                          const std::vector<pcl::index_t>* indices = nullptr, int threads = 0);
+                          const std::vector<pcl::index_t>* indices = nullptr, int threads = 0,
+                          const Bounds* frame = nullptr);
 
 /// Divides the coordinates by the power of two that brings the cloud's extent between 1 and 2:
 /// squares and cubes of them are then ordinary numbers whatever the input's units, and nothing is

@@ -23,9 +23,10 @@ pcl::Indices chosenRows(const pcl::Indices& indices, std::size_t rows) {
   return out;
 }
 
-CompactCloud compactChosen(const PointView& points, const pcl::Indices& indices, int threads) {
+CompactCloud compactChosen(const PointView& points, const pcl::Indices& indices, int threads,
+                           const Bounds* frame) {
   const pcl::Indices chosen = chosenRows(indices, points.size);
-  CompactCloud out = compactCloud(points, &chosen, threads);
+  CompactCloud out = compactCloud(points, &chosen, threads, frame);
   std::vector<pcl::index_t> row_of(points.size, -1);
   for (std::size_t i = 0; i < chosen.size(); ++i) {
     row_of[static_cast<std::size_t>(chosen[i])] = out.row_of[i];
@@ -37,9 +38,10 @@ CompactCloud compactChosen(const PointView& points, const pcl::Indices& indices,
 
 }  // namespace
 
-PreparedCloud::PreparedCloud(const PointView& points, const pcl::Indices* indices, int threads)
-    : cloud_(indices != nullptr ? compactChosen(points, *indices, threads)
-                                : compactCloud(points, nullptr, threads)),
+PreparedCloud::PreparedCloud(const PointView& points, const pcl::Indices* indices, int threads,
+                             const Bounds* frame)
+    : cloud_(indices != nullptr ? compactChosen(points, *indices, threads, frame)
+                                : compactCloud(points, nullptr, threads, frame)),
       threads_(threads) {
   normalizeUnit(cloud_);
 }

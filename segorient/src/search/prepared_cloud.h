@@ -31,7 +31,9 @@ class SEGORIENT_SEARCH_EXPORT PreparedCloud {
   /// \param indices rows to use, or null for all; entries out of range are left out, and other rows
   ///        have no point
   /// \param threads see resolveThreads()
-  PreparedCloud(const PointView& points, const pcl::Indices* indices, int threads);
+  /// \param frame see compactCloud()
+  PreparedCloud(const PointView& points, const pcl::Indices* indices, int threads,
+                const Bounds* frame = nullptr);
 
   std::size_t size() const { return cloud_.size(); }         ///< points
   std::size_t rows() const { return cloud_.row_of.size(); }  ///< input rows

@@ -136,7 +136,8 @@ CloudField TileJoiner::Impl::findField(const AutoOrientation& orientation, const
     const TilePatch& patch = patches[p];
     const float* at_patch = level ? patch.position : field_points[p].position;
     const float* n = level ? patch.normal : field_points[p].normal;
-    const auto sign = static_cast<float>(orientation.result.segments[at(patch.piece)].sign);
+    const std::int32_t piece = level ? patch.piece : field_points[p].piece;
+    const auto sign = static_cast<float>(orientation.result.segments[at(piece)].sign);
     places.insert(places.end(), at_patch, at_patch + 3);
     for (std::size_t a = 0; a < 3; ++a) of_rows.push_back(sign * n[a]);
     of_rows.push_back(0.F);
@@ -195,6 +196,7 @@ void TileJoiner::addTile(const std::vector<std::uint32_t>& piece_sizes,
     i.patches.push_back(p);
   }
   for (FieldPoint p : field_points) {
+    p.piece += piece;
     move(p.position);
     i.field_points.push_back(p);
   }

@@ -18,14 +18,14 @@ void add(const float* from, Evidence& to) {
   to.add({from[0], from[1], from[2]});
 }
 
-// A point of a border has about half of its neighbours across it, each with a vote.
+// A point that two tiles have says as much as one of a border does: where their pieces were cut in
+// different ways, or one mixes two sides, borders must be able to say otherwise.
 TileVote voteOf(const PieceTie& tie) {
-  constexpr float kVotesOfPoint = 8.F;
   TileVote v;
   v.a = tie.a;
   v.b = tie.b;
-  v.sheet[0] = kVotesOfPoint * tie.weight;
-  v.sheet[1] = v.sheet[2] = kVotesOfPoint * tie.absolute;
+  v.sheet[0] = tie.weight;
+  v.sheet[1] = v.sheet[2] = tie.absolute;
   v.count = tie.count;
   return v;
 }

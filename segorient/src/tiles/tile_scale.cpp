@@ -120,6 +120,7 @@ void TileScale::cutPatches(const Segmentation& pieces, std::uint32_t most) {
 }
 
 void TileScale::listFieldPoints(const std::vector<float>& normals,
+                                const std::vector<std::int32_t>& followed,
                                 const std::vector<SegmentOrientationResult>& pieces,
                                 TileShare& out) const {
   out.field_points.resize(out.patch_list.size());
@@ -129,8 +130,9 @@ void TileScale::listFieldPoints(const std::vector<float>& normals,
     FieldPoint& f = out.field_points[at(patch_of[i])];
     counts[at(patch_of[i])] += 1.F;
     const float share = 1.F / counts[at(patch_of[i])];
+    if (f.piece < 0) f.piece = followed[i] >= 0 ? followed[i] : record.segments.labels[i];
     const float* n = &normals[4 * i];
-    const auto sign = static_cast<float>(pieces[at(record.segments.labels[i])].sign);
+    const auto sign = static_cast<float>(pieces[at(f.piece)].sign);
     const bool known = std::isfinite(n[0]);
     for (std::size_t a = 0; a < 3; ++a) {
       f.position[a] += share * (points[i][a] * unit - f.position[a]);
@@ -140,7 +142,9 @@ void TileScale::listFieldPoints(const std::vector<float>& normals,
   for (std::size_t p = 0; p < out.field_points.size(); ++p) {
     float(&n)[3] = out.field_points[p].normal;
     normalize(n);
-    if (n[0] == 0.F && n[1] == 0.F && n[2] == 0.F) std::copy_n(out.patch_list[p].normal, 3, n);
+    if (n[0] != 0.F || n[1] != 0.F || n[2] != 0.F) continue;
+    std::copy_n(out.patch_list[p].normal, 3, n);
+    out.field_points[p].piece = out.patch_list[p].piece;
   }
 }
 

@@ -33,8 +33,9 @@ struct TileScale {
   /// Adds what the join needs.
   void list(std::uint32_t patch_points, TileShare& out);
   /// After list(): the patches once more, with other normals. \param normals 4 floats a point,
-  /// oriented \param pieces with the signs that they are oriented by
-  void listFieldPoints(const std::vector<float>& normals,
+  /// oriented \param followed the piece whose sign each follows \param pieces with the signs that
+  /// they are oriented by
+  void listFieldPoints(const std::vector<float>& normals, const std::vector<std::int32_t>& followed,
                        const std::vector<SegmentOrientationResult>& pieces, TileShare& out) const;
   /// A point's normal as its piece is turned.
   void pieceNormal(std::size_t i, float* out) const;

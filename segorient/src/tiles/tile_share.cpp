@@ -27,7 +27,10 @@ class Tile {
  public:
   Tile(const PointView& points, const std::vector<TileRole>& roles, const std::vector<float>& whole,
        const TileOptions& options)
-      : options_(options), cloud_(points, nullptr, options.threads), roles_(roles) {
+      : options_(options),
+        cloud_(points, nullptr, options.threads,
+               options.frame.points > 0 ? &options.frame : nullptr),
+        roles_(roles) {
     fine_.points = cloud_.points();
     fine_.unit = cloud_.unit();
     for (std::size_t i = 0; i < cloud_.size(); ++i) {
@@ -49,11 +52,15 @@ class Tile {
     run();
     joined().list(options_.patch_points, out_);
     if (!filtered.empty()) {
-      fine_.listFieldPoints(filtered, stages_.orientation.result.segments, out_);
+      followPieces(filtered);
+      fine_.listFieldPoints(filtered, followed_, stages_.orientation.result.segments, out_);
     }
     listSigns();
     followed_.assign(cloud_.size(), -1);
-    if (!hasLevel()) followPieces();
+    if (!hasLevel()) {
+      followPieces(stages_.normals);
+      undoSigns();
+    }
     scatter();
     listTies();
     return std::move(out_);
@@ -81,11 +88,12 @@ class Tile {
   void goByLevel(const PointView& points, const AutomaticOptions& settings,
                  detail::AutoNormals& fine);
   void listSigns();
-  void followPieces();
+  void followPieces(const std::vector<float>& normals);
+  void undoSigns();
   void scatter();
   void listBorders();
   void listTies();
-  std::int32_t followed(std::size_t i) const;
+  std::int32_t followed(const float* normal, std::size_t i) const;
 
   const TileOptions& options_;
   PreparedCloud cloud_;
@@ -184,11 +192,10 @@ void Tile::listSigns() {
   for (const SegmentOrientationResult& piece : found) out_.piece_signs.push_back(piece.sign);
 }
 
-// The piece whose sign a point's final normal follows: its own, unless the filter turned the normal
-// as those around are, or the point is of no piece.
-// \return the point of that piece, itself or a neighbour; -1 where there is none
-std::int32_t Tile::followed(std::size_t i) const {
-  const float* n = &stages_.normals[4 * i];
+// The piece whose sign a point's normal follows: its own, unless the filter turned the normal as
+// those around are, or the point is of no piece; -1 where there is none.
+std::int32_t Tile::followed(const float* n, std::size_t i) const {
+  const std::vector<std::int32_t>& pieces = fine_.record.segments.labels;
   const auto agrees = [&](std::size_t j) {
     const float* m = &fine_.record.sheets.normals[4 * j];
     const auto sign = static_cast<float>(stages_.orientation.result.point_signs[j]);
@@ -196,20 +203,26 @@ std::int32_t Tile::followed(std::size_t i) const {
   };
   const Neighborhoods& nb = cloud_.neighborhoods();
   for (int j = 0; j < nb.count(i); ++j) {  // itself first
-    if (agrees(static_cast<std::size_t>(nb.indices(i)[j]))) return nb.indices(i)[j];
+    const auto q = static_cast<std::size_t>(nb.indices(i)[j]);
+    if (agrees(q)) return pieces[q];
   }
-  return fine_.record.segments.labels[i] >= 0 ? static_cast<std::int32_t>(i) : -1;
+  return pieces[i];
+}
+
+void Tile::followPieces(const std::vector<float>& normals) {
+  followed_.assign(cloud_.size(), -1);
+  for (std::size_t i = 0; i < cloud_.size(); ++i) {
+    if (fine_.own[i] == 0 || !std::isfinite(normals[4 * i])) continue;
+    followed_[i] = followed(&normals[4 * i], i);
+  }
 }
 
 // The tile's own signs are taken back, so that each normal is turned as its piece is.
-void Tile::followPieces() {
+void Tile::undoSigns() {
   for (std::size_t i = 0; i < cloud_.size(); ++i) {
-    if (fine_.own[i] == 0 || !std::isfinite(stages_.normals[4 * i])) continue;
-    const std::int32_t point = followed(i);
-    if (point < 0) continue;
-    followed_[i] = fine_.record.segments.labels[at(point)];
-    const auto sign = static_cast<float>(fine_.record.segments.signs[at(point)] *
-                                         stages_.orientation.result.point_signs[at(point)]);
+    if (followed_[i] < 0) continue;
+    const auto sign =
+        static_cast<float>(stages_.orientation.result.segments[at(followed_[i])].sign);
     for (std::size_t a = 0; a < 3; ++a) stages_.normals[4 * i + a] *= sign;
   }
 }

@@ -10,6 +10,8 @@
 #include <cstdint>
 #include <vector>
 
+#include "common/bulk_bounds.h"
+
 // What one tile of a large cloud contributes to its orientation. The structures of numbers are
 // stored as they are in memory.
 namespace segorient {
@@ -83,7 +85,8 @@ struct TilePatch {
 /// The points of a patch for the field of all points, where noise hides which way sheets go on.
 struct FieldPoint {
   float position[3] = {0.F, 0.F, 0.F};  ///< as measured, relative to the tile's origin
-  float normal[3] = {0.F, 0.F, 0.F};    ///< filtered, as the piece is turned
+  float normal[3] = {0.F, 0.F, 0.F};    ///< filtered, as `piece` is turned
+  std::int32_t piece = -1;              ///< whose sign the first one's normal follows
 };
 
 /// A point that two tiles know, as one of them sees it.
@@ -149,7 +152,10 @@ struct TileOptions {
   float beta = 0.F;     ///< between a normal and its segment's,
   float epsilon = 0.F;  ///< and what clean-up allows beyond that
   std::uint32_t patch_points = 1;  ///< most points of a patch
-  int threads = 0;                 ///< 0 = all cores; the result does not depend on it
+  /// Of the whole cloud, relative to the tile's origin: points have the order that they have there,
+  /// so that where order decides, it decides as it does in memory. Without points, of the tile.
+  Bounds frame;
+  int threads = 0;  ///< 0 = all cores; the result does not depend on it
   /// What is known beforehand, by row of the tile's input. It helps the tile where its normals need
   /// signs; what it says of the whole is for the join.
   OrientationHints hints;
