@@ -11,6 +11,7 @@
 #include <random>
 #include <vector>
 
+#include "common/bulk_bounds.h"
 #include "common/compact_cloud.h"
 
 namespace segorient::test {
@@ -42,6 +43,41 @@ PointView viewOf(const std::vector<float>& xyz) {
 
 Place placeOf(const float* p) {
   return {p[0], p[1], p[2]};
+}
+
+// A part of a cloud has the order that it has in the cloud, if it is told where that is.
+TEST(CompactCloud, APartHasTheOrderOfTheWhole) {
+  const std::vector<float> xyz = untidyCloud(5000, 7);
+  const PointView rows = viewOf(xyz);
+  const CompactCloud whole = compactCloud(rows);
+  Bounds frame;
+  for (std::size_t i = 0; i < whole.size(); ++i) {
+    const float* p = whole.view()[i];
+    frame.add({static_cast<double>(p[0]), static_cast<double>(p[1]), static_cast<double>(p[2])});
+  }
+  std::vector<pcl::index_t> part;  // all in a corner
+  for (std::size_t row = 0; row < rows.size; ++row) {
+    if (rows[row][0] < 0.3F && rows[row][1] > -0.2F) part.push_back(static_cast<pcl::index_t>(row));
+  }
+  std::vector<Place> expected;
+  for (std::size_t i = 0; i < whole.size(); ++i) {
+    const float* p = whole.view()[i];
+    if (p[0] < 0.3F && p[1] > -0.2F) expected.push_back(placeOf(p));
+  }
+  for (const int threads : {1, 3}) {
+    const CompactCloud cloud = compactCloud(rows, &part, threads, &frame);
+    ASSERT_EQ(cloud.size(), expected.size());
+    for (std::size_t i = 0; i < cloud.size(); ++i) {
+      EXPECT_EQ(placeOf(cloud.view()[i]), expected[i]);
+    }
+    // By itself it has another one, or the test says nothing.
+    const CompactCloud alone = compactCloud(rows, &part, threads);
+    bool same = true;
+    for (std::size_t i = 0; i < cloud.size(); ++i) {
+      same = same && placeOf(alone.view()[i]) == expected[i];
+    }
+    EXPECT_FALSE(same);
+  }
 }
 
 TEST(CompactCloud, HasEachPlaceOnceAndItsFirstRow) {

@@ -38,10 +38,19 @@ TEST(Join, PiecesOfTwoTilesVoteByTheirCommonPoints) {
   ASSERT_EQ(votes.size(), 2U);
   EXPECT_EQ(votes[0].a, 0);
   EXPECT_EQ(votes[0].b, 1);
-  EXPECT_LT(votes[0].weight, -7.F);
+  EXPECT_FLOAT_EQ(votes[0].weight, -7.F);
   EXPECT_EQ(votes[0].unanimity(), 1.F);
   EXPECT_EQ(votes[1].b, 2);
   EXPECT_FLOAT_EQ(votes[1].weight, 6.F);
+}
+
+// Common points say no more than as many of a border: one piece may mix two sides.
+TEST(Join, BordersMayContradictCommonPoints) {
+  const std::vector<BorderVote> votes =
+      detail::gatherVotes({vote(0, 1, 12.F)}, {tie(0, 1, -7.F, 7)});
+  ASSERT_EQ(votes.size(), 1U);
+  EXPECT_FLOAT_EQ(votes[0].weight, 5.F);
+  EXPECT_FLOAT_EQ(votes[0].absolute, 19.F);
 }
 
 // Votes of the same two pieces from two tiles are one border; walls count where they are most.

@@ -159,7 +159,12 @@ void Tile::goByLevel(const PointView& points, const AutomaticOptions& settings,
                      detail::AutoNormals& fine) {
   const TileTraits& traits = options_.traits;
   const float radius = traits.level_radius / cloud_.unit();
-  level_ = detail::makeLevel(points, radius, options_.threads);
+  Bounds frame = options_.frame;
+  for (std::size_t a = 0; a < 3; ++a) {
+    frame.low[a] /= static_cast<double>(cloud_.unit());
+    frame.high[a] /= static_cast<double>(cloud_.unit());
+  }
+  level_ = detail::makeLevel(points, radius, options_.threads, frame.points > 0 ? &frame : nullptr);
   if (level_.cloud.size() == 0) return;
   const float unit = level_.cloud.unit();
   coarse_.points = level_.cloud.points();

@@ -30,9 +30,10 @@ struct CoarseLevel {
 /// Each point of the subset is where the points that it stands for are in the mean, which is on the
 /// one surface that scans on both sides of it make.
 /// \param radius no two first points of these are nearer; in the unit of the points
+/// \param frame see compactCloud(); null = of the points: a level has the order of its cloud
 /// \return without points where there is nothing to thin out
 SEGORIENT_ORIENTATION_EXPORT CoarseLevel makeLevel(const PointView& points, float radius,
-                                                   int threads);
+                                                   int threads, const Bounds* frame = nullptr);
 
 /// Gives a cloud's own normals the signs that a level found.
 SEGORIENT_ORIENTATION_EXPORT void followLevel(const PointView& points, CoarseLevel& level,
