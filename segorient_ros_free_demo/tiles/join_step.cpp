@@ -75,6 +75,7 @@ JoinSummary joinStep(const Plan& plan, const std::string& folder, int threads) {
   if (std::filesystem::exists(joinPath(folder))) return readSummary(plan, folder);
   JoinOptions options;
   options.traits = plan.traits;
+  options.patch_points = plan.patch_points;
   options.threads = threads;
   options.hints = hintsOf(plan, plan.origin);
   for (const PlanSeed& s : plan.seeds) {

@@ -137,7 +137,7 @@ void saveField(const CloudField& field, const std::string& path, std::uint64_t r
   TileFileWriter file(path, TileFileKind::FIELD, run);
   file.value(field.radius);
   file.value(field.noise);
-  file.value(field.directions);
+  file.value(field.averaged_below);
   file.list(field.cells);
   file.commit();
 }
@@ -147,7 +147,7 @@ CloudField loadField(const std::string& path, std::uint64_t run) {
   CloudField field;
   field.radius = file.value<float>();
   field.noise = file.value<std::uint8_t>();
-  field.directions = file.value<std::uint8_t>();
+  field.averaged_below = file.value<float>();
   field.cells = file.list<FieldCell>();
   file.end();
   return field;

@@ -45,7 +45,7 @@ struct ShareFile {
 /// Its part of the far field.
 struct PatchFile {
   std::vector<TilePatch> patches;
-  std::vector<FieldPoint> field_points;  ///< one a patch; or empty
+  std::vector<FieldPoint> field_points;  ///< or empty
   std::vector<float> viewpoints;         ///< 3 a patch, relative to the plan's origin; or empty
   std::vector<float> normals;            ///< 3 a patch, known beforehand, 0 = none; or empty
 };

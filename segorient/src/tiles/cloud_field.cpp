@@ -44,7 +44,7 @@ void takeNoise(const PointView& points, float unit, const CloudField& field, int
     noise.dipoles.push_back(cell.value / (unit * unit));
   }
   noise.radius = field.radius / unit;
-  noise.averaged_below = field.directions != 0 ? 1.F : 0.F;
+  noise.averaged_below = field.averaged_below;
   takeNoiseField(points, noise, threads, found);
 }
 

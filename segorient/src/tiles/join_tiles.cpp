@@ -9,6 +9,7 @@
 
 #include "common/median.h"
 #include "orientation/automatic/orient_sheets.h"
+#include "orientation/automatic/stages.h"
 #include "search/prepared_cloud.h"
 #include "tiles/cloud_field.h"
 #include "tiles/piece_graph.h"
@@ -71,7 +72,7 @@ struct TileJoiner::Impl {
   std::vector<std::uint32_t> piece_sizes;
   std::vector<TileVote> votes;
   std::vector<TilePatch> patches;
-  std::vector<FieldPoint> field_points;  // as many, or not all of them
+  std::vector<FieldPoint> field_points;
   std::vector<PieceTie> piece_ties;
 
   // Patches as a cloud whose points know their sheets.
@@ -122,29 +123,25 @@ CloudField TileJoiner::Impl::findField(const AutoOrientation& orientation, const
     const auto sign = static_cast<float>(orientation.result.point_signs[i]);
     for (std::size_t a = 0; a < 3; ++a) normals[4 * i + a] *= sign;
   }
-  if (options.traits.noisy == 0) {
+  if (!options.traits.hasField()) {
     if (!orientation.toward.empty()) return {};
     return detail::findSigns(cloud.cloud, normals, median(cloud.spacing),
                              orientation.result.components, options.threads);
   }
-  // Without field points it is a level's points that make the patches.
-  const bool level = field_points.size() != patches.size();
-  bool fine = !level;
   std::vector<float> places;
   std::vector<float> of_rows;
-  for (std::size_t p = 0; p < patches.size(); ++p) {
-    const TilePatch& patch = patches[p];
-    const float* at_patch = level ? patch.position : field_points[p].position;
-    const float* n = level ? patch.normal : field_points[p].normal;
-    const std::int32_t piece = level ? patch.piece : field_points[p].piece;
-    const auto sign = static_cast<float>(orientation.result.segments[at(piece)].sign);
-    places.insert(places.end(), at_patch, at_patch + 3);
-    for (std::size_t a = 0; a < 3; ++a) of_rows.push_back(sign * n[a]);
+  for (const FieldPoint& p : field_points) {
+    const auto sign =
+        p.piece < 0 ? 0.F : static_cast<float>(orientation.result.segments[at(p.piece)].sign);
+    places.insert(places.end(), p.position, p.position + 3);
+    for (const float n : p.normal) of_rows.push_back(sign * n);
     of_rows.push_back(0.F);
-    fine = fine && patch.points == 1;
   }
-  CloudField out = detail::findNoise({places.data(), 3, patches.size()}, of_rows, options.threads);
-  out.directions = fine ? 1 : 0;
+  CloudField out =
+      detail::findNoise({places.data(), 3, field_points.size()}, of_rows, options.threads);
+  // Means of several points do not tell directions.
+  if (options.patch_points == 1)
+    out.averaged_below = options.traits.noisy != 0 ? 1.F : detail::kAcross;
   return out;
 }
 
@@ -196,7 +193,7 @@ void TileJoiner::addTile(const std::vector<std::uint32_t>& piece_sizes,
     i.patches.push_back(p);
   }
   for (FieldPoint p : field_points) {
-    p.piece += piece;
+    if (p.piece >= 0) p.piece += piece;
     move(p.position);
     i.field_points.push_back(p);
   }

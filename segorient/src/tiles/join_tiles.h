@@ -35,6 +35,7 @@ struct PieceTie {
 /// that tiles are given offsets from.
 struct JoinOptions {
   TileTraits traits;
+  std::uint32_t patch_points = 1;  ///< most points of a patch
   /// As for orientCloud(), but by patch, in the order in which tiles and their patches were added.
   OrientationHints hints;
   int threads = 0;
@@ -57,7 +58,7 @@ class SEGORIENT_TILES_EXPORT TileJoiner {
   TileJoiner(const TileJoiner&) = delete;
   TileJoiner& operator=(const TileJoiner&) = delete;
 
-  /// Tiles one after another. \param field_points as the tile has them, maybe none
+  /// Tiles one after another. \param field_points maybe none
   /// \param offset of the tile's origin
   void addTile(const std::vector<std::uint32_t>& piece_sizes, const std::vector<TileVote>& votes,
                const std::vector<TilePatch>& patches, const std::vector<FieldPoint>& field_points,

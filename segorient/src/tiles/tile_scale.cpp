@@ -122,30 +122,26 @@ void TileScale::cutPatches(const Segmentation& pieces, std::uint32_t most) {
 void TileScale::listFieldPoints(const std::vector<float>& normals,
                                 const std::vector<std::int32_t>& followed,
                                 const std::vector<SegmentOrientationResult>& pieces,
-                                TileShare& out) const {
-  out.field_points.resize(out.patch_list.size());
-  std::vector<float> counts(out.patch_list.size(), 0.F);
+                                std::uint32_t most, TileShare& out) {
+  cutPatches(record.segments, most);
+  std::vector<float> counts;
   for (std::size_t i = 0; i < points.size; ++i) {
     if (patch_of[i] < 0) continue;
+    if (at(patch_of[i]) == out.field_points.size()) {
+      out.field_points.emplace_back();
+      counts.push_back(0.F);
+    }
     FieldPoint& f = out.field_points[at(patch_of[i])];
-    counts[at(patch_of[i])] += 1.F;
-    const float share = 1.F / counts[at(patch_of[i])];
-    if (f.piece < 0) f.piece = followed[i] >= 0 ? followed[i] : record.segments.labels[i];
-    const float* n = &normals[4 * i];
-    const auto sign = static_cast<float>(pieces[at(f.piece)].sign);
-    const bool known = std::isfinite(n[0]);
+    const float share = 1.F / ++counts[at(patch_of[i])];
     for (std::size_t a = 0; a < 3; ++a) {
       f.position[a] += share * (points[i][a] * unit - f.position[a]);
-      if (known) f.normal[a] += sign * n[a];
     }
+    if (followed[i] < 0) continue;
+    if (f.piece < 0) f.piece = followed[i];
+    const auto sign = static_cast<float>(pieces[at(f.piece)].sign);
+    for (std::size_t a = 0; a < 3; ++a) f.normal[a] += sign * normals[4 * i + a];
   }
-  for (std::size_t p = 0; p < out.field_points.size(); ++p) {
-    float(&n)[3] = out.field_points[p].normal;
-    normalize(n);
-    if (n[0] != 0.F || n[1] != 0.F || n[2] != 0.F) continue;
-    std::copy_n(out.patch_list[p].normal, 3, n);
-    out.field_points[p].piece = out.patch_list[p].piece;
-  }
+  for (FieldPoint& f : out.field_points) normalize(f.normal);
 }
 
 void TileScale::makePatches(TileShare& out) const {

@@ -32,11 +32,12 @@ struct TileScale {
 
   /// Adds what the join needs.
   void list(std::uint32_t patch_points, TileShare& out);
-  /// After list(): the patches once more, with other normals. \param normals 4 floats a point,
+  /// Of own points by their patches, of most points each. \param normals 4 floats a point,
   /// oriented \param followed the piece whose sign each follows \param pieces with the signs that
   /// they are oriented by
   void listFieldPoints(const std::vector<float>& normals, const std::vector<std::int32_t>& followed,
-                       const std::vector<SegmentOrientationResult>& pieces, TileShare& out) const;
+                       const std::vector<SegmentOrientationResult>& pieces, std::uint32_t most,
+                       TileShare& out);
   /// A point's normal as its piece is turned.
   void pieceNormal(std::size_t i, float* out) const;
 

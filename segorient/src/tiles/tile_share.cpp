@@ -47,13 +47,14 @@ class Tile {
     // Filtered by signs of the tile's own, which are undone again.
     std::vector<float> filtered;
     fine_.record.field = [&](const PointView&, const detail::AutoNormals& found) {
-      if (options_.traits.noisy != 0 && hints_.nothing() && !hasLevel()) filtered = found.normals;
+      if (options_.traits.hasField() && hints_.nothing()) filtered = found.normals;
     };
     run();
     joined().list(options_.patch_points, out_);
     if (!filtered.empty()) {
       followPieces(filtered);
-      fine_.listFieldPoints(filtered, followed_, stages_.orientation.result.segments, out_);
+      fine_.listFieldPoints(filtered, followed_, stages_.orientation.result.segments,
+                            options_.patch_points, out_);
     }
     listSigns();
     followed_.assign(cloud_.size(), -1);
@@ -160,9 +161,8 @@ void Tile::goByLevel(const PointView& points, const AutomaticOptions& settings,
   const TileTraits& traits = options_.traits;
   const float radius = traits.level_radius / cloud_.unit();
   Bounds frame = options_.frame;
-  for (std::size_t a = 0; a < 3; ++a) {
-    frame.low[a] /= static_cast<double>(cloud_.unit());
-    frame.high[a] /= static_cast<double>(cloud_.unit());
+  for (auto* side : {&frame.low, &frame.high}) {
+    for (double& x : *side) x /= static_cast<double>(cloud_.unit());
   }
   level_ = detail::makeLevel(points, radius, options_.threads, frame.points > 0 ? &frame : nullptr);
   if (level_.cloud.size() == 0) return;
@@ -198,8 +198,12 @@ void Tile::listSigns() {
 }
 
 // The piece whose sign a point's normal follows: its own, unless the filter turned the normal as
-// those around are, or the point is of no piece; -1 where there is none.
+// those around are, or the point is of no piece; -1 where there is none. Of a level, that of the
+// nearest of its points.
 std::int32_t Tile::followed(const float* n, std::size_t i) const {
+  if (hasLevel()) {
+    return level_.nearest.empty() ? -1 : coarse_.record.segments.labels[level_.nearest[i]];
+  }
   const std::vector<std::int32_t>& pieces = fine_.record.segments.labels;
   const auto agrees = [&](std::size_t j) {
     const float* m = &fine_.record.sheets.normals[4 * j];

@@ -40,6 +40,9 @@ struct TileTraits {
   float level_noise = 0.F;   ///< as above, of the level's points
   float level_wide_noise = 0.F;
   float level_residual = 0.F;
+
+  /// Whether the field of all points goes before what borders tell.
+  bool hasField() const { return noisy != 0 || level > 0.F; }
 };
 
 /// Orients the points by the default method, and takes what it measured on the way.
@@ -82,7 +85,8 @@ struct TilePatch {
   std::uint32_t row = 0;       ///< of the tile's input: the first of them
 };
 
-/// The points of a patch for the field of all points, where noise hides which way sheets go on.
+/// A point, or the mean of some, for the field of all points, where noise or layers hide which way
+/// sheets go on.
 struct FieldPoint {
   float position[3] = {0.F, 0.F, 0.F};  ///< as measured, relative to the tile's origin
   float normal[3] = {0.F, 0.F, 0.F};    ///< filtered, as `piece` is turned
@@ -117,7 +121,7 @@ struct TileShare {
   std::vector<LabelBorder> segment_borders;
   std::vector<TileVote> votes;           ///< of own points, or those of a level, as patches are
   std::vector<TilePatch> patch_list;     ///< of own points
-  std::vector<FieldPoint> field_points;  ///< one a patch, or none where they are not asked for
+  std::vector<FieldPoint> field_points;  ///< of own points, or none where they are not asked for
   std::vector<std::int8_t> piece_signs;  ///< that the tile alone found, and followed
   std::vector<TileTie> ties;             ///< of HALO and SHARED rows, ascending by row
 };
@@ -142,7 +146,7 @@ struct CloudField {
   std::vector<FieldCell> cells;  ///< none = it says nothing
   float radius = 0.F;            ///< of the smoothing in noise, else the spacing of patches
   std::uint8_t noise = 0;        ///< which of the two it is
-  std::uint8_t directions = 0;   ///< in noise: whether normals follow it, or only their signs
+  float averaged_below = 0.F;    ///< in noise: see NoiseField
 };
 
 struct TileOptions {

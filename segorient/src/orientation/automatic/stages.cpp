@@ -26,8 +26,6 @@ constexpr int kDenoisingNeighbors = 48;
 // Of the residuals of 32 neighbours and of 8: noise of a surface makes them nearly the same, while
 // steps of depth, rings and rough ground hide from the few what they are to the many.
 constexpr float kSeenByFew = 2.F;
-// 45 degrees: normals of layers that are farther off what all layers make were fitted across them.
-constexpr float kAcross = 0.7F;
 
 // Finds the neighbours unless they are known, and those of smoothed positions where the noise asks
 // for that.
