@@ -18,8 +18,9 @@ struct ChunkPacket {
   std::uint32_t tile = 0;
   std::uint32_t first_cell = 0;
   std::uint32_t last_cell = 0;
-  std::vector<StoredPoint> points;  ///< in the order of the chunk
-  PlaceOrder order;                 ///< of their places, which were added to it
+  std::vector<StoredPoint> points;   ///< in the order of the chunk
+  PlaceOrder order;                  ///< of their places, which were added to it
+  std::vector<std::uint8_t> packed;  ///< for who makes files of them
 };
 
 /// A chunk is as many rows of the inputs as memory has room for. Plan gives its points to the tiles
@@ -30,11 +31,22 @@ class ChunkOrder {
   explicit ChunkOrder(const TileTree& tree);
 
   /// Cuts a chunk into packets, ascending by tile, each of some cells that follow one another.
-  /// \param points all of one output
-  void forEachPacket(const std::vector<StoredPoint>& points,
+  /// \param points all of one output \param prepare called for several packets at once, which it
+  /// may change \param visit called for one after the other
+  void forEachPacket(const std::vector<StoredPoint>& points, int threads,
+                     const std::function<void(ChunkPacket&)>& prepare,
                      const std::function<void(ChunkPacket&)>& visit) const;
 
  private:
+  // Of the points by cell.
+  struct Range {
+    std::size_t begin = 0;
+    std::size_t end = 0;
+    std::uint32_t first_cell = 0;
+    std::uint32_t last_cell = 0;
+  };
+  std::vector<Range> cut(const std::vector<std::size_t>& begin) const;
+
   std::vector<std::uint32_t> tile_of_cell_;
 };
 

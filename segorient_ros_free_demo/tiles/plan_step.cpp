@@ -115,24 +115,23 @@ double roundingStep(const TileTree& tree) {
 
 // The second pass: each point to its tile.
 void distribute(const std::string& folder, const StepProgress& progress, const PlanSensors& sensors,
-                Probe& probe, Plan& plan) {
-  PointFiles files(folder, plan.run, plan.tree, {plan.has_viewpoints, plan.keep_orientation});
+                int threads, Probe& probe, Plan& plan) {
+  PointFiles files(folder, plan.run, plan.tree, {plan.has_viewpoints, plan.keep_orientation},
+                   threads);
   Viewpoints viewpoints(sensors);
   plan.step = roundingStep(plan.tree);
   const Trajectory trajectory = trajectoryOf(plan);
+  std::vector<StoredPoint> points;  // of a block
   std::uint64_t row = 0;
   for (std::uint32_t o = 0; o < plan.outputs.size(); ++o) {
     const auto visit = [&](CloudTable& block) {
       viewpoints.begin(block);
-      const auto xyz = block.xyz();
+      storePoints(plan, block, threads, points);
       for (std::size_t i = 0; i < block.size; ++i, ++row) {
-        const Place place = block.triple(xyz, i);
-        if (!isFinite(place)) continue;
-        StoredPoint point;
-        point.place = storedPlace(plan, place);
-        point.cell = plan.tree.cellOf(point.place);
+        StoredPoint& point = points[i];
+        if (point.cell == kNoCell) continue;
         if (plan.has_viewpoints) {
-          point.seen_from = viewpoints.of(block, i, row, place, plan.origin);
+          point.seen_from = viewpoints.of(block, i, row, block.triple(block.xyz(), i), plan.origin);
         }
         if (plan.keep_orientation) {
           point.normal = near(block.triple(block.normals(), i), {0.0, 0.0, 0.0});
@@ -231,7 +230,7 @@ Plan planStep(const TileRequest& request, const std::string& folder, const StepP
   const PlanSensors sensors(plan, sample, image_width, request.threads);
   plan.found_sensors = static_cast<std::uint32_t>(sensors.found());
   plan.has_viewpoints = plan.has_viewpoints || sensors.found() > 0;
-  distribute(folder, progress, sensors, probe, plan);
+  distribute(folder, progress, sensors, request.threads, probe, plan);
   OrientationHints hints = hintsOf(plan, plan.origin);
   hints.viewpoints = probe.viewpoints();
   plan.traits = measureTileTraits(probe.points(), plan.k, hints, request.threads);

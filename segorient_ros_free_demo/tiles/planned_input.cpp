@@ -4,10 +4,12 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstring>
 #include <limits>
 #include <vector>
 
+#include "common/parts.h"
 #include "io/cloud_stream.h"
 #include "io/readers.h"
 #include "support/hint_options.h"
@@ -100,6 +102,25 @@ void forEachBlock(const Plan& plan, const PlanOutput& output, const Trajectory& 
     scans += blocks.scans();
   }
   end();
+}
+
+void storePoints(const Plan& plan, const CloudTable& block, int threads,
+                 std::vector<StoredPoint>& out) {
+  constexpr double kPointTime = 150.0;  // nanoseconds
+  out.assign(block.size, StoredPoint());
+  const auto xyz = block.xyz();
+  const Parts parts(block.size, threads, kPointTime);
+  parts.forEach([&](std::size_t part) {
+    for (std::size_t i = parts.begin(part); i < parts.end(part); ++i) {
+      const std::array<double, 3> place = block.triple(xyz, i);
+      out[i].cell = kNoCell;
+      if (!std::isfinite(place[0]) || !std::isfinite(place[1]) || !std::isfinite(place[2])) {
+        continue;
+      }
+      out[i].place = storedPlace(plan, place);
+      out[i].cell = plan.tree.cellOf(out[i].place);
+    }
+  });
 }
 
 Trajectory trajectoryOf(const Plan& plan) {

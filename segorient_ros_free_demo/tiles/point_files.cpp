@@ -18,8 +18,12 @@ constexpr std::uint64_t kMostTilePoints = 0xffffffffU;  // as rows of 32 bits te
 }  // namespace
 
 PointFiles::PointFiles(std::string folder, std::uint64_t run, const TileTree& tree,
-                       const PointFields& fields)
-    : folder_(std::move(folder)), fields_(fields), order_(tree), files_(tree.tiles()) {
+                       const PointFields& fields, int threads)
+    : folder_(std::move(folder)),
+      fields_(fields),
+      threads_(threads),
+      order_(tree),
+      files_(tree.tiles()) {
   for (std::size_t t = 0; t < files_.size(); ++t) {
     std::remove(aside(t).c_str());
     const TileFileHeader header =
@@ -51,9 +55,11 @@ void PointFiles::append(std::size_t tile, const void* data, std::size_t bytes) {
 
 void PointFiles::endChunk(std::uint32_t output) {
   std::vector<std::uint8_t> bytes;  // of one tile
-  std::vector<std::uint8_t> packed;
   std::uint32_t tile = 0;
-  order_.forEachPacket(chunk_, [&](ChunkPacket& points) {
+  const auto pack = [&](ChunkPacket& points) {
+    packPoints(points.points.data(), points.order, fields_, points.packed);
+  };
+  order_.forEachPacket(chunk_, threads_, pack, [&](ChunkPacket& points) {
     if (points.tile != tile && !bytes.empty()) {
       append(tile, bytes.data(), bytes.size());
       bytes.clear();
@@ -63,7 +69,7 @@ void PointFiles::endChunk(std::uint32_t output) {
     if (file.starts.empty() || file.starts.back().output != output) {
       file.starts.push_back({file.points, output, 0});
     }
-    packPoints(points.points.data(), points.order, fields_, packed);
+    const std::vector<std::uint8_t>& packed = points.packed;
     PointPacket packet;
     packet.first_cell = points.first_cell;
     packet.last_cell = points.last_cell;

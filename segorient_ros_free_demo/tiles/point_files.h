@@ -27,8 +27,8 @@ struct PointPacket {
 /// of it for their halos.
 class PointFiles {
  public:
-  PointFiles(std::string folder, std::uint64_t run, const TileTree& tree,
-             const PointFields& fields);
+  PointFiles(std::string folder, std::uint64_t run, const TileTree& tree, const PointFields& fields,
+             int threads);
   ~PointFiles();  ///< removes what was not committed
   PointFiles(const PointFiles&) = delete;
   PointFiles& operator=(const PointFiles&) = delete;
@@ -53,6 +53,7 @@ class PointFiles {
 
   std::string folder_;
   PointFields fields_;
+  int threads_;
   ChunkOrder order_;
   std::vector<StoredPoint> chunk_;
   std::vector<File> files_;

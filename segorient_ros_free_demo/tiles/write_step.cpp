@@ -24,8 +24,9 @@ constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
 // The results of all tiles for the points of one output, in the order of its rows.
 class Results {
  public:
-  Results(const Plan& plan, const std::string& folder, std::uint32_t output)
+  Results(const Plan& plan, const std::string& folder, std::uint32_t output, int threads)
       : plan_(plan),
+        threads_(threads),
         order_(plan.tree),
         labels_(loadLabels(labelsPath(folder), plan.run, plan.tiles())) {
     for (std::size_t t = 0; t < plan.tiles(); ++t) {
@@ -42,21 +43,16 @@ class Results {
     normals.assign(4 * size, kNaN);
     labels.assign(size, kNoSegment);
     points_.clear();
-    StoredPoint point;
+    std::uint32_t number = 0;
     for (const CloudTable& block : blocks) {
-      const auto xyz = block.xyz();
-      for (std::size_t i = 0; i < block.size; ++i, ++point.number) {
-        const std::array<double, 3> place = block.triple(xyz, i);
-        if (!std::isfinite(place[0]) || !std::isfinite(place[1]) || !std::isfinite(place[2])) {
-          continue;
-        }
-        point.place = storedPlace(plan_, place);
-        point.cell = plan_.tree.cellOf(point.place);
-        points_.push_back(point);
+      storePoints(plan_, block, threads_, block_);
+      for (StoredPoint& point : block_) {
+        point.number = number++;
+        if (point.cell != kNoCell) points_.push_back(point);
       }
     }
-    order_.forEachPacket(points_, [&](ChunkPacket& packet) {
-      packet.order.order(nullptr);
+    const auto sort = [](ChunkPacket& packet) { packet.order.order(nullptr); };
+    order_.forEachPacket(points_, threads_, sort, [&](ChunkPacket& packet) {
       RowReader& rows = *rows_[packet.tile];
       for (std::size_t i = 0; i < packet.points.size() && !rows.done(); ++i, rows.next()) {
         copy(packet.tile, rows.row(), packet.points[packet.order.at(i)].number);
@@ -78,7 +74,9 @@ class Results {
   }
 
   const Plan& plan_;
+  int threads_;
   ChunkOrder order_;
+  std::vector<StoredPoint> block_;
   std::vector<StoredPoint> points_;
   LabelFile labels_;
   std::vector<std::vector<std::int8_t>> signs_;  // of each tile's pieces
@@ -133,7 +131,7 @@ void writeStep(const Plan& plan, const std::string& folder, std::size_t output, 
   }
   // As of a cloud in memory: LAS has room for a camera's colours only in some of its formats.
   const bool colors = fileEnding(to.path) != ".las";
-  Results results(plan, folder, static_cast<std::uint32_t>(output));
+  Results results(plan, folder, static_cast<std::uint32_t>(output), threads);
   std::vector<CloudTable> chunk;
   std::size_t rows = 0;
   std::uint64_t written = 0;

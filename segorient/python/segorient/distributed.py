@@ -17,7 +17,7 @@ import pathlib
 import shutil
 import subprocess
 import time
-from typing import Any, List, Optional, Sequence, Union
+from typing import Any, Dict, List, Optional, Sequence, Union
 
 try:
     import distributed as _distributed
@@ -55,6 +55,14 @@ def _absolute(path: _Path) -> str:
     return str(pathlib.Path(path).absolute())
 
 
+def _slots(client: Any) -> int:
+    """How many tasks one machine can run at once, of those where that is least."""
+    slots: Dict[str, int] = {}
+    for worker in client.scheduler_info()["workers"].values():
+        slots[worker["host"]] = slots.get(worker["host"], 0) + worker["nthreads"]
+    return min(slots.values(), default=1)
+
+
 def _counts(text: str) -> List[int]:
     return [int(line.split()[1]) for line in text.splitlines()]
 
@@ -83,7 +91,8 @@ def orient(
             A run that was interrupted goes on there if it is called again.
         options: more words for ``segorient tiles plan``, as in ["--up"], or
             ["--trajectory", "flight.txt"] with a name that all workers know.
-        threads: threads of one task; as many as a worker's ``nthreads`` leaves it.
+        threads: threads of one task; as many as a worker's ``nthreads`` leaves it. Steps that all
+            others wait for take what all workers of one machine have.
         program: the program's name on the workers; by default where it is here, or "segorient".
         retries: how often a task that failed is tried again.
 
@@ -96,6 +105,7 @@ def orient(
     folder = _absolute(work if work is not None else str(output).rstrip("/") + ".work")
     tiles = [name, "tiles"]
     how = ["--threads", str(threads)]
+    alone = ["--threads", str(threads * _slots(client))]
 
     def run(task: List[List[str]]) -> List[str]:
         # Not pure: a task that is repeated must run again, whatever its words.
@@ -107,10 +117,11 @@ def orient(
             raise
 
     plan = [*tiles, "plan", folder, *map(_absolute, inputs), _absolute(output)]
-    count, outputs = _counts(run([[*plan, "--memory", memory, *how, *options]])[0])
+    count, outputs = _counts(run([[*plan, "--memory", memory, *alone, *options]])[0])
     every_tile = [[*tiles, "tile", folder, str(n), *how] for n in range(count)]
     run(every_tile)
-    run([[*tiles, "join", folder, *how]])
+    run([[*tiles, "join", folder, *alone]])
     run(every_tile)  # with the signs of the whole, where a tile's own were others
-    run([[*tiles, "write", folder, str(n)] for n in range(outputs)])
+    last = alone if outputs == 1 else how
+    run([[*tiles, "write", folder, str(n), *last] for n in range(outputs)])
     run([[*tiles, "clean", folder]])
