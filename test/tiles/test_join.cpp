@@ -2,6 +2,10 @@
 // Copyright (c) 2026, the segorient authors
 #include <gtest/gtest.h>
 
+#include <utility>
+#include <vector>
+
+#include "search/prepared_cloud.h"
 #include "tiles/join_tiles.h"
 #include "tiles/piece_graph.h"
 
@@ -94,6 +98,27 @@ TEST(Join, SegmentsThatAreNextToEachOtherStayTwo) {
   EXPECT_NE(labels[0], labels[1]);
   EXPECT_EQ(detail::uniteLabels({10, 20, 10, 10}, ties, {}, count)[0], 0U);
   EXPECT_EQ(count, 1U);
+}
+
+// A square in quarters: sides are borders, two corners that meet are none.
+TEST(Join, SegmentsThatMeetInACornerAreNotNextToEachOther) {
+  constexpr std::size_t kSide = 20;
+  std::vector<float> xyz;
+  for (std::size_t i = 0; i < kSide * kSide; ++i) {
+    xyz.insert(xyz.end(), {static_cast<float>(i % kSide), static_cast<float>(i / kSide), 0.F});
+  }
+  PreparedCloud cloud({xyz.data(), 3, kSide * kSide}, nullptr, 1);
+  cloud.findNeighbors(8, false);
+  std::vector<std::int32_t> labels(cloud.size());
+  for (std::size_t i = 0; i < labels.size(); ++i) {
+    const std::size_t row = cloud.rowOf(i);
+    labels[i] = static_cast<std::int32_t>(row % kSide / 10 + 2 * (row / kSide / 10));
+  }
+  const std::vector<LabelBorder> borders = detail::labelBorders(cloud.neighborhoods(), labels);
+  std::vector<std::pair<std::int32_t, std::int32_t>> found;
+  for (const LabelBorder& b : borders) found.emplace_back(b.a, b.b);
+  const std::vector<std::pair<std::int32_t, std::int32_t>> sides{{0, 1}, {0, 2}, {1, 3}, {2, 3}};
+  EXPECT_EQ(found, sides);
 }
 
 TEST(Join, NothingAndTilesWithoutPiecesAreJoined) {

@@ -3,6 +3,7 @@
 #include "tiles/piece_graph.h"
 
 #include <algorithm>
+#include <map>
 #include <utility>
 
 #include "common/disjoint_sets.h"
@@ -57,6 +58,24 @@ std::vector<BorderVote> gatherVotes(std::vector<TileVote> votes,
     static_cast<Evidence&>(v) = sheet;
     if (v.wall_counts) v.add(v.wall);
     out.push_back(v);
+  }
+  return out;
+}
+
+std::vector<LabelBorder> labelBorders(const Neighborhoods& neighborhoods,
+                                      const std::vector<std::int32_t>& labels) {
+  constexpr int kNearest = 8;
+  constexpr int kLeastPairs = 16;
+  std::map<std::pair<std::int32_t, std::int32_t>, int> found;
+  for (std::size_t i = 0; i < labels.size(); ++i) {
+    for (int j = 1; j < std::min(neighborhoods.count(i), kNearest + 1); ++j) {
+      const auto ends = std::minmax(labels[i], labels[at(neighborhoods.indices(i)[j])]);
+      if (ends.first >= 0 && ends.first != ends.second) ++found[ends];
+    }
+  }
+  std::vector<LabelBorder> out;
+  for (const auto& [ends, pairs] : found) {
+    if (pairs >= kLeastPairs) out.push_back({ends.first, ends.second});
   }
   return out;
 }

@@ -2,6 +2,8 @@
 // Copyright (c) 2026, the segorient authors
 #pragma once
 
+#include <segorient/common/neighborhoods.h>
+
 #include <cstddef>
 #include <cstdint>
 #include <vector>
@@ -19,6 +21,11 @@ namespace segorient::detail {
 /// these, and no tie may be the last word.
 SEGORIENT_TILES_EXPORT std::vector<BorderVote> gatherVotes(std::vector<TileVote> votes,
                                                            const std::vector<PieceTie>& ties);
+
+/// Labels that are next to each other along a border; where corners touch, some pairs of neighbours
+/// mean little.
+SEGORIENT_TILES_EXPORT std::vector<LabelBorder> labelBorders(
+    const Neighborhoods& neighborhoods, const std::vector<std::int32_t>& labels);
 
 /// Unites labels that most of what each has in the other's tile ties together, those that have most
 /// points in common first; numbered by descending size, then by the first that had it. Where tiles

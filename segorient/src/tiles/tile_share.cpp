@@ -5,13 +5,12 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <set>
-#include <utility>
 
 #include "orientation/automatic/coarse_levels.h"
 #include "orientation/automatic/stages.h"
 #include "search/prepared_cloud.h"
 #include "tiles/cloud_field.h"
+#include "tiles/piece_graph.h"
 #include "tiles/tile_scale.h"
 
 namespace segorient {
@@ -92,7 +91,6 @@ class Tile {
   void followPieces(const std::vector<float>& normals);
   void undoSigns();
   void scatter();
-  void listBorders();
   void listTies();
   std::int32_t followed(const float* normal, std::size_t i) const;
 
@@ -248,21 +246,7 @@ void Tile::scatter() {
       ++out_.segment_sizes[at(out_.labels[row])];
     }
   }
-  listBorders();
-}
-
-void Tile::listBorders() {
-  constexpr int kNearest = 8;
-  const Neighborhoods& nb = cloud_.neighborhoods();
-  const std::vector<std::int32_t>& labels = stages_.segmentation.labels;
-  std::set<std::pair<std::int32_t, std::int32_t>> found;
-  for (std::size_t i = 0; i < cloud_.size(); ++i) {
-    for (int j = 1; j < std::min(nb.count(i), kNearest + 1); ++j) {
-      const auto ends = std::minmax(labels[i], labels[static_cast<std::size_t>(nb.indices(i)[j])]);
-      if (ends.first >= 0 && ends.first != ends.second) found.emplace(ends.first, ends.second);
-    }
-  }
-  for (const auto& [a, b] : found) out_.segment_borders.push_back({a, b});
+  out_.segment_borders = detail::labelBorders(cloud_.neighborhoods(), stages_.segmentation.labels);
 }
 
 void Tile::listTies() {
