@@ -27,9 +27,10 @@ std::vector<float> ringPlane(unsigned seed) {
   return xyz;
 }
 
-double shareOfPlane(const std::vector<float>& xyz, bool scan_scales) {
+double shareOfPlane(const std::vector<float>& xyz, bool scan_lines) {
   SheetNormalOptions options;
-  options.scan_scales = scan_scales;
+  options.scan_scales = false;
+  options.scan_lines = scan_lines;
   const SheetNormals sheets = estimateSheetNormals(viewOf(xyz), neighborsOf(xyz), options);
   std::vector<float> truth;
   const float length = std::sqrt(1.F + 0.3F * 0.3F + 0.5F * 0.5F);
@@ -54,6 +55,13 @@ TEST(ScanScale, EvenCloudsKeepTheirNormals) {
     EXPECT_EQ(estimateSheetNormals(viewOf(cloud.xyz), table).normals,
               estimateSheetNormals(viewOf(cloud.xyz), table, with).normals);
   }
+}
+
+TEST(ScanScale, LinesOfAScannerShowButNoChance) {
+  const std::vector<float> rings = ringPlane(82);
+  EXPECT_TRUE(detail::showsScanLines(viewOf(rings), neighborsOf(rings), 0));
+  const LabelledCloud even = sample("bracket", bracket(), 8000, 83, 0.0);
+  EXPECT_FALSE(detail::showsScanLines(viewOf(even.xyz), neighborsOf(even.xyz), 0));
 }
 
 TEST(ScanScale, FewPointsAndLines) {

@@ -170,6 +170,26 @@ bool needsScanScales(const PointView& points, const Neighborhoods& nb, int small
   return static_cast<double>(asking) > kManyAsk * static_cast<double>(n);
 }
 
+bool showsScanLines(const PointView& points, const Neighborhoods& nb, int threads) {
+  // A share of .01 is known to .0016 then.
+  constexpr std::size_t kSamples = 4096;
+  constexpr int kNearest = 18;
+  // On surfaces that are sampled at random, evenly or by stripes, it is 0 to .003.
+  constexpr double kMoreThanChance = 0.01;
+  if (nb.k() <= kNearest) return false;
+  const Scales<1> scale{{kNearest}};
+  const std::size_t step = std::max<std::size_t>(1, points.size / kSamples);
+  const std::size_t n = (points.size + step - 1) / step;
+  std::size_t on_lines = 0;
+#pragma omp parallel for num_threads(resolveThreads(threads, n, kFitTime)) schedule(static) \
+    reduction(+ : on_lines)
+  for (std::size_t s = 0; s < n; ++s) {
+    const float h = meanDistance(points, nb, s * step, 6);
+    on_lines += std::isnan(scale.fit(points, nb, s * step, h).noise2[0]) ? 1 : 0;
+  }
+  return static_cast<double>(on_lines) > kMoreThanChance * static_cast<double>(n);
+}
+
 std::vector<ScanPlane> fitScanPlanes(MoreNeighbors& more, const std::vector<float>& spacing,
                                      int smallest, int threads) {
   const PointView& points = more.points();

@@ -23,6 +23,11 @@ constexpr float kMostNormalError = 0.061F;
 bool needsScanScales(const PointView& points, const Neighborhoods& neighborhoods, int smallest,
                      int threads);
 
+/// Whether a cloud shows that a scanner saw it by lines: of more points than chance makes so, the
+/// nearest 18 are on one line.
+/// \param neighborhoods 18 of each point at least
+bool showsScanLines(const PointView& points, const Neighborhoods& neighborhoods, int threads);
+
 struct ScanPlane {
   Plane plane;        ///< offsets in spacings of the point
   int scale = 0;      ///< neighbours; 0 where `smallest` will do and there is no plane

@@ -231,9 +231,12 @@ SheetNormals estimateSheetNormals(const PointView& points, const Neighborhoods& 
   for (std::size_t i = 0; i < n; ++i) out.spacing[i] = detail::meanDistance(points, nb, i, 6);
   std::vector<detail::ScanPlane> planes;
   out.traits.scan_scales =
-      options.known ? options.known->scan_scales
-                    : options.scan_scales && !noise.thin &&
-                          detail::needsScanScales(points, nb, out.scale, options.threads);
+      options.known
+          ? options.known->scan_scales
+          : !noise.thin &&
+                (options.scan_scales ||
+                 (options.scan_lines && detail::showsScanLines(points, nb, options.threads))) &&
+                detail::needsScanScales(points, nb, out.scale, options.threads);
   if (out.traits.scan_scales) {
     detail::MoreNeighbors own(points, options.threads);
     planes = detail::fitScanPlanes(more != nullptr ? *more : own, out.spacing, out.scale,

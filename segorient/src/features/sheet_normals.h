@@ -46,6 +46,8 @@ struct SheetNormalOptions {
   /// For what sensors saw: where noise and rings ask for larger neighbourhoods than the cloud's
   /// median does, up to 60. Not for solids, whose thin walls it takes for noise.
   bool scan_scales = false;
+  /// The same where the points lie on lines, as what scanners see does: see showsScanLines().
+  bool scan_lines = true;
   /// Of the cloud that the points are part of; none = measured, and scan_scales as it says.
   std::optional<SheetTraits> known;
 };
@@ -84,6 +86,7 @@ class MoreNeighbors;
 ///
 /// With scan_scales, points that ask for clearly larger neighbourhoods than that, as in scans near
 /// their sensor and between rings, have planes of up to 60 neighbours, if there are many of them.
+/// So they do with scan_lines in clouds that show scan lines.
 ///
 /// \param points distinct finite points
 /// \param neighborhoods their neighbours: kSheetNeighbors beside the point itself, or as many as

@@ -159,6 +159,7 @@ Bounds boundsOf(const PointView& points, int threads) {
 CoarseLevel makeLevel(const PointView& points, float radius, int threads, const Bounds* frame) {
   CoarseLevel level;
   const BlueNoise even = thinOut(points, radius);
+  if (even.kept.empty()) return level;
   std::vector<float> places(4 * even.kept.size(), 0.F);
   for (std::size_t i = 0; i < points.size; ++i) {
     float* place = &places[std::size_t{4} * even.cell_of[i]];
