@@ -234,6 +234,7 @@ py::dict reportOf(const OrientedCloud& cloud) {
   out["components"] = listOf(report.components);
   out["clusters"] = listOf(report.clusters);
   out["scales"] = listOf(report.scales);
+  out["scale_components"] = listOf(detail::componentsOf(report.scales));
   out["contradictions"] = listOf(report.contradictions);
   out["known_sensors"] = listOf(report.known_sensors);
   out["sensors"] = listOf(report.sensors.sensors);

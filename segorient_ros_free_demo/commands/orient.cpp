@@ -119,6 +119,7 @@ std::string reportText(const OrientedCloud& cloud, const StageMemory& memory,
   addList(json, "clusters", report.clusters);
   addList(json, "contradictions", report.contradictions, origin);
   addList(json, "scales", report.scales);
+  addList(json, "scale_components", detail::componentsOf(report.scales));
   addList(json, "known_sensors", report.known_sensors, origin);
   addList(json, "sensors", report.sensors.sensors, origin);
   addSegments(cloud, json);

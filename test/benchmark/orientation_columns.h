@@ -86,8 +86,6 @@ inline std::vector<Column> withoutSteps() {
               [](PipelineOptions& o) { o.orientation.automatic.turn_loose_parts = false; }),
       without("winding number",
               [](PipelineOptions& o) { o.orientation.automatic.wind_components = false; }),
-      without("viewpoint",
-              [](PipelineOptions& o) { o.orientation.automatic.infer_viewpoint = false; }),
       without("coarse levels",
               [](PipelineOptions& o) { o.orientation.automatic.coarse_levels = false; }),
       without("winding normals",

@@ -306,8 +306,7 @@ TEST(Auto, FacesOfANarrowWedgeFaceApartInNoise) {
 TEST(Auto, FilterIsWorthItsTime) {
   const LabelledCloud cloud = sample("cube", cube(), 6000, 50, 0.7);
   PipelineOptions filtered;
-  // Which mend the same points by other means.
-  filtered.orientation.automatic.infer_viewpoint = false;
+  // Which mends the same points by other means.
   filtered.orientation.automatic.winding_normals = false;
   PipelineOptions unfiltered = filtered;
   unfiltered.orientation.automatic.filter_rounds = 0;

@@ -165,6 +165,47 @@ TEST(CoarseLevels, ReportTheEnergyOfEachScale) {
   EXPECT_TRUE(orient(twoScans(6000, 0.0, 1).xyz).report.scales.empty());
 }
 
+// Terms of E by component and scale: two scans of a sphere contradict their borders and the winding
+// number at their own scale, and hardly at the one that is taken.
+TEST(CoarseLevels, ReportTheTermsOfEachComponent) {
+  const Cloud cloud = twoScans(6000, 1.0, 1);
+  OrientationHints hints;
+  for (std::size_t i = 0; i < cloud.normals.size(); ++i) {
+    if (i % 4 != 3) hints.normals.push_back(cloud.normals[i]);
+  }
+  const PipelineReport report = orient(cloud.xyz, true, 1, hints).report;
+  ASSERT_GE(report.scales.size(), 2U);
+  for (const ScaleEnergy& s : report.scales) {
+    ASSERT_FALSE(s.components.empty());
+    std::size_t points = 0;
+    for (const ComponentEnergy& c : s.components) points += c.points;
+    EXPECT_LE(points, cloud.size());
+    EXPECT_GE(points, cloud.size() * 99 / 100);
+    if (!s.taken) continue;
+    const ComponentEnergy& own = report.scales[0].components[0];
+    EXPECT_LT(s.components[0].winding, 0.03F);
+    EXPECT_LT(s.components[0].winding, own.winding);
+    EXPECT_LT(s.components[0].borders, own.borders);
+    EXPECT_LT(s.components[0].known, 0.01F);
+    EXPECT_EQ(s.components[0].winding, report.components[0].residual);
+    EXPECT_EQ(s.components[0].borders, report.components[0].contradiction);
+  }
+}
+
+// Half of what is known contradicts the other half: so it does the result.
+TEST(CoarseLevels, SayHowMuchOfWhatIsKnownIsContradicted) {
+  const Cloud cloud = twoScans(3000, 0.0, 1);
+  OrientationHints hints;
+  for (std::size_t i = 0; i < cloud.size(); ++i) {
+    const float sign = i % 4 == 0 ? -1.F : 1.F;
+    for (std::size_t a = 0; a < 3; ++a) hints.normals.push_back(sign * cloud.normals[4 * i + a]);
+  }
+  const PipelineReport report = orient(cloud.xyz, true, 1, hints).report;
+  EXPECT_NEAR(report.components[0].against_known, 0.25F, 0.02F);
+  EXPECT_LT(report.components[0].contradiction, 0.01F);
+  EXPECT_LT(report.components[0].residual, 0.03F);
+}
+
 // What is known of single points holds at every scale.
 TEST(CoarseLevels, FollowAViewpoint) {
   const Cloud cloud = twoScans(6000, 1.0, 1);

@@ -337,6 +337,24 @@ TEST(NoiseField, SidesOfAThinWallInNoiseAreNotSure) {
   EXPECT_EQ(countSure(cloud), 0);
 }
 
+// A hollow ball whose wall is so thin that both sides come out as one sheet: what is left of points
+// on either side of its middle is flatter than noise. A ball with as much noise stays sure.
+TEST(NoiseField, TwoSidesThatCameOutAsOneAreNotSure) {
+  std::mt19937 rng(9);
+  std::normal_distribution<double> normal;
+  const double spacing = std::sqrt(4 * M_PI / 10000);
+  Noisy hollow;
+  Noisy ball;
+  for (int i = 0; i < 10000; ++i) {
+    const Vector d = draw(rng, normal).normalized();
+    const double side = i % 2 == 0 ? 1.0 : -1.0;
+    add(d + spacing * (0.3 * side * d + 0.18 * draw(rng, normal)), side * d, hollow);
+    add(d + spacing * 0.35 * draw(rng, normal), d, ball);
+  }
+  EXPECT_EQ(countSure(hollow), 0);
+  EXPECT_GT(countSure(ball), 9000);
+}
+
 TEST(NoiseField, SolidsInNoiseStaySure) {
   EXPECT_GT(countSure(winged(8000, 0.3, 8)), 4000);
 }

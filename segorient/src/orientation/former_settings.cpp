@@ -40,7 +40,6 @@ PipelineOptions withFormerSettings(const PipelineOptions& options) {
   take(options.automatic.flip_clusters, now.flip_clusters);
   take(options.automatic.wind_components, now.wind_components);
   take(options.automatic.turn_loose_parts, now.turn_loose_parts);
-  take(options.automatic.infer_viewpoint, now.infer_viewpoint);
   take(options.denoise, now.denoise);
   take(options.filter_rounds, now.filter_rounds);
   take(options.filter_wedges, now.filter_wedges);

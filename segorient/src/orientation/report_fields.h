@@ -10,6 +10,7 @@
 
 #include <array>
 #include <cstddef>
+#include <vector>
 
 namespace segorient::detail {
 
@@ -60,6 +61,8 @@ void fieldsOf(const ComponentOrientationResult& c, const Origin&, Field&& field)
   field("votes", c.votes);
   field("confidence", c.confidence);
   field("contradiction", c.contradiction);
+  field("winding", c.residual);
+  field("against_known", c.against_known);
 }
 
 template <typename Field>
@@ -77,6 +80,34 @@ void fieldsOf(const ScaleEnergy& s, const Origin&, Field&& field) {
   field("backs", s.backs);
   field("energy", s.total);
   field("taken", s.taken);
+}
+
+/// A component of a scale's solution.
+struct ReportedScaleComponent {
+  const ScaleEnergy& scale;
+  std::size_t number;
+  const ComponentEnergy& energy;
+};
+
+inline std::vector<ReportedScaleComponent> componentsOf(const std::vector<ScaleEnergy>& scales) {
+  std::vector<ReportedScaleComponent> out;
+  for (const ScaleEnergy& scale : scales) {
+    for (std::size_t c = 0; c < scale.components.size(); ++c) {
+      out.push_back({scale, c, scale.components[c]});
+    }
+  }
+  return out;
+}
+
+template <typename Field>
+void fieldsOf(const ReportedScaleComponent& c, const Origin&, Field&& field) {
+  field("radius_in_spacings", c.scale.radius);
+  field("component", c.number);
+  field("points", c.energy.points);
+  field("borders", c.energy.borders);
+  field("winding", c.energy.winding);
+  field("known", c.energy.known);
+  field("taken", c.scale.taken);
 }
 
 template <typename Field>

@@ -48,7 +48,6 @@ std::vector<std::string> changed(const AutomaticOptions& s) {
   out.add("flip_clusters", s.flip_clusters, standard.flip_clusters);
   out.add("wind_components", s.wind_components, standard.wind_components);
   out.add("turn_loose_parts", s.turn_loose_parts, standard.turn_loose_parts);
-  out.add("infer_viewpoint", s.infer_viewpoint, standard.infer_viewpoint);
   out.add("coarse_levels", s.coarse_levels, standard.coarse_levels);
   out.add("find_sensors", s.find_sensors, standard.find_sensors);
   out.add("filter_rounds", s.filter_rounds, standard.filter_rounds);

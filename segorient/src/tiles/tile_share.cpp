@@ -114,8 +114,6 @@ PipelineOptions Tile::pipelineOptions() const {
   pipeline.threads = options_.threads;
   AutomaticOptions& automatic = pipeline.orientation.automatic;
   automatic.find_sensors = false;
-  // All that is seen of a tile alone may well be what one place could see.
-  automatic.infer_viewpoint = std::all_of(roles_.begin(), roles_.end(), isOwn);
   const auto set = [](float value, float& a, float& b) {
     if (value > 0.F) a = b = value;
   };

@@ -66,7 +66,6 @@ struct AutomaticOptions {
   bool wind_components = true;   ///< in and out by the winding number; otherwise by convention
   bool turn_loose_parts = true;  ///< what borders hardly tell, the winding number does; needs
                                  ///< wind_components
-  bool infer_viewpoint = true;   ///< a scan from one place: what disagrees with it is turned over
   /// Where points contradict each other, as in scans that do not quite fit, even subsets are
   /// oriented as well, and their signs taken where they explain the cloud better. Not where points
   /// have sensors of their own, which decide.

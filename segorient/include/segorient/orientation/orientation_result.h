@@ -54,6 +54,8 @@ struct ComponentOrientationResult {
   /// How far the winding number of the cloud is from 1/2 on it, mean square: near 0 for a clean
   /// closed surface, below 0.1 for a noisy one, 1/4 for a sheet. 1 where nobody asked.
   float residual = 1.F;
+  /// Share of what is known of single points (seeds, normals) that the result contradicts; AUTO.
+  float against_known = 0.F;
   std::size_t points = 0;
 };
 
@@ -65,6 +67,14 @@ struct Contradiction {
   std::array<float, 3> where{0.F, 0.F, 0.F};  ///< a point of the border
 };
 
+/// What speaks against one component's signs at one scale, see ComponentOrientationResult.
+struct ComponentEnergy {
+  std::size_t points = 0;
+  float borders = 0.F;  ///< contradiction
+  float winding = 1.F;  ///< residual
+  float known = 0.F;    ///< against_known
+};
+
 /// What speaks against the signs that a scale found, as shares of the surface: see the part
 /// "Scans that do not quite fit" of the page about orientation.
 struct ScaleEnergy {
@@ -74,6 +84,7 @@ struct ScaleEnergy {
   float backs = 0.F;    ///< pairs with their backs to each other, as on thin walls; costs nothing
   float total = 0.F;    ///< outside + 3 facing: the least is best
   bool taken = false;
+  std::vector<ComponentEnergy> components;  ///< by descending number of the scale's points
 };
 
 /// Segments that certain borders hold together: their relative orientation was not in doubt, but

@@ -37,7 +37,7 @@ struct FormerAutomaticOptions {
   std::optional<bool> flip_clusters;
   std::optional<bool> wind_components;
   std::optional<bool> turn_loose_parts;
-  std::optional<bool> infer_viewpoint;
+  std::optional<bool> infer_viewpoint;  ///< has no effect: nothing is inferred any more
 };
 
 /// Settings of orientCloud(). The defaults need no tuning.

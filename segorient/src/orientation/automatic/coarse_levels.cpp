@@ -84,7 +84,7 @@ class Choice {
         judge_(points, neighborhoods, threads),
         own_(judge_.judge(fine.normals)),
         least_(kClearlyLess * own_.total()) {
-    note(0.F, own_);
+    note(0.F, own_, fine.orientation.result.components);
   }
 
   // \param f radius in mean distances to the six nearest
@@ -97,7 +97,7 @@ class Choice {
     const SheetTraits sheets = level.found.sheets;
     Handed coarse = handDown(points_, level, radius, threads_, fine_);
     const SignEnergy energy = judge_.judge(coarse.found.normals);
-    note(f, energy);
+    note(f, energy, coarse.found.orientation.result.components);
     if (energy.total() >= least_) return;
     has_less_ = true;
     const bool merges = energy.pairs.backs < 0.5F * own_.pairs.backs;
@@ -126,9 +126,13 @@ class Choice {
   }
 
  private:
-  void note(float f, const SignEnergy& energy) {
+  void note(float f, const SignEnergy& energy,
+            const std::vector<ComponentOrientationResult>& components) {
     tried_.push_back(
-        {f, energy.outside, energy.pairs.facing, energy.pairs.backs, energy.total(), false});
+        {f, energy.outside, energy.pairs.facing, energy.pairs.backs, energy.total(), false, {}});
+    for (const ComponentOrientationResult& c : components) {
+      tried_.back().components.push_back({c.points, c.contradiction, c.residual, c.against_known});
+    }
   }
 
   const PointView& points_;

@@ -84,7 +84,6 @@ void followHints(SheetSigns& sheets) {
   const KnownSensors& known_sensors = sheets.sensors;
   const bool hides = known_sensors.doubtful && known_sensors.scans[0].hidden > kFewHidden;
   const float residual = hides ? kOpenResidual : kClosedResidual;
-  sheets.hinted.assign(sheets.clusters.size(), false);
   std::vector<Ballot> seen(sheets.clusters.size());
   std::vector<Ballot> known(sheets.clusters.size());
   for (std::size_t c = 0; c < sheets.clusters.size(); ++c) {
@@ -92,7 +91,6 @@ void followHints(SheetSigns& sheets) {
     const HintVotes& v = by_cluster[c];
     if (v.seeds.total > 0.F || v.directions.total > 0.F) {
       known[c] = v.seeds.total > 0.F ? v.seeds : v.directions;
-      sheets.hinted[c] = true;
     } else if (!sheets.isClosed(at(component_of[c]), residual)) {
       seen[c] = v.view;
     }

@@ -27,11 +27,7 @@ AutoOrientation orientSheets(const PointView& points, const Neighborhoods& neigh
                             options, hints, threads);
   detail::turnComponentsOut(sheets);
   detail::followHints(sheets);
-  if (!sheets.sensors.none()) {
-    detail::followSensors(sheets);
-  } else if (options.infer_viewpoint) {
-    detail::followViewpoint(sheets);
-  }
+  if (!sheets.sensors.none()) detail::followSensors(sheets);
   detail::judge(sheets);
   detail::believeSensors(sheets);
   return std::move(sheets.found);

@@ -25,7 +25,6 @@ struct AutoOrientation {
   std::vector<std::int32_t> cluster_of;            ///< per segment, into `clusters`
   std::vector<ClusterOrientationResult> clusters;  ///< by descending number of points
   std::vector<Contradiction> contradictions;       ///< by descending weight
-  float viewpoint_agreement = 0.F;                 ///< see ViewpointFit
   bool place_idle = false;                         ///< the one place for all points decided nothing
   std::vector<KnownSensor> sensors;                ///< positions in the points' unit
   /// 3 floats a point: unit vector to the sensor that saw it, 0 where none is known or believed;

@@ -10,6 +10,30 @@
 namespace segorient::detail {
 namespace {
 
+// What borders, and what is known of single points, say against each component.
+void addTerms(SheetSigns& sheets) {
+  std::vector<ComponentOrientationResult>& components = sheets.found.result.components;
+  std::vector<Ballot> borders(components.size());
+  std::vector<Ballot> known(components.size());
+  for (const BorderVote& v : sheets.votes) {
+    const std::size_t c = at(sheets.component_of[at(v.a)]);
+    if (c != at(sheets.component_of[at(v.b)])) continue;
+    borders[c].add({v.weight, v.absolute}, sheets.signs[at(v.a)] * sheets.signs[at(v.b)]);
+  }
+  for (std::size_t s = 0; s < sheets.signs.size(); ++s) {
+    const std::size_t c = at(sheets.component_of[s]);
+    known[c].add(sheets.hint_votes[s].seeds, sheets.signs[s]);
+    known[c].add(sheets.hint_votes[s].directions, sheets.signs[s]);
+  }
+  const auto against = [](const Ballot& b) {
+    return b.total > 0.F ? 0.5F - 0.5F * b.share() : 0.F;
+  };
+  for (std::size_t c = 0; c < components.size(); ++c) {
+    components[c].contradiction = against(borders[c]);
+    components[c].against_known = against(known[c]);
+  }
+}
+
 void findContradictions(SheetSigns& sheets) {
   // Unanimous borders about as long as the object is wide: noise does not produce those.
   const auto long_enough = static_cast<std::uint32_t>(
@@ -79,6 +103,7 @@ void judge(SheetSigns& sheets) {
     r.confidence = std::clamp(known, 0.F, 1.F);
     r.hard = known <= 0.F;
   }
+  addTerms(sheets);
   findContradictions(sheets);
   listClusters(sheets);
   result.point_signs.assign(sheets.points.size, 0);

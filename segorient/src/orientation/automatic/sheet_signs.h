@@ -83,7 +83,6 @@ struct SheetSigns {
   std::vector<ComponentWinding> windings;  ///< of each component
   /// Components that are ground, so that nothing closes in them; none before turnComponentsOut().
   std::vector<bool> ground;
-  std::vector<bool> hinted;  ///< clusters with points that hints say something about
   AutoOrientation found;
 
  private:

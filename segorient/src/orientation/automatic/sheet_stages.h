@@ -19,11 +19,6 @@ void followHints(SheetSigns& sheets);
 /// around them as borders say.
 void followSensors(SheetSigns& sheets);
 
-/// If all that the largest cluster knows was seen from one place, so was the rest: other clusters
-/// that turn their backs to it are turned over where their borders hardly tell. Closed surfaces are
-/// never seen from one place, and have the winding number.
-void followViewpoint(SheetSigns& sheets);
-
 /// Signs and confidences of segments, clusters and points, and the borders that contradict them. A
 /// segment's confidence: how far its borders agree with the signs that were found.
 void judge(SheetSigns& sheets);
