@@ -47,6 +47,7 @@ struct Room {
 
 class Scan {
  public:
+  explicit Scan(const Room& room = {}) : room_(room) {}
   void add(const Vector& o, const Vector& d) {
     const double t = room_.firstHit(o, d);
     for (std::size_t a = 0; a < 3; ++a) rows_.push_back(static_cast<float>(o[a] + t * d[a]));
@@ -67,8 +68,8 @@ class Scan {
 };
 
 // A scanner on a tripod: equal steps of azimuth and elevation.
-inline Scan scanFrom(const Vector& station, double step_degrees) {
-  Scan scan;
+inline Scan scanFrom(const Vector& station, double step_degrees, const Room& room = {}) {
+  Scan scan(room);
   const double step = step_degrees * kPi / 180.0;
   for (double e = -1.0; e < 1.5; e += step) {
     for (double a = 0.1 * step; a < 2.0 * kPi; a += step) {
@@ -82,8 +83,8 @@ constexpr std::size_t kWidth = 120;
 constexpr std::size_t kHeight = 90;
 
 // A camera that looks along `forward` (level) from `eye`; every 50th pixel is missing.
-inline Scan viewFrom(const Vector& eye, double heading) {
-  Scan scan;
+inline Scan viewFrom(const Vector& eye, double heading, const Room& room = {}) {
+  Scan scan(room);
   const Vector forward{std::cos(heading), std::sin(heading), 0.0};
   const Vector right{std::sin(heading), -std::cos(heading), 0.0};
   for (std::size_t i = 0; i < kWidth * kHeight; ++i) {

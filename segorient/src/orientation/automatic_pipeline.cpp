@@ -14,6 +14,7 @@
 #include "orientation/sensors/hiding_place.h"
 #include "orientation/sensors/point_hints.h"
 #include "orientation/sensors/sensor_hints.h"
+#include "orientation/sensors/shadows.h"
 
 namespace segorient::detail {
 namespace {
@@ -61,8 +62,8 @@ KnownSensor refusedPlace(const std::array<float, 3>& place, const PreparedCloud&
 }
 
 // What the caller knows, and where nothing is known of sensors, what can be found. One place for
-// all points may be a guess of whoever gives it: sensors that densities tell for sure are followed,
-// unless they are in that place, too.
+// all points may be a guess of whoever gives it: unless shadows confirm it, sensors that densities
+// tell for sure are followed, if they are not in that place, too.
 // \param hiding the place, where it is only to be compared with what is found without it
 PointHints findHints(const PointView& points, const PipelineOptions& options, PreparedCloud& cloud,
                      PipelineReport& report, std::optional<HidingPlace>& hiding) {
@@ -73,21 +74,37 @@ PointHints findHints(const PointView& points, const PipelineOptions& options, Pr
     return resolveHints(given, cloud);
   }
   const bool is_place = place && isFinite(place->data());
+  Shadows shadows;
+  if (is_place && !isImage(given, points.size)) {
+    shadows = findShadows(cloud.points(), inUnitOf(cloud, *place), options.threads);
+  }
+  if (shadows.confirm()) {
+    PointHints known = resolveHints(given, cloud);
+    known.shadows = shadows;
+    return known;
+  }
   if (is_place) found.suggested.push_back(*place);
   SensorReport sensors = addFoundSensors(points, cloud, options.threads, found);
   if (is_place && !contradictsPlace(points, sensors, *place)) {
     PointHints known = resolveHints(given, cloud);
+    known.shadows = shadows;
     known.place_found = sensors.sure() && !sensors.sensors[0].suggested;
     const bool is_fact = known.place_found || !given.viewpoints.empty();
-    if (is_fact || given.surface == SurfaceKind::OPEN) return known;
-    hiding = findHidingPlace(cloud.points(), inUnitOf(cloud, *place), options.threads);
-    if (!hiding) return known;
-    return findHints(points, asIfUnseen(options), cloud, report, hiding);
+    if (is_fact || given.surface == SurfaceKind::OPEN || !shadows.deny()) return known;
+    hiding = lookFrom(cloud.points(), inUnitOf(cloud, *place), options.threads);
+    // What was found in that very place is no more than compared, either.
+    if (sensors.sure()) return findHints(points, asIfUnseen(options), cloud, report, hiding);
+  } else if (place) {
+    report.known_sensors.push_back(refusedPlace(*place, cloud));
   }
-  if (place) report.known_sensors.push_back(refusedPlace(*place, cloud));
   report.sensors = std::move(sensors);
   if (report.sensors.sensors.empty()) report.sensors.sensor_of = {};
-  return resolveHints(found, cloud);
+  PointHints known = resolveHints(found, cloud);
+  const std::vector<FoundSensor>& all = report.sensors.sensors;
+  if (!all.empty() && all[0].evidence == SensorEvidence::SHADOWS) {
+    known.shadows = findShadows(cloud.points(), inUnitOf(cloud, all[0].position), options.threads);
+  }
+  return known;
 }
 
 // Whether places are given: those that are found would be found again.

@@ -22,8 +22,8 @@ struct KnownSensor {
   std::array<float, 3> position{0.F, 0.F, 0.F};  ///< in input coordinates
   std::size_t points = 0;                        ///< distinct points that are said to be its own
   std::size_t seen = 0;  ///< of these, those that it could see: others were left to the surface
-  /// False: it contradicts the surface, and nothing was turned to it. A place that hides a third of
-  /// all points and more turns nothing anyway; of it this says whether the result suits it.
+  /// False: it contradicts the surface, and nothing was turned to it. A place behind whose shadows
+  /// surfaces go on turns nothing anyway; of it this says whether the result suits it.
   bool used = true;
   bool moving = false;  ///< many places together
   /// Share of its points that lie behind others of its own, as seen from there. A sensor sees no
@@ -51,7 +51,8 @@ SEGORIENT_ORIENTATION_EXPORT const char* toString(SensorKind kind);
 enum class SensorEvidence : std::uint8_t {
   DENSITY,  ///< how the density of points falls with distance and incidence
   LAYERS,   ///< one uneven surface over the ground, as it is seen from above
-  IMAGE     ///< the pixels of an organised cloud: straight rays that meet in one place
+  IMAGE,    ///< the pixels of an organised cloud: straight rays that meet in one place
+  SHADOWS   ///< surfaces end where something nearer hides them, as seen from a suggested place
 };
 
 struct FoundSensor {
@@ -65,14 +66,15 @@ struct FoundSensor {
   std::size_t points = 0;  ///< rows that it explains
   /// What the sensor leaves unexplained of the densities' (or the pixels') deviation from a
   /// constant: 1 = no better than no sensor at all, 0 = everything is explained. From above: the
-  /// share of the ground with a second layer.
+  /// share of the ground with a second layer. By shadows: share of what ought to be hidden where
+  /// depth steps.
   float cost_ratio = 1.F;
   /// Whether normals may be turned to it. Ratios of solids, sheets and clouds without a sensor do
   /// not come near those that count as sure.
   bool sure = false;
 };
 
-/// "density", "layers" or "image".
+/// "density", "layers", "image" or "shadows".
 SEGORIENT_ORIENTATION_EXPORT const char* toString(SensorEvidence evidence);
 
 // As they were first called.

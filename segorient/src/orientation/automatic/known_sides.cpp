@@ -42,12 +42,15 @@ void weighOnePlace(SheetSigns& sheets, const std::vector<Ballot>& ballots) {
   for (std::size_t s = 0; s < sheets.signs.size(); ++s) {
     by_component[at(sheets.component_of[s])].add(ballots[s], sheets.signs[s]);
   }
+  // A room seen from within all but closes, too.
+  const float residual = sheets.sensors.hides ? kOpenResidual : kClosedResidual;
   std::vector<bool> own(sheets.windings.size(), false);
   std::size_t believed = 0;
   for (std::size_t c = 0; c < own.size(); ++c) {
     const bool contrary = by_component[c].share() < -kClearly;
-    const bool keeps = told_closed || !contrary || sheets.sensors.doubtful;
-    own[c] = keeps && sheets.isClosed(c, kOpenResidual);
+    const bool keeps =
+        told_closed || !contrary || (sheets.sensors.doubtful && !sheets.sensors.in_a_room);
+    own[c] = keeps && sheets.isClosed(c, residual);
     if (!own[c] || !contrary) believed += sheets.found.result.components[c].points;
   }
   for (std::size_t i = 0; i < sheets.points.size; ++i) {
@@ -64,8 +67,11 @@ void weighOnePlace(SheetSigns& sheets, const std::vector<Ballot>& ballots) {
   sheets.found.place_idle =
       report.hidden > kFewHidden && std::all_of(own.begin(), own.end(), [](bool o) { return o; });
   report.contrary = splitOf(sheets, ballots, own);
-  // The less its density is that of a sensor there, the less may contradict it.
-  const float unlike = std::isfinite(report.density) ? std::max(1.F, report.density) : 1.F;
+  if (sheets.sensors.allowed) return;
+  // The less its density is that of a sensor there, the less may contradict it. Thinned clouds have
+  // another one, but hide nothing.
+  const float unlike =
+      sheets.sensors.hides && std::isfinite(report.density) ? std::max(1.F, report.density) : 1.F;
   if (report.contrary * unlike <= kMostSplit) return;
   sheets.sensors.drop(0);
   sheets.facing.assign(sheets.points.size, 0.F);

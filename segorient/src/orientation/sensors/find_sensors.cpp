@@ -9,6 +9,7 @@
 #include "orientation/sensors/image_rays.h"
 #include "orientation/sensors/joint_sensors.h"
 #include "orientation/sensors/sensor_search.h"
+#include "orientation/sensors/shadows.h"
 #include "orientation/sensors/station_search.h"
 
 namespace segorient {
@@ -88,7 +89,7 @@ FoundSensor findStation(const DensityPatches& patches, float constant,
   return found ? describe(*found, constant, false) : FoundSensor{};
 }
 
-// By densities; in the unit of the cloud, sensor_of by its points.
+// By densities and layers; in the unit of the cloud, sensor_of by its points.
 SensorReport searchSensors(PreparedCloud& cloud, const SensorOptions& options) {
   SensorReport out;
   out.sensor_of.assign(cloud.size(), -1);
@@ -121,6 +122,27 @@ SensorReport searchSensors(PreparedCloud& cloud, const SensorOptions& options) {
   return out;
 }
 
+// Thinned clouds have lost their densities, which leaves who hides whom. That there is one layer
+// over the ground says less.
+void trySuggestedShadows(PreparedCloud& cloud, const SensorOptions& options, SensorReport& out) {
+  if (out.sure() && out.sensors[0].kind != SensorKind::ABOVE) return;
+  for (const std::array<float, 3>& s : options.suggestions) {
+    const detail::Shadows shadows = detail::findShadows(cloud.points(), s, options.threads);
+    if (!shadows.reveal()) continue;
+    FoundSensor sensor;
+    sensor.evidence = SensorEvidence::SHADOWS;
+    sensor.position = s;
+    sensor.suggested = true;
+    sensor.cost_ratio = shadows.coveredOfSteps();
+    sensor.sure = true;
+    sensor.points = cloud.size();
+    out.sensors = {sensor};
+    out.sensor_of.assign(cloud.size(), 0);
+    out.why = "surfaces end at the shadows that the suggested place casts";
+    return;
+  }
+}
+
 }  // namespace
 
 SensorReport detail::sensorsOf(const PointView& points, PreparedCloud& cloud,
@@ -138,6 +160,7 @@ SensorReport detail::sensorsOf(const PointView& points, PreparedCloud& cloud,
       for (float& v : s) v /= cloud.unit();
     }
     out = searchSensors(cloud, scaled);
+    trySuggestedShadows(cloud, scaled, out);
     for (FoundSensor& s : out.sensors) {
       for (float& v : s.position) v *= cloud.unit();
     }

@@ -9,20 +9,8 @@
 #include "orientation/sensors/scan_checks.h"
 
 namespace segorient::detail {
-namespace {
-
-// A closed body hides about half of its points from each place outside. One of the stations that
-// rooms, streets and yards were scanned from hides a quarter of what all of them saw at most.
-constexpr float kMostHiddenOfScans = 1.F / 3.F;
-// Of what faces the place, less what turns its back to it: three of four, as gaps between the
-// points let it see some of the far side.
-constexpr float kMostFaceIt = 0.5F;
-
-}  // namespace
-
 bool HidingPlace::isPlausible(const PointView& points, const std::vector<float>& normals) const {
   float balance = 0.F;
-  float total = 0.F;
   for (const std::uint32_t i : visible) {
     std::array<float, 3> v;
     for (std::size_t a = 0; a < 3; ++a) v[a] = report.position[a] - points[i][a];
@@ -30,13 +18,11 @@ bool HidingPlace::isPlausible(const PointView& points, const std::vector<float>&
     const float facing = dot(&normals[4 * std::size_t{i}], v.data()) / length;
     if (!std::isfinite(facing)) continue;
     balance += facing;
-    total += std::fabs(facing);
   }
-  return balance > kMostFaceIt * total;
+  return balance > 0.F;
 }
 
-std::optional<HidingPlace> findHidingPlace(const PointView& points,
-                                           const std::array<float, 3>& place, int threads) {
+HidingPlace lookFrom(const PointView& points, const std::array<float, 3>& place, int threads) {
   std::vector<std::uint32_t> rows(points.size);
   std::iota(rows.begin(), rows.end(), 0U);
   Scan scan(points, rows, place, threads);
@@ -44,7 +30,6 @@ std::optional<HidingPlace> findHidingPlace(const PointView& points,
   const auto count = std::accumulate(hidden.begin(), hidden.end(), std::size_t{0});
   HidingPlace out;
   out.report.hidden = static_cast<float>(count) / static_cast<float>(hidden.size());
-  if (!(out.report.hidden > kMostHiddenOfScans)) return {};
   out.report.position = place;
   out.report.points = points.size;
   out.report.density = scan.density().ratio;

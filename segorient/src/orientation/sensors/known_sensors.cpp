@@ -31,10 +31,6 @@ constexpr float kMostContrary = 0.01F;
 constexpr float kDenied = 1.3F;
 constexpr float kVaries = 0.3F;
 
-bool isKnown(const float* place) {
-  return std::isfinite(place[0]) && std::isfinite(place[1]) && std::isfinite(place[2]);
-}
-
 // The places in ascending order, and which of them each point has.
 std::vector<Place> numberPlaces(const std::vector<float>& sensors, std::vector<std::int32_t>& of) {
   // Points of one place mostly come one after another, and there are few places or as many as
@@ -51,7 +47,7 @@ std::vector<Place> numberPlaces(const std::vector<float>& sensors, std::vector<s
   std::int32_t last = -1;
   for (std::size_t i = 0; i < of.size(); ++i) {
     const float* v = &sensors[3 * i];
-    if (!isKnown(v)) continue;
+    if (!isFinite(v)) continue;
     const Place place{v[0], v[1], v[2]};
     if (last < 0 || place != places[static_cast<std::size_t>(last)]) {
       const auto next = static_cast<std::int32_t>(places.size());
@@ -80,22 +76,22 @@ std::vector<Place> numberPlaces(const std::vector<float>& sensors, std::vector<s
 
 class Finder {
  public:
-  Finder(const PointView& points, const Neighborhoods& nb, const float* spacing, int threads)
-      : points_(points), nb_(nb), spacing_(spacing), threads_(threads) {}
+  Finder(const PointView& points, const Neighborhoods& nb, const float* spacing,
+         const PointHints& hints, int threads)
+      : points_(points), nb_(nb), spacing_(spacing), hints_(hints), threads_(threads) {}
 
-  KnownSensors run(const PointHints& hints) {
-    std::vector<float> sensors = hints.sensors;
-    if (hints.has_viewpoint) fillIn(hints.viewpoint, sensors);
+  KnownSensors run() {
+    std::vector<float> sensors = hints_.sensors;
+    if (hints_.has_viewpoint) fillIn(hints_.viewpoint, sensors);
     if (sensors.empty()) return {};
-    out_.common = hints.has_viewpoint && hints.sensors.empty();
-    place_found_ = hints.place_found;
+    out_.common = hints_.has_viewpoint && hints_.sensors.empty();
     listScans(sensors);
     if (out_.scans.empty()) return {};
     out_.one_place = out_.scans.size() == 1 && !out_.scans[0].moving;
     denied_.assign(out_.scans.size(), 0);
     point(sensors);
     for (std::size_t s = 0; s < out_.scans.size(); ++s) look(s);
-    if (out_.scans.size() > 1 || !out_.common) compare();
+    if (!out_.allowed && (out_.scans.size() > 1 || !out_.common)) compare();
     countSeen();
     return std::move(out_);
   }
@@ -104,7 +100,7 @@ class Finder {
   void fillIn(const Place& place, std::vector<float>& sensors) const {
     sensors.resize(3 * points_.size, std::numeric_limits<float>::quiet_NaN());
     for (std::size_t i = 0; i < points_.size; ++i) {
-      if (!isKnown(&sensors[3 * i])) std::copy(place.begin(), place.end(), &sensors[3 * i]);
+      if (!isFinite(&sensors[3 * i])) std::copy(place.begin(), place.end(), &sensors[3 * i]);
     }
   }
 
@@ -165,14 +161,13 @@ class Finder {
     }
   }
 
-  // What the points of one scan say about its sensor.
   void look(std::size_t s) {
     KnownSensor& report = out_.scans[s];
     if (report.moving || report.points < kLeastPoints) return;
     std::vector<std::uint32_t> rows;
     for (std::size_t i = 0; i < points_.size; ++i) {
-      if (out_.scan[i] == static_cast<std::int32_t>(s))
-        rows.push_back(static_cast<std::uint32_t>(i));
+      if (out_.scan[i] != static_cast<std::int32_t>(s)) continue;
+      rows.push_back(static_cast<std::uint32_t>(i));
     }
     Scan scan(points_, rows, report.position, threads_);
     const Scan::Density density = scan.density();
@@ -185,14 +180,22 @@ class Finder {
     report.hidden = share(hidden);
     // Of what was not seen from one place, the part nearest to it may have such a density, too.
     const bool hides = report.hidden > kMostHidden;
-    if (report.density < kConfirmed && !(out_.common && hides && !place_found_)) {
+    if (report.density < kConfirmed && !(out_.common && hides && !hints_.place_found)) {
       out_.confirmed = out_.one_place;
       return;
     }
     const bool denied =
         report.density > kDenied && density.constant > kVaries && std::isfinite(report.density);
     denied_[s] = denied ? 1 : 0;
-    if (out_.one_place) out_.doubtful = hides || denied || density.constant < kVaries;
+    if (out_.one_place) {
+      out_.confirmed = hints_.shadows.reveal();
+      out_.allowed = hints_.shadows.allow();
+      out_.hides = hides && !out_.allowed;
+      out_.in_a_room = !hides && hints_.shadows.inARoom();
+      if (out_.confirmed) return;
+      out_.doubtful = out_.allowed || hides || denied || density.constant < kVaries;
+      if (out_.allowed) return;
+    }
     if (out_.common) {
       if (hides) keepVisible(rows, scan.hidden(true));
     } else if (hides || (denied && report.hidden > kFewHidden)) {
@@ -200,8 +203,7 @@ class Finder {
     }
   }
 
-  // Gaps between the points of what hides others let some through: only what lies among visible
-  // points is left.
+  // Gaps in what hides others let some through: only what lies among visible points is left.
   void keepVisible(const std::vector<std::uint32_t>& rows,
                    const std::vector<std::uint8_t>& hidden) {
     constexpr int kAround = 16;
@@ -268,10 +270,9 @@ class Finder {
   const PointView& points_;
   const Neighborhoods& nb_;
   const float* spacing_;
+  const PointHints& hints_;
   int threads_;
-  bool place_found_ = false;
-  std::vector<std::uint8_t>
-      denied_;  // by scan: its density is far from what its sensor would leave
+  std::vector<std::uint8_t> denied_;  // by scan: its density is far from what its sensor leaves
   KnownSensors out_;
 };
 
@@ -293,7 +294,7 @@ KnownSensors findKnownSensors(const PointView& points, const Neighborhoods& neig
     return believed;
   }
   if (hints.sensors.empty() && !hints.has_viewpoint) return {};
-  return Finder(points, neighborhoods, spacing, threads).run(hints);
+  return Finder(points, neighborhoods, spacing, hints, threads).run();
 }
 
 }  // namespace segorient::detail

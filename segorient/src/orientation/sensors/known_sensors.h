@@ -34,6 +34,12 @@ struct KnownSensors {
   bool confirmed = false;
   /// Of that place: there is evidence that it did not see all points, or none that it could have.
   bool doubtful = false;
+  /// Of that place: too many points lie behind others.
+  bool hides = false;
+  /// Of that place: steps of depth say that it may have seen them.
+  bool allowed = false;
+  /// Of that place: what is around it has openings, as no solid has.
+  bool in_a_room = false;
 
   bool none() const { return toward.empty(); }
   const float* of(std::size_t point) const { return &toward[3 * point]; }

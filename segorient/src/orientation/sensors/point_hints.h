@@ -9,6 +9,7 @@
 #include <cstddef>
 #include <vector>
 
+#include "orientation/sensors/shadows.h"
 #include "search/prepared_cloud.h"
 
 namespace segorient {
@@ -25,6 +26,8 @@ struct PointHints {
   std::array<float, 3> viewpoint{0.F, 0.F, 0.F};
   /// Whether a search for sensors came to the one place for all points, too, by itself.
   bool place_found = false;
+  /// What steps of depth say of that place; no steps where nobody looked.
+  detail::Shadows shadows;
   /// 3 floats a point: where it was seen from, NaN = unknown; empty = none
   std::vector<float> sensors;
   /// 3 floats a point: sum of the unit vectors that its normal is said to point along; empty = none

@@ -34,6 +34,11 @@ bool lacksSensors(const OrientationHints& hints) {
          hints.surface != SurfaceKind::CLOSED;
 }
 
+bool isImage(const OrientationHints& hints, std::size_t rows) {
+  return hints.grids.size() == 1 && hints.grids[0].first == 0 &&
+         hints.grids[0].width * hints.grids[0].height == rows;
+}
+
 SensorReport addFoundSensors(const PointView& points, PreparedCloud& cloud, int threads,
                              OrientationHints& hints) {
   SensorOptions options;
@@ -41,9 +46,7 @@ SensorReport addFoundSensors(const PointView& points, PreparedCloud& cloud, int 
   options.suggestions = hints.suggested;
   // One image that is the whole cloud has a camera of its own; of several, each would be looked
   // for.
-  const bool whole = hints.grids.size() == 1 && hints.grids[0].first == 0 &&
-                     hints.grids[0].width * hints.grids[0].height == points.size;
-  if (whole) options.image_width = hints.grids[0].width;
+  if (isImage(hints, points.size)) options.image_width = hints.grids[0].width;
   SensorReport report = sensorsOf(points, cloud, options);
   if (report.sure()) addViewpoints(report, hints);
   return report;

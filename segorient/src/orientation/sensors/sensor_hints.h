@@ -7,6 +7,7 @@
 #include <segorient/orientation/sensors.h>
 
 #include <array>
+#include <cstddef>
 #include <optional>
 
 #include "search/prepared_cloud.h"
@@ -16,6 +17,9 @@ namespace segorient::detail {
 /// Whether it is worth looking for sensors: none is known, no normals are, and the cloud is not
 /// said to be closed.
 bool lacksSensors(const OrientationHints& hints);
+
+/// Whether the cloud is one image, which tells where its camera is.
+bool isImage(const OrientationHints& hints, std::size_t rows);
 
 /// Looks for sensors; what is sure becomes a hint of each row, as if it were given.
 /// \param points the rows that `cloud` was prepared from

@@ -26,6 +26,8 @@ const char* toString(SensorEvidence evidence) {
       return "layers";
     case SensorEvidence::IMAGE:
       return "image";
+    case SensorEvidence::SHADOWS:
+      return "shadows";
     case SensorEvidence::DENSITY:
       break;
   }

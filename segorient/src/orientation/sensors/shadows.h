@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the segorient authors
+#pragma once
+
+#include <segorient/common/export.h>
+#include <segorient/common/point_view.h>
+
+#include <array>
+
+namespace segorient::detail {
+
+/// What a place says about steps of depth: about points on a surface that have a nearer surface
+/// beside or before them as seen from there, and nothing in between.
+///
+/// What a sensor saw ends at the shadow of what is nearer; a surface that was not seen from there
+/// goes on behind it. Unlike densities, that is the same in thinned clouds.
+struct Shadows {
+  float steps = 0.F;    ///< such points, of those on surfaces; 0 where they are too few to tell
+  float covered = 0.F;  ///< with nearer points all around, of those on surfaces
+
+  float open = 0.F;  ///< of all directions, those where there is nothing
+
+  float coveredOfSteps() const { return steps > 0.F ? covered / steps : 0.F; }
+  /// Whether surfaces end where a sensor in that place would have it.
+  bool confirm() const;
+  /// Whether that is so where nobody said that there was a sensor, and the place is not enclosed
+  /// by what is there: bodies are seen whole from some places inside.
+  bool reveal() const;
+  /// Whether the place is enclosed, but for openings: where nothing was seen below a tripod, or
+  /// through a window.
+  bool inARoom() const;
+  /// Whether they go on.
+  bool deny() const;
+  /// Whether there are steps enough, and they do not deny it.
+  bool allow() const;
+};
+
+/// \param place in the points' unit
+SEGORIENT_ORIENTATION_EXPORT Shadows findShadows(const PointView& points,
+                                                 const std::array<float, 3>& place, int threads);
+
+}  // namespace segorient::detail

@@ -1,0 +1,149 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the segorient authors
+// What steps of depth say of a place, and clouds that were thinned after they were seen from one.
+#include <gtest/gtest.h>
+#include <segorient/orientation/pipeline.h>
+
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <map>
+#include <memory>
+#include <vector>
+
+#include "orientation/sensors/shadows.h"
+#include "sensor_scans.h"
+#include "sheet_fixture.h"
+
+namespace segorient::test {
+namespace {
+
+// With a box that stands free: it hides a part of the floor and of a wall.
+Room furnished() {
+  Room room;
+  room.low = {3.0, 1.4, 0.0};
+  room.high = {3.8, 2.2, 1.3};
+  return room;
+}
+
+// As pcl::VoxelGrid does it: the mean of the points of each cell.
+std::vector<float> thinned(const PointView& points, double edge) {
+  struct Sum {
+    std::array<double, 3> xyz{0.0, 0.0, 0.0};
+    double count = 0.0;
+  };
+  std::map<std::array<long, 3>, Sum> cells;
+  for (std::size_t i = 0; i < points.size; ++i) {
+    if (!std::isfinite(points[i][0])) continue;
+    std::array<long, 3> cell{};
+    for (std::size_t a = 0; a < 3; ++a) {
+      cell[a] = std::lround(std::floor(static_cast<double>(points[i][a]) / edge));
+    }
+    Sum& sum = cells[cell];
+    for (std::size_t a = 0; a < 3; ++a) sum.xyz[a] += static_cast<double>(points[i][a]);
+    sum.count += 1.0;
+  }
+  std::vector<float> out;
+  for (const auto& [cell, sum] : cells) {
+    for (const double v : sum.xyz) out.push_back(static_cast<float>(v / sum.count));
+    out.push_back(0.F);
+  }
+  return out;
+}
+
+std::array<float, 3> inFloat(const Vector& v) {
+  return {static_cast<float>(v[0]), static_cast<float>(v[1]), static_cast<float>(v[2])};
+}
+
+// Of the points of rooms, all of which a station saw.
+double shareFacing(const std::vector<float>& xyz, const std::vector<float>& normals,
+                   const Vector& place) {
+  std::size_t facing = 0;
+  for (std::size_t i = 0; i < xyz.size() / 4; ++i) {
+    double along = 0.0;
+    for (std::size_t a = 0; a < 3; ++a) {
+      along += static_cast<double>(normals[4 * i + a]) *
+               (place[a] - static_cast<double>(xyz[4 * i + a]));
+    }
+    facing += along > 0.0 ? 1 : 0;
+  }
+  return static_cast<double>(facing) / (static_cast<double>(xyz.size()) / 4.0);
+}
+
+OrientedCloud orient(const std::vector<float>& xyz, const Vector* place) {
+  PipelineOptions options;
+  OrientationHints hints;
+  if (place != nullptr) {
+    hints.has_viewpoint = true;
+    hints.viewpoint = inFloat(*place);
+  }
+  options.orientation.hints = std::make_shared<OrientationHints>(hints);
+  return orientCloud(viewOf(xyz), nullptr, options);
+}
+
+TEST(Shadows, WhatASensorSawEndsThere) {
+  const Vector eye{0.4, 1.2, 1.2};
+  const Scan scan = viewFrom(eye, 0.1, furnished());
+  for (const double edge : {0.04, 0.07, 0.1}) {
+    const std::vector<float> xyz = thinned(scan.view(), edge);
+    const detail::Shadows shadows = detail::findShadows(viewOf(xyz), inFloat(eye), 1);
+    EXPECT_TRUE(shadows.confirm()) << edge << " " << shadows.steps << " " << shadows.covered;
+    EXPECT_FALSE(shadows.deny());
+    const detail::Shadows elsewhere = detail::findShadows(viewOf(xyz), {9.F, 2.F, 1.F}, 1);
+    EXPECT_FALSE(elsewhere.allow());
+    EXPECT_TRUE(elsewhere.deny()) << edge << " " << elsewhere.steps << " " << elsewhere.covered;
+  }
+}
+
+TEST(Shadows, ABodyGoesOnBehindItself) {
+  const LabelledCloud solid = sample("bracket", bracket(), 12000, 71, 0.0);
+  for (const Vector& place : {Vector{6.0, 5.0, 7.0}, Vector{-5.0, 3.0, 1.0}}) {
+    const detail::Shadows shadows = detail::findShadows(viewOf(solid.xyz), inFloat(place), 1);
+    EXPECT_TRUE(shadows.deny()) << place[0] << " " << shadows.steps << " " << shadows.covered;
+    EXPECT_FALSE(shadows.allow());
+  }
+  const LabelledCloud round = sample("cube", test::cube(), 6000, 70, 0.0);
+  const detail::Shadows inside = detail::findShadows(viewOf(round.xyz), {0.4F, 0.55F, 0.5F}, 1);
+  EXPECT_FALSE(inside.confirm() || inside.deny() || inside.reveal());
+  EXPECT_EQ(inside.open, 0.F);
+}
+
+TEST(Shadows, NothingTellsNothing) {
+  const detail::Shadows none = detail::findShadows({nullptr, 4, 0}, {0.F, 0.F, 0.F}, 1);
+  EXPECT_FALSE(none.confirm() || none.deny() || none.allow() || none.reveal());
+  const std::vector<float> one(4, 1.F);
+  const detail::Shadows few = detail::findShadows(viewOf(one), {1.F, 1.F, 1.F}, 1);
+  EXPECT_FALSE(few.confirm() || few.deny() || few.allow() || few.reveal());
+}
+
+// Rooms nearly close, so that a place that densities did not confirm was not believed.
+TEST(Shadows, AThinnedRoomFacesItsStation) {
+  const Vector station{1.2, 1.1, 1.6};
+  for (const Room& room : {Room{}, furnished()}) {
+    const Scan scan = scanFrom(station, 1.2, room);
+    for (const double edge : {0.08, 0.12, 0.16}) {
+      const std::vector<float> xyz = thinned(scan.view(), edge);
+      const OrientedCloud cloud = orient(xyz, &station);
+      EXPECT_GE(shareFacing(xyz, cloud.normals, station), 0.998) << edge;
+      ASSERT_EQ(cloud.report.known_sensors.size(), 1U);
+      EXPECT_TRUE(cloud.report.known_sensors[0].used) << edge;
+    }
+  }
+}
+
+TEST(Shadows, AThinnedViewFromTheOriginIsFound) {
+  const Vector eye{0.4, 1.2, 1.2};
+  Scan view = viewFrom(eye, 0.1, furnished());
+  view.move({-eye[0], -eye[1], -eye[2]});
+  const std::vector<float> xyz = thinned(view.view(), 0.07);
+  const OrientedCloud cloud = orient(xyz, nullptr);
+  ASSERT_EQ(cloud.report.sensors.sensors.size(), 1U);
+  EXPECT_EQ(cloud.report.sensors.sensors[0].evidence, SensorEvidence::SHADOWS);
+  EXPECT_STREQ(toString(SensorEvidence::SHADOWS), "shadows");
+  EXPECT_TRUE(cloud.report.sensors.sensors[0].suggested);
+  EXPECT_LT(cloud.report.sensors.sensors[0].cost_ratio, 0.2F);
+  EXPECT_GE(shareFacing(xyz, cloud.normals, {0.0, 0.0, 0.0}), 0.998);
+}
+
+}  // namespace
+}  // namespace segorient::test
