@@ -12,6 +12,7 @@
 #include "orientation/automatic/stages.h"
 #include "orientation/pipeline_stages.h"
 #include "orientation/sensors/hiding_place.h"
+#include "orientation/sensors/known_sensors.h"
 #include "orientation/sensors/point_hints.h"
 #include "orientation/sensors/sensor_hints.h"
 #include "orientation/sensors/shadows.h"
@@ -120,24 +121,38 @@ bool leavesAllToSurface(const AutoOrientation& found) {
                                            [](const KnownSensor& s) { return s.used; }));
 }
 
+// Whether sensors that were found together see sheets from both sides: then some of the places, and
+// with them the others, explain densities by chance only.
+bool contradictSurface(const SensorReport& found, const AutoOrientation& oriented) {
+  return found.sure() &&
+         std::any_of(oriented.sensors.begin(), oriented.sensors.end(),
+                     [](const KnownSensor& s) { return !s.used && s.contrary > kMostContrary; });
+}
+
 }  // namespace
 
 void runAutomatic(const PointView& points, const PipelineOptions& options, StageClock& clock,
                   OrientedStages& work, PipelineReport& report) {
   std::optional<HidingPlace> hiding;
   const PointHints hints = findHints(points, options, work.surface.cloud, report, hiding);
-  AutoStages result =
-      runAutoStages(work.surface.cloud, options, hints,
-                    [&clock](const char* stage, double fraction) { clock.begin(stage, fraction); });
+  const auto run = [&](const PointHints& known) {
+    return runAutoStages(
+        work.surface.cloud, options, known,
+        [&clock](const char* stage, double fraction) { clock.begin(stage, fraction); });
+  };
+  AutoStages result = run(hints);
+  if (!saysPlaces(givenHints(options)) && contradictSurface(report.sensors, result.orientation)) {
+    for (FoundSensor& s : report.sensors.sensors) s.sure = false;
+    report.sensors.why += ", but see surfaces from both sides";
+    result = run(resolveHints(givenHints(options), work.surface.cloud));
+  }
   std::vector<KnownSensor> doubted = std::move(report.known_sensors);
   if (!hiding && doubted.empty() && saysPlaces(givenHints(options)) &&
       leavesAllToSurface(result.orientation)) {
     doubted = std::move(result.orientation.sensors);
     const PointHints rest =
         findHints(points, asIfUnseen(options), work.surface.cloud, report, hiding);
-    result = runAutoStages(
-        work.surface.cloud, options, rest,
-        [&clock](const char* stage, double fraction) { clock.begin(stage, fraction); });
+    result = run(rest);
   }
   if (hiding) {
     hiding->report.used = hiding->isPlausible(work.surface.cloud.points(), result.normals);

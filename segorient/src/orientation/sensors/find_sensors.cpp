@@ -107,6 +107,11 @@ SensorReport searchSensors(PreparedCloud& cloud, const SensorOptions& options) {
     return out;
   }
   FoundSensor sensor = findStation(patches, out.deviation, options);
+  // Several stations around a body, most points from one of them, look like one at some place.
+  const bool searched = sensor.kind == SensorKind::STATION && !sensor.suggested;
+  if (sensor.sure && searched) {
+    sensor.sure = !detail::findShadows(cloud.points(), sensor.position, options.threads).deny();
+  }
   if (!sensor.sure) {
     out.why = "no places explain the densities";
     if (options.search && out.deviation >= kFarBeyondChance * out.chance) {

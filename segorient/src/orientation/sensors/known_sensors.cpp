@@ -25,7 +25,6 @@ constexpr std::uint32_t kLeastPoints = 200;
 // the air and of photographs. Elsewhere most of them have more than .1 hidden or .05 contrary, and
 // the ratio is 1.2 to 5.
 constexpr float kMostHidden = 0.1F;
-constexpr float kMostContrary = 0.01F;
 // A density that varies, as thinning would not leave it, and far from as the sensor would have it:
 // then kFewHidden are enough.
 constexpr float kDenied = 1.3F;

@@ -18,6 +18,9 @@ namespace segorient::detail {
 constexpr float kConfirmed = 0.7F;
 /// With fewer points hidden, by KnownSensor::hidden, a place could have seen all of them.
 constexpr float kFewHidden = 0.02F;
+/// Share of the pairs of neighbours on one sheet that sensors see from two sides: true ones leave
+/// .01, others mostly .05 and more, on the scans of 39 virtual and real clouds.
+constexpr float kMostContrary = 0.01F;
 
 /// Where each point was seen from, as far as that is known and not contradicted.
 struct KnownSensors {
