@@ -121,10 +121,6 @@ bool equalXyz(const float* a, const float* b) {
   return a[0] == b[0] && a[1] == b[1] && a[2] == b[2];
 }
 
-std::array<double, 3> inDouble(const float* p) {
-  return {static_cast<double>(p[0]), static_cast<double>(p[1]), static_cast<double>(p[2])};
-}
-
 /// The cell of each point along a curve through a fine grid.
 class ZOrder {
  public:

@@ -52,14 +52,10 @@ std::vector<float> copyOf(const PointView& points) {
 // The points with NaN in the place of those beyond floats, which are then not chosen any more;
 // empty where there are none.
 std::vector<float> withoutStrays(const PointView& points, std::vector<bool>& chosen) {
-  const auto position = [&](std::size_t i) -> std::array<double, 3> {
-    const float* p = points[i];
-    return {static_cast<double>(p[0]), static_cast<double>(p[1]), static_cast<double>(p[2])};
-  };
-  const Bounds bulk = bulkBounds(points.size, position);
+  const Bounds bulk = bulkBounds(points);
   std::vector<float> out;
   for (std::size_t i = 0; i < points.size; ++i) {
-    if (!isFinite(points[i]) || !bulk.isBeyondFloats(position(i))) continue;
+    if (!isFinite(points[i]) || !bulk.isBeyondFloats(inDouble(points[i]))) continue;
     if (out.empty()) out = copyOf(points);
     std::fill_n(&out[3 * i], 3, std::numeric_limits<float>::quiet_NaN());
     chosen[i] = false;

@@ -150,14 +150,6 @@ class Choice {
   std::vector<ScaleEnergy> tried_;
 };
 
-Bounds boundsOf(const PointView& points, int threads) {
-  const auto place = [&](std::size_t i) -> std::array<double, 3> {
-    const float* p = points[i];
-    return {static_cast<double>(p[0]), static_cast<double>(p[1]), static_cast<double>(p[2])};
-  };
-  return bulkBounds(points.size, place, threads);
-}
-
 }  // namespace
 
 CoarseLevel makeLevel(const PointView& points, float radius, int threads, const Bounds* frame) {
@@ -173,7 +165,7 @@ CoarseLevel makeLevel(const PointView& points, float radius, int threads, const 
   for (std::size_t c = 0; c < even.kept.size(); ++c) {
     for (std::size_t a = 0; a < 3; ++a) places[4 * c + a] /= places[4 * c + 3];
   }
-  const Bounds of_points = frame != nullptr ? *frame : boundsOf(points, threads);
+  const Bounds of_points = frame != nullptr ? *frame : bulkBounds(points, threads);
   level.cloud = PreparedCloud({places.data(), 4, places.size() / 4}, nullptr, threads, &of_points);
   if (level.cloud.size() == 0) return level;
   level.cloud.findNeighbors(kSheetNeighbors, false);

@@ -132,13 +132,13 @@ SensorReport searchSensors(PreparedCloud& cloud, const SensorOptions& options) {
 void trySuggestedShadows(PreparedCloud& cloud, const SensorOptions& options, SensorReport& out) {
   if (out.sure() && out.sensors[0].kind != SensorKind::ABOVE) return;
   for (const std::array<float, 3>& s : options.suggestions) {
-    const detail::Shadows shadows = detail::findShadows(cloud.points(), s, options.threads);
-    if (!shadows.reveal()) continue;
+    const auto shadows = detail::revealingShadows(cloud.points(), s, options.threads);
+    if (!shadows) continue;
     FoundSensor sensor;
     sensor.evidence = SensorEvidence::SHADOWS;
     sensor.position = s;
     sensor.suggested = true;
-    sensor.cost_ratio = shadows.coveredOfSteps();
+    sensor.cost_ratio = shadows->coveredOfSteps();
     sensor.sure = true;
     sensor.points = cloud.size();
     out.sensors = {sensor};

@@ -91,7 +91,11 @@ class ShadowSearch {
     directions_.build({direction_.data(), 4, n}, nullptr, options);
   }
 
-  Shadows run() const {
+  // \param least_open share of directions without which steps are not looked for
+  Shadows run(float least_open) const {
+    Shadows out;
+    out.open = openShare();
+    if (!(out.open >= least_open)) return out;
     const std::size_t stride = std::max<std::size_t>(1, distance_.size() / kSamples);
     const std::size_t n = (distance_.size() + stride - 1) / stride;
     std::vector<Step> found(n, Step::NO_SURFACE);
@@ -103,13 +107,11 @@ class ShadowSearch {
       return static_cast<float>(std::count(found.begin(), found.end(), what));
     };
     const float surface = static_cast<float>(n) - share(Step::NO_SURFACE);
-    Shadows out;
     const float steps = share(Step::COVERED) + share(Step::BESIDE);
     if (steps >= kFewest) {
       out.covered = share(Step::COVERED) / surface;
       out.steps = out.covered + share(Step::BESIDE) / surface;
     }
-    out.open = openShare();
     return out;
   }
 
@@ -283,7 +285,14 @@ bool Shadows::allow() const {
 
 Shadows findShadows(const PointView& points, const std::array<float, 3>& place, int threads) {
   if (points.size == 0) return {};
-  return ShadowSearch(points, place, threads).run();
+  return ShadowSearch(points, place, threads).run(0.F);
+}
+
+std::optional<Shadows> revealingShadows(const PointView& points, const std::array<float, 3>& place,
+                                        int threads) {
+  if (points.size == 0) return std::nullopt;
+  const Shadows found = ShadowSearch(points, place, threads).run(kOpen);
+  return found.reveal() ? std::optional(found) : std::nullopt;
 }
 
 }  // namespace segorient::detail

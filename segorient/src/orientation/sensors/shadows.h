@@ -6,6 +6,7 @@
 #include <segorient/common/point_view.h>
 
 #include <array>
+#include <optional>
 
 namespace segorient::detail {
 
@@ -38,5 +39,10 @@ struct Shadows {
 /// \param place in the points' unit
 SEGORIENT_ORIENTATION_EXPORT Shadows findShadows(const PointView& points,
                                                  const std::array<float, 3>& place, int threads);
+
+/// The same, if they reveal a sensor. Of places that are enclosed, as most in bodies are, that is
+/// known without a look at any step.
+std::optional<Shadows> revealingShadows(const PointView& points, const std::array<float, 3>& place,
+                                        int threads);
 
 }  // namespace segorient::detail
