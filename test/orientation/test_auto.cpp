@@ -112,6 +112,21 @@ TEST(Auto, OpenGroundFacesUp) {
   }
 }
 
+// What faces up is a share of columns, whatever the number of points.
+TEST(Auto, GroundOfAMillionPointsFacesUp) {
+  constexpr std::size_t kPoints = 1050000;
+  std::mt19937 rng(50);
+  std::uniform_real_distribution<float> unit(0.F, 1.F);
+  std::vector<float> xyz;
+  xyz.reserve(4 * kPoints);
+  for (std::size_t i = 0; i < kPoints; ++i) {
+    const float y = unit(rng);
+    xyz.insert(xyz.end(), {unit(rng), y, 0.3F * y, 0.F});
+  }
+  const OrientedCloud slope = orient(xyz);
+  for (std::size_t i = 0; i < kPoints; i += 1000) ASSERT_GT(slope.normals[4 * i + 2], 0.F) << i;
+}
+
 // Most of a street is walls, and it is hollow; but each column over the ground has one layer.
 TEST(Auto, GroundBetweenWallsFacesUp) {
   std::mt19937 rng(49);

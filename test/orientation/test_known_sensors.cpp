@@ -218,6 +218,25 @@ TEST(KnownSensors, APlaceThatHidesMostOfACloudChangesNothingAndIsReported) {
   EXPECT_GT(inside.report.known_sensors[0].hidden, 1.F / 3.F);
 }
 
+// What hides what depends on where one stands, not on how far away that is.
+TEST(KnownSensors, FromFarAwayABodyHidesItsBackAsWell) {
+  std::mt19937 rng(9);
+  std::normal_distribution<float> gauss;
+  std::vector<float> xyz;
+  while (xyz.size() < std::size_t{4} * 8000) {  // a ball without its cap: open
+    const float v[3] = {gauss(rng), gauss(rng), gauss(rng)};
+    const float length = std::sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
+    if (v[2] > 0.8F * length) continue;
+    for (const float c : v) xyz.push_back(c / length);
+    xyz.push_back(0.F);
+  }
+  for (const double distance : {20.0, 100.0, 1e6}) {
+    const OrientedCloud cloud = orient(xyz, seenFrom({0.0, distance, 0.0}));
+    ASSERT_EQ(cloud.report.known_sensors.size(), 1U);
+    EXPECT_GT(cloud.report.known_sensors[0].hidden, 0.3F) << distance;
+  }
+}
+
 TEST(KnownSensors, OnePlaceGivesWayToSensorsThatAreFoundElsewhere) {
   const Scans scans = room({1.1, 0.9, 1.4});
   const OrientedCloud free = orient(scans.xyz, {});

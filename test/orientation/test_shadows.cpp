@@ -4,11 +4,13 @@
 #include <gtest/gtest.h>
 #include <segorient/orientation/pipeline.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
 #include <map>
 #include <memory>
+#include <random>
 #include <vector>
 
 #include "orientation/sensors/shadows.h"
@@ -106,6 +108,54 @@ TEST(Shadows, ABodyGoesOnBehindItself) {
   const detail::Shadows inside = detail::findShadows(viewOf(round.xyz), {0.4F, 0.55F, 0.5F}, 1);
   EXPECT_FALSE(inside.confirm() || inside.deny() || inside.reveal());
   EXPECT_EQ(inside.open, 0.F);
+}
+
+// Flat roofs over flat ground, nothing below the roofs, as seen from far above.
+std::vector<float> city(float height) {
+  std::mt19937 rng(5);
+  std::uniform_real_distribution<float> place(-45.F, 45.F);
+  std::uniform_real_distribution<float> size(2.F, 5.F);
+  std::uniform_real_distribution<float> storeys(4.F, 20.F);
+  std::uniform_real_distribution<float> anywhere(-50.F, 50.F);
+  std::normal_distribution<float> noise(0.F, 0.03F);
+  struct House {
+    float x, y, half, roof;
+  };
+  std::vector<House> houses;
+  for (int h = 0; h < 30; ++h) houses.push_back({place(rng), place(rng), size(rng), storeys(rng)});
+  std::vector<float> xyz;
+  for (int i = 0; i < 40000; ++i) {
+    const float x = anywhere(rng);
+    const float y = anywhere(rng);
+    float z = 0.F;
+    for (const House& h : houses) {
+      if (std::max(std::fabs(x - h.x), std::fabs(y - h.y)) < h.half) z = h.roof;
+    }
+    for (const float v : {x, y, height + z + noise(rng), 0.F}) xyz.push_back(v);
+  }
+  return xyz;
+}
+
+TEST(Shadows, FarAboveAndFarBelowLookAlike) {
+  for (const float height : {0.F, 2000.F}) {
+    const std::vector<float> xyz = city(height);
+    const detail::Shadows below = detail::findShadows(viewOf(xyz), {0.F, 0.F, height - 2000.F}, 1);
+    EXPECT_TRUE(below.better_across) << height << " " << below.steps << " " << below.covered;
+    EXPECT_FALSE(below.confirm() || below.reveal()) << height;
+    const detail::Shadows above = detail::findShadows(viewOf(xyz), {0.F, 0.F, height + 2000.F}, 1);
+    EXPECT_FALSE(above.better_across) << height << " " << above.steps << " " << above.covered;
+    const OrientedCloud cloud = orient(xyz, nullptr);
+    EXPECT_GE(shareFacing(xyz, cloud.normals, {0.0, 0.0, 1e6}), 0.99) << height;
+  }
+}
+
+// A sensor's own tripod, or dust before it.
+TEST(Shadows, AStrayPointBeforeThePlaceEnclosesNothing) {
+  const Vector eye{0.4, 1.2, 1.2};
+  std::vector<float> xyz = thinned(viewFrom(eye, 0.1, furnished()).view(), 0.07);
+  EXPECT_TRUE(detail::findShadows(viewOf(xyz), inFloat(eye), 1).reveal());
+  for (const float v : {0.45F, 1.2F, 1.2F, 0.F}) xyz.push_back(v);
+  EXPECT_TRUE(detail::findShadows(viewOf(xyz), inFloat(eye), 1).reveal());
 }
 
 TEST(Shadows, NothingTellsNothing) {

@@ -65,6 +65,16 @@ TEST(Settings, OfOtherMethodsAreNamed) {
             (Names{"orientation.triangulation.kappa1", "orientation.automatic.denoise"}));
 }
 
+SEGORIENT_DEPRECATED_BEGIN
+TEST(Settings, OfVersionOneThatDoNothingTodayAreNamed) {
+  PipelineOptions options;
+  options.automatic.wind_components = false;
+  EXPECT_EQ(settingsWithoutEffect(options), Names{});
+  options.automatic.infer_viewpoint = true;
+  EXPECT_EQ(settingsWithoutEffect(options), Names{"automatic.infer_viewpoint"});
+}
+SEGORIENT_DEPRECATED_END
+
 TEST(Settings, OfOneDoorOnlyAreNamedByTheOther) {
   OrientationSettings settings;
   settings.automatic.find_sensors = false;

@@ -12,6 +12,7 @@
 #include <limits>
 #include <vector>
 
+#include "common/in_double.h"
 #include "common/parts.h"
 
 namespace segorient {
@@ -152,10 +153,6 @@ Bounds bulkBounds(std::size_t size, const Position& position, int threads = 1) {
   // So many are none: half of a depth image may be at 0,0,0 where the camera saw nothing.
   const bool astray = 4 * (all.points - bulk.points) <= all.points;
   return astray ? bulk : all;
-}
-
-inline std::array<double, 3> inDouble(const float* p) {
-  return {static_cast<double>(p[0]), static_cast<double>(p[1]), static_cast<double>(p[2])};
 }
 
 inline Bounds bulkBounds(const PointView& points, int threads = 1) {

@@ -2,12 +2,14 @@
 // Copyright (c) 2026, the segorient authors
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <iomanip>
 #include <memory>
 #include <optional>
 #include <sstream>
 #include <utility>
+#include <vector>
 
 #include "orientation/automatic/stages.h"
 #include "orientation/pipeline_stages.h"
@@ -41,11 +43,35 @@ const OrientationHints& givenHints(const PipelineOptions& options) {
   return options.orientation.hints ? *options.orientation.hints : kNone;
 }
 
+PipelineOptions withHints(const PipelineOptions& options, OrientationHints hints) {
+  PipelineOptions out = options;
+  out.orientation.hints = std::make_shared<OrientationHints>(std::move(hints));
+  return out;
+}
+
 // As if no place had been given.
 PipelineOptions asIfUnseen(const PipelineOptions& options) {
-  PipelineOptions out = options;
-  out.orientation.hints = std::make_shared<OrientationHints>(withoutPlaces(givenHints(options)));
-  return out;
+  return withHints(options, withoutPlaces(givenHints(options)));
+}
+
+// The same, and nobody had thought of that place.
+PipelineOptions asIfNotThere(const PipelineOptions& options, const std::array<float, 3>& place) {
+  OrientationHints hints = withoutPlaces(givenHints(options));
+  auto& suggested = hints.suggested;
+  suggested.erase(std::remove(suggested.begin(), suggested.end(), place), suggested.end());
+  return withHints(options, std::move(hints));
+}
+
+// A column of unknown places, as some files have it, says no more than none.
+PipelineOptions withoutUnknownPlaces(const PipelineOptions& options) {
+  const std::vector<float>& places = givenHints(options).viewpoints;
+  if (places.empty() ||
+      std::any_of(places.begin(), places.end(), [](float v) { return std::isfinite(v); })) {
+    return options;
+  }
+  OrientationHints hints = givenHints(options);
+  hints.viewpoints.clear();
+  return withHints(options, std::move(hints));
 }
 
 std::array<float, 3> inUnitOf(const PreparedCloud& cloud, std::array<float, 3> place) {
@@ -69,7 +95,7 @@ KnownSensor refusedPlace(const std::array<float, 3>& place, const PreparedCloud&
 PointHints findHints(const PointView& points, const PipelineOptions& options, PreparedCloud& cloud,
                      PipelineReport& report, std::optional<HidingPlace>& hiding) {
   const OrientationHints& given = givenHints(options);
-  const std::optional<std::array<float, 3>> place = onlyPlace(given);
+  const std::optional<std::array<float, 3>> place = onlyPlace(given, points.size);
   OrientationHints found = place ? withoutPlaces(given) : given;
   if (!options.orientation.automatic.find_sensors || !lacksSensors(found)) {
     return resolveHints(given, cloud);
@@ -86,7 +112,7 @@ PointHints findHints(const PointView& points, const PipelineOptions& options, Pr
   }
   if (is_place) found.suggested.push_back(*place);
   SensorReport sensors = addFoundSensors(points, cloud, options.threads, found);
-  if (is_place && !contradictsPlace(points, sensors, *place)) {
+  if (is_place && !contradictsPlace(cloud, sensors, *place)) {
     PointHints known = resolveHints(given, cloud);
     known.shadows = shadows;
     known.place_found = sensors.sure() && !sensors.sensors[0].suggested;
@@ -94,7 +120,9 @@ PointHints findHints(const PointView& points, const PipelineOptions& options, Pr
     if (is_fact || given.surface == SurfaceKind::OPEN || !shadows.deny()) return known;
     hiding = lookFrom(cloud.points(), inUnitOf(cloud, *place), options.threads);
     // What was found in that very place is no more than compared, either.
-    if (sensors.sure()) return findHints(points, asIfUnseen(options), cloud, report, hiding);
+    if (sensors.sure()) {
+      return findHints(points, asIfNotThere(options, *place), cloud, report, hiding);
+    }
   } else if (place) {
     report.known_sensors.push_back(refusedPlace(*place, cloud));
   }
@@ -121,8 +149,8 @@ bool leavesAllToSurface(const AutoOrientation& found) {
                                            [](const KnownSensor& s) { return s.used; }));
 }
 
-// Whether sensors that were found together see sheets from both sides: then some of the places, and
-// with them the others, explain densities by chance only.
+// Whether sensors that were found, and followed, together see sheets from both sides: then some of
+// the places, and with them the others, explain densities by chance only.
 bool contradictSurface(const SensorReport& found, const AutoOrientation& oriented) {
   return found.sure() &&
          std::any_of(oriented.sensors.begin(), oriented.sensors.end(),
@@ -131,28 +159,28 @@ bool contradictSurface(const SensorReport& found, const AutoOrientation& oriente
 
 }  // namespace
 
-void runAutomatic(const PointView& points, const PipelineOptions& options, StageClock& clock,
+void runAutomatic(const PointView& points, const PipelineOptions& given, StageClock& clock,
                   OrientedStages& work, PipelineReport& report) {
+  const PipelineOptions options = withoutUnknownPlaces(given);
   std::optional<HidingPlace> hiding;
-  const PointHints hints = findHints(points, options, work.surface.cloud, report, hiding);
-  const auto run = [&](const PointHints& known) {
+  const auto runOnce = [&](const PointHints& known) {
     return runAutoStages(
         work.surface.cloud, options, known,
         [&clock](const char* stage, double fraction) { clock.begin(stage, fraction); });
   };
-  AutoStages result = run(hints);
-  if (!saysPlaces(givenHints(options)) && contradictSurface(report.sensors, result.orientation)) {
+  const auto run = [&](const PointHints& known) {
+    AutoStages result = runOnce(known);
+    if (!contradictSurface(report.sensors, result.orientation)) return result;
     for (FoundSensor& s : report.sensors.sensors) s.sure = false;
     report.sensors.why += ", but see surfaces from both sides";
-    result = run(resolveHints(givenHints(options), work.surface.cloud));
-  }
+    return runOnce(resolveHints(withoutPlaces(givenHints(options)), work.surface.cloud));
+  };
+  AutoStages result = run(findHints(points, options, work.surface.cloud, report, hiding));
   std::vector<KnownSensor> doubted = std::move(report.known_sensors);
   if (!hiding && doubted.empty() && saysPlaces(givenHints(options)) &&
       leavesAllToSurface(result.orientation)) {
     doubted = std::move(result.orientation.sensors);
-    const PointHints rest =
-        findHints(points, asIfUnseen(options), work.surface.cloud, report, hiding);
-    result = run(rest);
+    result = run(findHints(points, asIfUnseen(options), work.surface.cloud, report, hiding));
   }
   if (hiding) {
     hiding->report.used = hiding->isPlausible(work.surface.cloud.points(), result.normals);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026, the segorient authors
+#include <segorient/common/export.h>
 #include <segorient/orientation/pipeline.h>
 
 namespace segorient {
@@ -123,6 +124,15 @@ std::vector<std::string> unusedByMethod(const OrientationSettings& settings) {
   return out.names();
 }
 
+SEGORIENT_DEPRECATED_BEGIN
+// Of version 1.0, and without a place today.
+std::vector<std::string> formerSettings(const PipelineOptions& options) {
+  Changed out("");
+  out.add("automatic.infer_viewpoint", options.automatic.infer_viewpoint.has_value(), false);
+  return out.names();
+}
+SEGORIENT_DEPRECATED_END
+
 }  // namespace
 
 std::vector<std::string> settingsWithoutEffect(const OrientationSettings& settings) {
@@ -138,6 +148,7 @@ std::vector<std::string> settingsWithoutEffect(const OrientationSettings& settin
 std::vector<std::string> settingsWithoutEffect(const PipelineOptions& options) {
   const PipelineOptions standard;
   Changed out("");
+  out.addAll("", formerSettings(options));
   out.addAll("orientation.", unusedByMethod(options.orientation));
   const bool automatic = options.orientation.method == OrientationMethod::AUTO;
   if (automatic) {

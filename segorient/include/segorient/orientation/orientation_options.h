@@ -79,11 +79,11 @@ struct AutomaticOptions {
   int filter_rounds = 2;      ///< of averaging over neighbours that are on one sheet; 0 = off
   bool filter_wedges = true;  ///< its special care for narrow wedges
   /// Where noise leaves two faces possible, and where bodies touch or overlap, the field of all
-  /// oriented points decides; needs filter_rounds.
+  /// oriented points decides. It also tilts doubtful normals, if there are filter_rounds.
   bool winding_normals = true;
   /// Surfaces are fitted around each point at last, on one side of sharp edges, as
-  /// NormalEstimator::AUTO does it; with noise, averaged with the above. Not for scans that
-  /// chose the scale of their planes point by point.
+  /// NormalEstimator::AUTO does it; with noise, averaged with the above. Not where positions were
+  /// smoothed, nor for scans whose noise a few neighbours do not see.
   bool fit_normals = true;
 };
 
@@ -111,10 +111,10 @@ struct OrientationSettings {
   // The default method.
   AutomaticOptions automatic;
 
-  // All methods.
   /// Whether each connected component is turned outward; otherwise its largest segment keeps its
   /// sign, or, by EXTREMAL, what extremal points say about each segment is the last word. HOPPE has
-  /// its own rule: the highest point's normal points up (paper, 3.1).
+  /// its own rule: the highest point's normal points up (paper, 3.1). orientCloud() by
+  /// AUTO always turns them.
   bool turn_outward = true;
   /// What is known beforehand, by input row; null = nothing. Only AUTO uses it.
   std::shared_ptr<const OrientationHints> hints;

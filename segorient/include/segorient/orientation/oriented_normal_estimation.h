@@ -26,9 +26,10 @@ namespace segorient {
 /// surface, the input points are oriented as points of that surface.
 ///
 /// The viewpoint (setViewPoint(), or the cloud's sensor origin where that is not 0) is evidence for
-/// AUTO, and only where the surface is open; see OrientationHints. Points that have fields vp_x,
-/// vp_y and vp_z say themselves where they were seen from. An organized cloud is taken for the
-/// range image that it is.
+/// AUTO; what closes in itself keeps its outside against it, unless the cloud shows that it was
+/// seen from there. See OrientationHints. Points that have fields vp_x, vp_y and vp_z say
+/// themselves where they were seen from. An organized cloud is taken for the range image that it
+/// is.
 ///
 /// A point without a normal (NaN coordinates, a stray farther away than 2^24 times the extent of
 /// the others, or fewer than three distinct points around) gets NaN, and is_dense is cleared. No

@@ -125,8 +125,8 @@ struct PipelineReport {
   /// as the points do not contradict each other or their sensors decide.
   std::vector<ScaleEnergy> scales;
   std::vector<KnownSensor> known_sensors;  ///< of AUTO: what became of known sensors
-  /// What AUTO found where no sensor was given; empty otherwise. sensor_of is by input row, and
-  /// empty where no sensor was found.
+  /// What AUTO found where no sensor was given, or none that was given is believed; empty
+  /// otherwise. sensor_of is by input row, and empty where no sensor was found.
   SensorReport sensors;
   std::vector<StageTime> stages;
   double seconds = 0.0;                                ///< all stages

@@ -132,7 +132,8 @@ class SegmentOrientation : public pcl::PCLBase<PointT> {
   // What is known beforehand: evidence for AUTO, not truth; see OrientationHints. Points that have
   // fields vp_x, vp_y and vp_z say themselves where they were seen from.
 
-  /// Where the cloud was seen from; it matters to open surfaces only.
+  /// Where the cloud was seen from; what closes in itself keeps its outside against it, unless the
+  /// cloud shows that it was seen from there.
   void setViewPoint(float x, float y, float z) {
     hints_.has_viewpoint = true;
     hints_.viewpoint = {x, y, z};

@@ -32,8 +32,9 @@ struct KnownSensor {
   /// Share of neighbours on one smooth sheet, its own and others', that would have to face apart.
   float contrary = 0.F;
   /// How far the density of its points falls with distance and incidence as it does from a sensor:
-  /// scatter about that law over scatter about a constant. Below .7 it was there, from .9 on it was
-  /// not, or the cloud was thinned; infinity where it could not be told.
+  /// scatter about that law over scatter about a constant. Below .7 it was there; from .9 on it was
+  /// not, or the cloud was thinned, or the sensor works otherwise, as from the air (up to 1.6).
+  /// Infinity where it could not be told.
   float density = std::numeric_limits<float>::infinity();
 };
 

@@ -60,7 +60,8 @@ void turnLooseParts(SheetSigns& sheets) {
   if (turnLooseParts(sheets, part_of, clean, {0.1, kClosedResidual})) sheets.windComponents();
 }
 
-// Two of three columns have one layer, which faces up: ground, or what is seen from above.
+// Ground, or what is seen from above: a third of the columns more have one layer that faces up than
+// have one that faces down.
 constexpr float kLies = 1.F / 3.F;
 
 // By convention ground up, else +z, then +y, then +x.
@@ -80,8 +81,12 @@ std::vector<std::int8_t> conventions(const SheetSigns& sheets, const std::vector
   }
   std::vector<std::int8_t> out(count, 1);
   for (std::size_t c = 0; c < count; ++c) {
+    if (sheets.ground[c]) {
+      out[c] = up[c] < 0.F ? -1 : 1;
+      continue;
+    }
     const double least = 1e-6 * points[c];
-    double direction = sheets.ground[c] ? static_cast<double>(up[c]) : sum[c][2];
+    double direction = sum[c][2];
     if (std::fabs(direction) <= least) direction = sum[c][1];
     if (std::fabs(direction) <= least) direction = sum[c][0];
     if (direction < 0.0) out[c] = -1;

@@ -94,6 +94,7 @@ AutoOrientation inTermsOfTheCloud(CoarseLevel& level, const std::vector<std::int
   AutoOrientation out = std::move(level.found.orientation);
   out.sensors = fine.sensors;
   out.toward = fine.toward;
+  out.place_idle = fine.place_idle;
   for (Contradiction& c : out.contradictions) {
     for (float& v : c.where) v *= level.cloud.unit();
   }

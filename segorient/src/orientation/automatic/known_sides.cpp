@@ -61,9 +61,10 @@ void weighOnePlace(SheetSigns& sheets, const std::vector<Ballot>& ballots) {
   }
   KnownSensor& report = sheets.sensors.scans[0];
   report.used = 2 * believed > sheets.cloud_points;
-  if (!report.used) report.seen = 0;
+  sheets.sensors.countSeen();
   if (!sheets.sensors.doubtful) return;
-  // What hides points has turned nothing that closes before, see followHints().
+  // followHints() has left closed components alone where a doubtful place hides points, so that it
+  // decided nothing if all are closed.
   sheets.found.place_idle =
       report.hidden > kFewHidden && std::all_of(own.begin(), own.end(), [](bool o) { return o; });
   report.contrary = splitOf(sheets, ballots, own);
@@ -73,7 +74,9 @@ void weighOnePlace(SheetSigns& sheets, const std::vector<Ballot>& ballots) {
   const float unlike =
       sheets.sensors.hides && std::isfinite(report.density) ? std::max(1.F, report.density) : 1.F;
   if (report.contrary * unlike <= kMostSplit) return;
-  sheets.sensors.drop(0);
+  report.used = false;
+  sheets.sensors.dropUnused();
+  sheets.sensors.countSeen();
   sheets.facing.assign(sheets.points.size, 0.F);
 }
 

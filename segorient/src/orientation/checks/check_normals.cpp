@@ -9,6 +9,7 @@
 
 #include "common/at.h"
 #include "common/box.h"
+#include "common/in_double.h"
 #include "orientation/checks/fault_patches.h"
 
 #include "common/dot.h"
@@ -33,10 +34,6 @@ bool normalize(const std::array<double, 3>& v, float* out) {
   const double length = largest * std::sqrt(sum);
   for (std::size_t a = 0; a < 3; ++a) out[a] = static_cast<float>(v[a] / length);
   return true;
-}
-
-std::array<double, 3> inDouble(const float* v) {
-  return {static_cast<double>(v[0]), static_cast<double>(v[1]), static_cast<double>(v[2])};
 }
 
 class Check {

@@ -5,17 +5,14 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <functional>
 #include <limits>
 #include <numeric>
-#include <unordered_map>
 
+#include "orientation/sensors/number_places.h"
 #include "orientation/sensors/scan_checks.h"
 
 namespace segorient::detail {
 namespace {
-
-using Place = std::array<float, 3>;
 
 // Fewer points say too little about their sensor; they are looked at together.
 constexpr std::uint32_t kLeastPoints = 200;
@@ -30,49 +27,6 @@ constexpr float kMostHidden = 0.1F;
 constexpr float kDenied = 1.3F;
 constexpr float kVaries = 0.3F;
 
-// The places in ascending order, and which of them each point has.
-std::vector<Place> numberPlaces(const std::vector<float>& sensors, std::vector<std::int32_t>& of) {
-  // Points of one place mostly come one after another, and there are few places or as many as
-  // points.
-  struct Hash {
-    std::size_t operator()(const Place& p) const {
-      std::size_t h = 0;
-      for (const float v : p) h = h * 1000003U + std::hash<float>()(v);
-      return h;
-    }
-  };
-  std::unordered_map<Place, std::int32_t, Hash> found;
-  std::vector<Place> places;
-  std::int32_t last = -1;
-  for (std::size_t i = 0; i < of.size(); ++i) {
-    const float* v = &sensors[3 * i];
-    if (!isFinite(v)) continue;
-    const Place place{v[0], v[1], v[2]};
-    if (last < 0 || place != places[static_cast<std::size_t>(last)]) {
-      const auto next = static_cast<std::int32_t>(places.size());
-      const auto [at, is_new] = found.emplace(place, next);
-      if (is_new) places.push_back(place);
-      last = at->second;
-    }
-    of[i] = last;
-  }
-  std::vector<std::int32_t> order(places.size());
-  std::iota(order.begin(), order.end(), 0);
-  std::sort(order.begin(), order.end(), [&](std::int32_t a, std::int32_t b) {
-    return places[static_cast<std::size_t>(a)] < places[static_cast<std::size_t>(b)];
-  });
-  std::vector<std::int32_t> rank(places.size());
-  std::vector<Place> sorted;
-  for (const std::int32_t p : order) {
-    rank[static_cast<std::size_t>(p)] = static_cast<std::int32_t>(sorted.size());
-    sorted.push_back(places[static_cast<std::size_t>(p)]);
-  }
-  for (std::int32_t& p : of) {
-    if (p >= 0) p = rank[static_cast<std::size_t>(p)];
-  }
-  return sorted;
-}
-
 class Finder {
  public:
   Finder(const PointView& points, const Neighborhoods& nb, const float* spacing,
@@ -86,17 +40,18 @@ class Finder {
     out_.common = hints_.has_viewpoint && hints_.sensors.empty();
     listScans(sensors);
     if (out_.scans.empty()) return {};
-    out_.one_place = out_.scans.size() == 1 && !out_.scans[0].moving;
+    out_.one_place =
+        out_.scans.size() == 1 && !out_.scans[0].moving && out_.scans[0].points == points_.size;
     denied_.assign(out_.scans.size(), 0);
     point(sensors);
     for (std::size_t s = 0; s < out_.scans.size(); ++s) look(s);
     if (!out_.allowed && (out_.scans.size() > 1 || !out_.common)) compare();
-    countSeen();
+    out_.countSeen();
     return std::move(out_);
   }
 
  private:
-  void fillIn(const Place& place, std::vector<float>& sensors) const {
+  void fillIn(const std::array<float, 3>& place, std::vector<float>& sensors) const {
     sensors.resize(3 * points_.size, std::numeric_limits<float>::quiet_NaN());
     for (std::size_t i = 0; i < points_.size; ++i) {
       if (!isFinite(&sensors[3 * i])) std::copy(place.begin(), place.end(), &sensors[3 * i]);
@@ -104,8 +59,8 @@ class Finder {
   }
 
   void listScans(const std::vector<float>& sensors) {
-    std::vector<std::int32_t> place_of(points_.size, -1);
-    const std::vector<Place> places = numberPlaces(sensors, place_of);
+    std::vector<std::int32_t> place_of;
+    const std::vector<std::array<float, 3>> places = numberPlaces(sensors, place_of);
     std::vector<std::uint32_t> size(places.size(), 0);
     for (const std::int32_t p : place_of) {
       if (p >= 0) ++size[static_cast<std::size_t>(p)];
@@ -141,6 +96,23 @@ class Finder {
       const std::int32_t n = number[static_cast<std::size_t>(place_of[i])];
       out_.scan[i] = n < 0 ? together : n;
     }
+    listRows();
+  }
+
+  // The points of each scan, one scan after the other.
+  void listRows() {
+    start_.assign(out_.scans.size() + 1, 0);
+    for (const std::int32_t s : out_.scan) {
+      if (s >= 0) ++start_[static_cast<std::size_t>(s) + 1];
+    }
+    std::partial_sum(start_.begin(), start_.end(), start_.begin());
+    std::vector<std::ptrdiff_t> next(start_.begin(), start_.end() - 1);
+    rows_.resize(static_cast<std::size_t>(start_.back()));
+    for (std::size_t i = 0; i < points_.size; ++i) {
+      if (out_.scan[i] < 0) continue;
+      std::ptrdiff_t& at = next[static_cast<std::size_t>(out_.scan[i])];
+      rows_[static_cast<std::size_t>(at++)] = static_cast<std::uint32_t>(i);
+    }
   }
 
   void point(const std::vector<float>& sensors) {
@@ -163,11 +135,7 @@ class Finder {
   void look(std::size_t s) {
     KnownSensor& report = out_.scans[s];
     if (report.moving || report.points < kLeastPoints) return;
-    std::vector<std::uint32_t> rows;
-    for (std::size_t i = 0; i < points_.size; ++i) {
-      if (out_.scan[i] != static_cast<std::int32_t>(s)) continue;
-      rows.push_back(static_cast<std::uint32_t>(i));
-    }
+    const std::vector<std::uint32_t> rows(rows_.begin() + start_[s], rows_.begin() + start_[s + 1]);
     Scan scan(points_, rows, report.position, threads_);
     const Scan::Density density = scan.density();
     report.density = density.ratio;
@@ -222,24 +190,22 @@ class Finder {
   // clear the others.
   void compare() {
     const std::size_t n = out_.scans.size();
-    const ContraryPairs pairs =
-        findContraryPairs(points_, nb_, spacing_, out_.toward, out_.scan, n, threads_);
-    // Those whose density confirms them are believed first.
-    const auto shareOf = [&](std::size_t s) {
-      double all = 0.0;
-      double contrary = 0.0;
-      for (std::size_t t = 0; t < n; ++t) {
-        if (!out_.scans[t].used && t != s) continue;
-        all += pairs.pairs[s * n + t];
-        contrary += pairs.contrary[s * n + t];
-      }
-      return all > 0.0 ? static_cast<float>(contrary / all) : 0.F;
-    };
+    const std::vector<ScanPairs> pairs =
+        findContraryPairs(points_, nb_, spacing_, out_.toward, out_.scan, threads_);
+    // With scans that are used, and within each.
+    std::vector<double> all(n, 0.0);
+    std::vector<double> contrary(n, 0.0);
+    for (const ScanPairs& p : pairs) {
+      if (!out_.scans[p.other].used && p.other != p.scan) continue;
+      all[p.scan] += p.pairs;
+      contrary[p.scan] += p.contrary;
+    }
     for (;;) {
       std::size_t worst = n;
       float most = kMostContrary;
+      // Those whose density confirms them are believed first.
       for (std::size_t s = 0; s < n; ++s) {
-        const float share = shareOf(s);
+        const float share = all[s] > 0.0 ? static_cast<float>(contrary[s] / all[s]) : 0.F;
         out_.scans[s].contrary = share;
         if (!out_.scans[s].used || out_.scans[s].density < kConfirmed || !(share > most)) continue;
         most = share;
@@ -247,6 +213,11 @@ class Finder {
       }
       if (worst == n) break;
       out_.scans[worst].used = false;
+      for (const ScanPairs& p : pairs) {
+        if (p.other != worst || p.scan == worst) continue;
+        all[p.scan] -= p.pairs;
+        contrary[p.scan] -= p.contrary;
+      }
     }
     // Poses that were mixed up are wrong together: where one is refused, others need more than that
     // nothing contradicts them.
@@ -254,16 +225,8 @@ class Finder {
                                       [](const KnownSensor& scan) { return !scan.used; });
     for (std::size_t s = 0; s < n; ++s) {
       if (mixed_up && denied_[s] != 0) out_.scans[s].used = false;
-      if (!out_.scans[s].used) out_.drop(s);
     }
-  }
-
-  void countSeen() {
-    for (std::size_t i = 0; i < points_.size; ++i) {
-      const float* v = out_.of(i);
-      if (v[0] != 0.F || v[1] != 0.F || v[2] != 0.F)
-        ++out_.scans[static_cast<std::size_t>(out_.scan[i])].seen;
-    }
+    out_.dropUnused();
   }
 
   const PointView& points_;
@@ -271,17 +234,27 @@ class Finder {
   const float* spacing_;
   const PointHints& hints_;
   int threads_;
-  std::vector<std::uint8_t> denied_;  // by scan: its density is far from what its sensor leaves
+  std::vector<std::uint32_t> rows_;    // by scan
+  std::vector<std::ptrdiff_t> start_;  // of each scan's rows
+  std::vector<std::uint8_t> denied_;   // by scan: its density is far from what its sensor leaves
   KnownSensors out_;
 };
 
 }  // namespace
 
-void KnownSensors::drop(std::size_t scan_number) {
-  scans[scan_number].used = false;
-  scans[scan_number].seen = 0;
+void KnownSensors::countSeen() {
+  for (KnownSensor& s : scans) s.seen = 0;
   for (std::size_t i = 0; i < scan.size(); ++i) {
-    if (scan[i] == static_cast<std::int32_t>(scan_number)) std::fill_n(&toward[3 * i], 3, 0.F);
+    const float* v = of(i);
+    if (v[0] != 0.F || v[1] != 0.F || v[2] != 0.F) ++scans[static_cast<std::size_t>(scan[i])].seen;
+  }
+}
+
+void KnownSensors::dropUnused() {
+  for (std::size_t i = 0; i < scan.size(); ++i) {
+    if (scan[i] >= 0 && !scans[static_cast<std::size_t>(scan[i])].used) {
+      std::fill_n(&toward[3 * i], 3, 0.F);
+    }
   }
 }
 

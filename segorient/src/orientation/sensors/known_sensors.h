@@ -32,10 +32,9 @@ struct KnownSensors {
   bool common = false;
   /// All points have been told the same place, whether as theirs or as the common one.
   bool one_place = false;
-  /// Of that place: the density of the points shows that it saw them, and nothing that it did not
-  /// see some of them.
+  /// Of that place: the density of the points, or where surfaces end, shows that it saw them.
   bool confirmed = false;
-  /// Of that place: there is evidence that it did not see all points, or none that it could have.
+  /// Of that place: there is evidence that it did not see all points, or too little to tell.
   bool doubtful = false;
   /// Of that place: too many points lie behind others.
   bool hides = false;
@@ -46,8 +45,10 @@ struct KnownSensors {
 
   bool none() const { return toward.empty(); }
   const float* of(std::size_t point) const { return &toward[3 * point]; }
-  /// Takes back what a scan says of its points.
-  void drop(std::size_t scan_number);
+  /// Takes back what scans that are not used say of their points.
+  void dropUnused();
+  /// Counts again how many points each scan has a say about.
+  void countSeen();
 };
 
 /// Who saw what, checked.

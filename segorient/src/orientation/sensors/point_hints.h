@@ -14,7 +14,7 @@
 
 namespace segorient {
 
-/// The same by distinct point, in the unit of a PreparedCloud.
+/// OrientationHints by distinct point, in the unit of a PreparedCloud.
 struct PointHints {
   struct Seed {
     std::size_t point = 0;
@@ -44,7 +44,7 @@ struct PointHints {
   }
 };
 
-/// \param cloud that that `hints` is about
+/// \param cloud the one that `hints` is about
 SEGORIENT_ORIENTATION_EXPORT PointHints resolveHints(const OrientationHints& hints,
                                                      PreparedCloud& cloud);
 

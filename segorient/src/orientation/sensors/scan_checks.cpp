@@ -4,7 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <utility>
 
+#include "common/box.h"
 #include "common/dot.h"
 #include "common/median.h"
 #include "common/threads.h"
@@ -66,24 +69,14 @@ struct Scan::Row {
 
 Scan::Scan(const PointView& points, const std::vector<std::uint32_t>& rows,
            const std::array<float, 3>& sensor, int threads)
-    : xyz_(4 * rows.size(), 0.F),
-      direction_(4 * rows.size(), 0.F),
-      distance_(rows.size()),
-      threads_(threads) {
+    : xyz_(4 * rows.size(), 0.F), threads_(threads) {
+  Box box;
   for (std::size_t i = 0; i < rows.size(); ++i) {
-    double v[3];
-    double square = 0.0;
-    for (std::size_t a = 0; a < 3; ++a) {
-      v[a] = static_cast<double>(points[rows[i]][a]) - static_cast<double>(sensor[a]);
-      xyz_[4 * i + a] = static_cast<float>(v[a]);
-      square += v[a] * v[a];
-    }
-    const double d = std::sqrt(square);
-    distance_[i] = static_cast<float>(d);
-    for (std::size_t a = 0; a < 3 && d > 0.0; ++a) {
-      direction_[4 * i + a] = static_cast<float>(v[a] / d);
-    }
+    std::copy_n(points[rows[i]], 3, &xyz_[4 * i]);
+    box.add(&xyz_[4 * i]);
   }
+  if (!rows.empty()) extent_ = box.diagonal();
+  seen_ = seeFrom(sensor, view());
   search::MedianHashIndex::Options options;
   options.threads = threads;
   index_.build(view(), nullptr, options);
@@ -119,14 +112,11 @@ std::vector<std::uint8_t> Scan::hidden(bool all) {
   }
   const std::size_t step = all ? 1 : stride();
   const std::size_t n = (size() + step - 1) / step;
-  search::MedianHashIndex index;
-  search::MedianHashIndex::Options options;
-  options.threads = threads_;
-  index.build({direction_.data(), 4, size()}, nullptr, options);
+  const search::MedianHashIndex directions = seen_.index(threads_);
   std::vector<std::uint8_t> out(n, 0);
 #pragma omp parallel for num_threads(resolveThreads(threads_, n, kRayTime)) schedule(dynamic, 64)
   for (std::size_t s = 0; s < n; ++s) {
-    out[s] = isHidden(s * step, index) ? 1 : 0;
+    out[s] = isHidden(s * step, directions) ? 1 : 0;
   }
   return out;
 }
@@ -139,19 +129,22 @@ bool Scan::isHidden(std::size_t i, const search::MedianHashIndex& directions) co
   nearest(i, kPlane + 1, row);
   const Plane plane = planeOf(view(), i, row.indices, row.count);
   const float incidence =
-      plane.valid ? std::fabs(dot(plane.normal.data(), &direction_[4 * i])) : 1.F;
-  // Four spacings before it, along the surface, and a thirtieth of its distance: steps of depth.
-  const float d = distance_[i];
-  const float margin = std::max(4.F * spacingOf(i) / std::max(incidence, kLeast), 0.03F * d);
+      plane.valid ? std::fabs(dot(plane.normal.data(), &seen_.direction[4 * i])) : 1.F;
+  // Four spacings before it, along the surface, and a thirtieth of its distance, or of the extent
+  // of what is seen from far away: steps of depth.
+  const float d = seen_.distance[i];
+  const float margin =
+      std::max(4.F * spacingOf(i) / std::max(incidence, kLeast), 0.03F * std::min(d, extent_));
   std::array<pcl::index_t, kAround> around;
   std::array<float, kAround> squares;
-  const int found = directions.nearestK(&direction_[4 * i], kAround, around.data(), squares.data());
+  const int found =
+      directions.nearestK(&seen_.direction[4 * i], kAround, around.data(), squares.data());
   int before = 0;
   for (int j = 0; j < found && before < kTwo; ++j) {
     const auto at = static_cast<std::size_t>(j);
     const auto q = static_cast<std::size_t>(around[at]);
-    if (distance_[q] >= d - margin) continue;
-    const float reach = spacingOf(q) / distance_[q];
+    if (seen_.distance[q] >= d - margin) continue;
+    const float reach = spacingOf(q) / seen_.distance[q];
     before += squares[at] < reach * reach ? 1 : 0;
   }
   return before >= kTwo;
@@ -169,7 +162,7 @@ Scan::Density Scan::density() const {
   const std::size_t step = stride();
   std::array<double, 3> mean{0.0, 0.0, 0.0};
   for (std::size_t i = 0; i < size(); ++i) {
-    for (std::size_t a = 0; a < 3; ++a) mean[a] += static_cast<double>(direction_[4 * i + a]);
+    for (std::size_t a = 0; a < 3; ++a) mean[a] += static_cast<double>(seen_.direction[4 * i + a]);
   }
   const double length = std::sqrt(mean[0] * mean[0] + mean[1] * mean[1] + mean[2] * mean[2]);
   float gaze[3] = {0.F, 0.F, 0.F};
@@ -186,11 +179,11 @@ Scan::Density Scan::density() const {
     const float spacing =
         meanDistance(view(), i, row.indices + 1, std::min(row.count - 1, kSpacing));
     if (!plane.valid || !(l[0] < kFlat * l[1]) || !(l[1] > kWide * l[2])) continue;
-    if (!(distance_[i] > 0.F) || !(spacing > 0.F)) continue;
-    const float* u = &direction_[4 * i];
+    if (!(seen_.distance[i] > 0.F) || !(spacing > 0.F)) continue;
+    const float* u = &seen_.direction[4 * i];
     const float log_density = -0.5F * std::log(l[1] * l[2]) - 2.F * std::log(spacing);
     const float incidence = std::max(std::fabs(dot(plane.normal.data(), u)), kGrazing);
-    const float plain = log_density - std::log(incidence) + 2.F * std::log(distance_[i]);
+    const float plain = log_density - std::log(incidence) + 2.F * std::log(seen_.distance[i]);
     constant.push_back(log_density);
     laws[0].push_back(plain);
     for (std::size_t a = 0; a < 3; ++a) {
@@ -209,18 +202,14 @@ Scan::Density Scan::density() const {
   return out;
 }
 
-ContraryPairs findContraryPairs(const PointView& points, const Neighborhoods& nb,
-                                const float* spacing, const std::vector<float>& toward,
-                                const std::vector<std::int32_t>& scan, std::size_t scans,
-                                int threads) {
+std::vector<ScanPairs> findContraryPairs(const PointView& points, const Neighborhoods& nb,
+                                         const float* spacing, const std::vector<float>& toward,
+                                         const std::vector<std::int32_t>& scan, int threads) {
   constexpr std::size_t kPairSamples = 40000;
   constexpr int kAround = 8;
   constexpr float kClear = 0.3F;     // 17 degrees above grazing
   constexpr float kParallel = 0.9F;  // and no edge between them
   constexpr float kOffset = 0.7F;    // spacings: less than what walls are apart
-  ContraryPairs out;
-  out.pairs.assign(scans * scans, 0.0);
-  out.contrary.assign(scans * scans, 0.0);
   const std::size_t step = strideOf(points.size, kPairSamples);
   const std::size_t n = (points.size + step - 1) / step;
   struct Pairs {
@@ -255,16 +244,23 @@ ContraryPairs findContraryPairs(const PointView& points, const Neighborhoods& nb
       found[s].agree[at] = view * seen * parallel > 0.F ? 1 : -1;
     }
   }
+  // Of many scans, few are neighbours of each other.
+  std::map<std::pair<std::size_t, std::size_t>, std::pair<double, double>> counts;
   for (std::size_t s = 0; s < n; ++s) {
     for (std::size_t j = 0; j < kAround; ++j) {
       if (found[s].agree[j] == 0) continue;
       const auto a = static_cast<std::size_t>(scan[s * step]);
       const auto b = static_cast<std::size_t>(found[s].scan[j]);
-      for (const std::size_t pair : {a * scans + b, b * scans + a}) {
-        out.pairs[pair] += 1.0;
-        if (found[s].agree[j] < 0) out.contrary[pair] += 1.0;
+      for (const auto& pair : {std::pair(a, b), std::pair(b, a)}) {
+        auto& [pairs, contrary] = counts[pair];
+        pairs += 1.0;
+        if (found[s].agree[j] < 0) contrary += 1.0;
       }
     }
+  }
+  std::vector<ScanPairs> out;
+  for (const auto& [ends, count] : counts) {
+    out.push_back({ends.first, ends.second, count.first, count.second});
   }
   return out;
 }

@@ -12,6 +12,8 @@
 #include <limits>
 #include <vector>
 
+#include "orientation/sensors/seen_from.h"
+
 namespace segorient::detail {
 
 /// Points that one sensor is said to have seen. Neighbours are those among themselves.
@@ -21,7 +23,7 @@ class Scan {
   Scan(const PointView& points, const std::vector<std::uint32_t>& rows,
        const std::array<float, 3>& sensor, int threads);
 
-  std::size_t size() const { return distance_.size(); }
+  std::size_t size() const { return seen_.size(); }
 
   /// Which of some thousand points, or of all, lie behind others: the point's ray passes two of
   /// them within their own spacing, well before it arrives.
@@ -43,14 +45,14 @@ class Scan {
  private:
   struct Row;
 
-  PointView view() const { return {xyz_.data(), 4, distance_.size()}; }
+  PointView view() const { return {xyz_.data(), 4, xyz_.size() / 4}; }
   void nearest(std::size_t i, int entries, Row& out) const;
   float spacingOf(std::size_t i) const;
   bool isHidden(std::size_t i, const search::MedianHashIndex& directions) const;
 
-  std::vector<float> xyz_;        ///< 4 floats: relative to the sensor
-  std::vector<float> direction_;  ///< 4 floats: of length 1
-  std::vector<float> distance_;
+  std::vector<float> xyz_;  ///< 4 floats
+  SeenFrom seen_;
+  float extent_ = 0.F;  ///< diagonal of its box
   search::MedianHashIndex index_;
   Neighborhoods near_;          ///< empty until all are asked for
   std::vector<float> spacing_;  ///< the same
@@ -58,15 +60,18 @@ class Scan {
 };
 
 /// Pairs of neighbours on one smooth sheet, both seen far from grazing, by the scans of their ends.
-struct ContraryPairs {
-  std::vector<double> pairs;     ///< scans squared
-  std::vector<double> contrary;  ///< of these, those whose ends would face apart
+struct ScanPairs {
+  std::size_t scan;   ///< of one end
+  std::size_t other;  ///< of the other end
+  double pairs;
+  double contrary;  ///< of these, those whose ends would face apart
 };
+/// Of all scans that have such pairs, from either end: those within one scan count twice.
 /// \param toward 3 a point, as KnownSensors has them
-/// \param scan one a point, below `scans`, -1 = none
-ContraryPairs findContraryPairs(const PointView& points, const Neighborhoods& neighborhoods,
-                                const float* spacing, const std::vector<float>& toward,
-                                const std::vector<std::int32_t>& scan, std::size_t scans,
-                                int threads);
+/// \param scan one a point, -1 = none
+std::vector<ScanPairs> findContraryPairs(const PointView& points,
+                                         const Neighborhoods& neighborhoods, const float* spacing,
+                                         const std::vector<float>& toward,
+                                         const std::vector<std::int32_t>& scan, int threads);
 
 }  // namespace segorient::detail

@@ -27,11 +27,8 @@ void addViewpoints(const SensorReport& report, OrientationHints& hints) {
 }  // namespace
 
 bool lacksSensors(const OrientationHints& hints) {
-  // A column of unknown places says no more than none.
-  const bool any = std::any_of(hints.viewpoints.begin(), hints.viewpoints.end(),
-                               [](float v) { return std::isfinite(v); });
-  return !hints.has_viewpoint && !hints.has_direction && !any && hints.normals.empty() &&
-         hints.surface != SurfaceKind::CLOSED;
+  return !hints.has_viewpoint && !hints.has_direction && hints.viewpoints.empty() &&
+         hints.normals.empty() && hints.surface != SurfaceKind::CLOSED;
 }
 
 bool isImage(const OrientationHints& hints, std::size_t rows) {
@@ -59,7 +56,7 @@ OrientationHints withoutPlaces(const OrientationHints& hints) {
   return out;
 }
 
-std::optional<std::array<float, 3>> onlyPlace(const OrientationHints& hints) {
+std::optional<std::array<float, 3>> onlyPlace(const OrientationHints& hints, std::size_t rows) {
   if (hints.viewpoints.empty()) {
     return hints.has_viewpoint ? std::optional(hints.viewpoint) : std::nullopt;
   }
@@ -67,21 +64,23 @@ std::optional<std::array<float, 3>> onlyPlace(const OrientationHints& hints) {
   for (std::size_t i = 0; i < v.size(); ++i) {
     if (!std::isfinite(v[i]) || v[i] != v[i % 3]) return std::nullopt;
   }
-  return v.size() < 3 ? std::nullopt : std::optional(std::array<float, 3>{v[0], v[1], v[2]});
+  const bool all = v.size() >= 3 * std::max<std::size_t>(1, rows);
+  return all ? std::optional(std::array<float, 3>{v[0], v[1], v[2]}) : std::nullopt;
 }
 
-bool contradictsPlace(const PointView& points, const SensorReport& report,
+bool contradictsPlace(const PreparedCloud& cloud, const SensorReport& report,
                       const std::array<float, 3>& place) {
   constexpr std::size_t kSample = 1000;
   // Mean cosine: 14 degrees. True places are 10 at most from what was found beside them; the middle
   // of a scan, 18 and more where it sees the surface from another side.
   constexpr double kSameWay = 0.97;
   if (!report.sure()) return false;
-  const auto directionTo = [](const float* from, const std::array<float, 3>& to) {
+  const auto unit = static_cast<double>(cloud.unit());
+  const auto directionTo = [unit](const float* from, const std::array<float, 3>& to) {
     std::array<double, 3> d{};
     double square = 0.0;
     for (std::size_t a = 0; a < 3; ++a) {
-      d[a] = static_cast<double>(to[a]) - static_cast<double>(from[a]);
+      d[a] = static_cast<double>(to[a]) / unit - static_cast<double>(from[a]);
       square += d[a] * d[a];
     }
     for (double& v : d) v /= std::sqrt(square);
@@ -89,6 +88,7 @@ bool contradictsPlace(const PointView& points, const SensorReport& report,
   };
   double sum = 0.0;
   std::size_t count = 0;
+  const PointView points = cloud.points();
   const std::size_t step = std::max<std::size_t>(1, points.size / kSample);
   for (std::size_t i = 0; i < points.size; i += step) {
     const std::array<double, 3> given = directionTo(points[i], place);
@@ -98,7 +98,7 @@ bool contradictsPlace(const PointView& points, const SensorReport& report,
       const double cosine = given[0] * found[0] + given[1] * found[1] + given[2] * found[2];
       if (cosine < least) least = cosine;
     }
-    if (least > 1.5) continue;  // not a point
+    if (least > 1.5) continue;  // in one of the places
     sum += least;
     ++count;
   }

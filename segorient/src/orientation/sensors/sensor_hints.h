@@ -15,7 +15,7 @@
 namespace segorient::detail {
 
 /// Whether it is worth looking for sensors: none is known, no normals are, and the cloud is not
-/// said to be closed.
+/// said to be closed. Places that are given are known ones.
 bool lacksSensors(const OrientationHints& hints);
 
 /// Whether the cloud is one image, which tells where its camera is.
@@ -29,12 +29,12 @@ SensorReport addFoundSensors(const PointView& points, PreparedCloud& cloud, int 
 /// The hints without what they say of places that a sensor had.
 OrientationHints withoutPlaces(const OrientationHints& hints);
 
-/// The place that all points are said to have been seen from, if that is one.
-std::optional<std::array<float, 3>> onlyPlace(const OrientationHints& hints);
+/// The place that all rows are said to have been seen from, if that is one.
+std::optional<std::array<float, 3>> onlyPlace(const OrientationHints& hints, std::size_t rows);
 
 /// Whether sensors were found for sure, and some of them elsewhere than the place that somebody
 /// gave for all points, as seen from the points.
-bool contradictsPlace(const PointView& points, const SensorReport& report,
+bool contradictsPlace(const PreparedCloud& cloud, const SensorReport& report,
                       const std::array<float, 3>& place);
 
 }  // namespace segorient::detail

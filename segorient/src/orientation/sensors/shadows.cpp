@@ -16,11 +16,12 @@
 #include "common/median.h"
 #include "common/threads.h"
 #include "features/sheet_fit.h"
+#include "orientation/sensors/seen_from.h"
 
 namespace segorient::detail {
 namespace {
 
-// Steps are some spacings wide: more points make them no easier to tell.
+// Steps are some spacings wide: more than once or twice as many make them no easier to tell.
 constexpr std::size_t kMostPoints = 40000;
 // Enough for shares of a hundredth.
 constexpr std::size_t kSamples = 1500;
@@ -57,47 +58,65 @@ constexpr float kStepSpacings = 4.F;
 constexpr float kStepDepth = 0.03F;
 // Spacings of what is nearer: what is farther away from all of it is not beside it.
 constexpr float kReach = 3.F;
-// Spacings from the place, within which points lie in all directions.
+// Spacings from the place, within which the points of a surface lie in all directions.
 constexpr float kNearest = 5.F;
+
+using Place = std::array<float, 3>;
 
 class ShadowSearch {
  public:
-  ShadowSearch(const PointView& points, const std::array<float, 3>& place, int threads)
-      : threads_(threads) {
+  ShadowSearch(const PointView& points, int threads) : threads_(threads) {
     const std::size_t step = std::max<std::size_t>(1, points.size / kMostPoints);
     const std::size_t n = (points.size + step - 1) / step;
     xyz_.assign(4 * n, 0.F);
-    direction_.assign(4 * n, 0.F);
-    distance_.assign(n, 0.F);
-    for (std::size_t i = 0; i < n; ++i) {
-      double v[3];
-      double square = 0.0;
-      for (std::size_t a = 0; a < 3; ++a) {
-        v[a] = static_cast<double>(points[i * step][a]) - static_cast<double>(place[a]);
-        xyz_[4 * i + a] = points[i * step][a];
-        square += v[a] * v[a];
-      }
-      const double d = std::sqrt(square);
-      distance_[i] = static_cast<float>(d);
-      for (std::size_t a = 0; a < 3 && d > 0.0; ++a) {
-        direction_[4 * i + a] = static_cast<float>(v[a] / d);
-      }
-    }
-    const auto [least, most] = std::minmax_element(distance_.begin(), distance_.end());
-    depth_ = *most - *least;
+    for (std::size_t i = 0; i < n; ++i) std::copy_n(points[i * step], 3, &xyz_[4 * i]);
     findSurfaces();
-    search::MedianHashIndex::Options options;
-    options.threads = threads_;
-    directions_.build({direction_.data(), 4, n}, nullptr, options);
   }
 
   // \param least_open share of directions without which steps are not looked for
-  Shadows run(float least_open) const {
+  Shadows run(const Place& place, float least_open) {
+    Shadows out = lookFrom(place, least_open);
+    if (!out.confirm()) return out;
+    const Place middle = middleOf();
+    if (!isOutside(place, middle)) return out;
+    Place across;
+    for (std::size_t a = 0; a < 3; ++a) across[a] = 2.F * middle[a] - place[a];
+    const Shadows other = lookFrom(across, least_open);
+    out.better_across = other.confirm() && other.coveredOfSteps() <= out.coveredOfSteps();
+    return out;
+  }
+
+ private:
+  std::size_t size() const { return spacing_.size(); }
+  PointView view() const { return {xyz_.data(), 4, xyz_.size() / 4}; }
+
+  Place middleOf() const {
+    std::array<double, 3> sum{0.0, 0.0, 0.0};
+    for (std::size_t i = 0; i < size(); ++i) {
+      for (std::size_t a = 0; a < 3; ++a) sum[a] += static_cast<double>(xyz_[4 * i + a]);
+    }
+    Place out;
+    for (std::size_t a = 0; a < 3; ++a) {
+      out[a] = static_cast<float>(sum[a] / static_cast<double>(size()));
+    }
+    return out;
+  }
+
+  // Of the least ball around the middle that holds the points.
+  bool isOutside(const Place& place, const Place& middle) const {
+    const SeenFrom seen = seeFrom(middle, view());
+    const SeenFrom it = seeFrom(middle, {place.data(), 3, 1});
+    return it.distance[0] > *std::max_element(seen.distance.begin(), seen.distance.end());
+  }
+
+  Shadows lookFrom(const Place& place, float least_open) {
+    seen_ = seeFrom(place, view());
+    directions_ = seen_.index(threads_);
     Shadows out;
     out.open = openShare();
     if (!(out.open >= least_open)) return out;
-    const std::size_t stride = std::max<std::size_t>(1, distance_.size() / kSamples);
-    const std::size_t n = (distance_.size() + stride - 1) / stride;
+    const std::size_t stride = std::max<std::size_t>(1, size() / kSamples);
+    const std::size_t n = (size() + stride - 1) / stride;
     std::vector<Step> found(n, Step::NO_SURFACE);
 #pragma omp parallel for num_threads(resolveThreads(threads_, n, kRayTime)) schedule(dynamic, 32)
     for (std::size_t s = 0; s < n; ++s) {
@@ -115,15 +134,16 @@ class ShadowSearch {
     return out;
   }
 
- private:
   // Directions all around, by the golden angle.
   float openShare() const {
     constexpr int kDirections = 1000;
     constexpr float kGolden = 2.39996323F;
-    // Where it is on a surface itself, there is something all around.
-    for (std::size_t i = 0; i < distance_.size(); ++i) {
-      if (distance_[i] < kNearest * width_[i]) return 0.F;
+    // Where it is on a surface itself, there is something all around. A stray point is none.
+    int near = 0;
+    for (std::size_t i = 0; i < size(); ++i) {
+      near += seen_.distance[i] < kNearest * width_[i] ? 1 : 0;
     }
+    if (near > kPlane) return 0.F;
     int open = 0;
     for (int k = 0; k < kDirections; ++k) {
       const float z = 1.F - (2.F * static_cast<float>(k) + 1.F) / static_cast<float>(kDirections);
@@ -134,7 +154,7 @@ class ShadowSearch {
       float square = 0.F;
       if (directions_.nearestK(ray.data(), 1, &nearest, &square) < 1) return 1.F;
       const auto q = static_cast<std::size_t>(nearest);
-      const float reach = kReach * width_[q] / distance_[q];
+      const float reach = kReach * width_[q] / seen_.distance[q];
       open += square > reach * reach ? 1 : 0;
     }
     return static_cast<float>(open) / static_cast<float>(kDirections);
@@ -147,30 +167,29 @@ class ShadowSearch {
   void findSurfaces() {
     constexpr float kFlat = 0.1F;
     constexpr float kWide = 0.03F;
-    const PointView view{xyz_.data(), 4, distance_.size()};
     search::MedianHashIndex index;
     search::MedianHashIndex::Options options;
     options.threads = threads_;
-    index.build(view, nullptr, options);
+    index.build(view(), nullptr, options);
     Neighborhoods near;
     index.nearestKAll(kPlane + 1, near, false);
-    normal_.assign(4 * distance_.size(), 0.F);
-    spacing_.assign(distance_.size(), 0.F);
-    width_.assign(distance_.size(), 0.F);
-    const auto n = static_cast<std::ptrdiff_t>(distance_.size());
-#pragma omp parallel for num_threads(resolveThreads(threads_, distance_.size(), kPlaneTime))
-    for (std::ptrdiff_t p = 0; p < n; ++p) {
-      const auto i = static_cast<std::size_t>(p);
+    const std::size_t n = view().size;
+    normal_.assign(4 * n, 0.F);
+    spacing_.assign(n, 0.F);
+    width_.assign(n, 0.F);
+#pragma omp parallel for num_threads(resolveThreads(threads_, n, kPlaneTime))
+    for (std::size_t i = 0; i < n; ++i) {
       const pcl::index_t* row = near.indices(i);
       const int count = near.count(i);
-      const float h = meanDistance(view, i, row + 1, std::min(count - 1, kSpacing));
+      const float h = meanDistance(view(), i, row + 1, std::min(count - 1, kSpacing));
       width_[i] = h;
       if (!(h > 0.F)) continue;
       Moments m;
       m.addOrigin();
       for (int j = 1; j < count; ++j) {
-        const float* q = view[static_cast<std::size_t>(row[j])];
-        m.add((q[0] - view[i][0]) / h, (q[1] - view[i][1]) / h, (q[2] - view[i][2]) / h);
+        const float* p = view()[i];
+        const float* q = view()[static_cast<std::size_t>(row[j])];
+        m.add((q[0] - p[0]) / h, (q[1] - p[1]) / h, (q[2] - p[2]) / h);
       }
       const Plane plane = fitPlane(m);
       const Eigen::Vector3f& l = plane.lambda;
@@ -184,10 +203,10 @@ class ShadowSearch {
 
   Step lookAt(std::size_t i) const {
     constexpr std::size_t kTwo = 2;  // a single point that floats before the others hides nothing
-    const float* u = &direction_[4 * i];
-    const float d = distance_[i];
+    const float* u = &seen_.direction[4 * i];
+    const float d = seen_.distance[i];
     const float incidence = std::max(std::fabs(dot(&normal_[4 * i], u)), kLeastIncidence);
-    const float steps = kStepDepth * std::min(d, depth_);
+    const float steps = kStepDepth * std::min(d, seen_.depth);
     const float margin = std::max(kStepSpacings * width_[i] / incidence, steps);
     std::array<pcl::index_t, kAround> around;
     std::array<float, kAround> squares;
@@ -197,9 +216,9 @@ class ShadowSearch {
     for (int j = 0; j < found; ++j) {
       const auto at = static_cast<std::size_t>(j);
       const auto q = static_cast<std::size_t>(around[at]);
-      if (!(spacing_[q] > 0.F) || distance_[q] >= d - margin) continue;
-      if (distance_[q] < kNearest * spacing_[q]) continue;
-      const float reach = kReach * spacing_[q] / distance_[q];
+      if (!(spacing_[q] > 0.F) || seen_.distance[q] >= d - margin) continue;
+      if (seen_.distance[q] < kNearest * spacing_[q]) continue;
+      const float reach = kReach * spacing_[q] / seen_.distance[q];
       if (!(squares[at] < reach * reach)) continue;
       nearer.push_back(q);
       widest = squares[at];
@@ -208,7 +227,8 @@ class ShadowSearch {
     // A surface that rises steeply has points at all depths.
     std::vector<float> depth;
     for (int j = 0; j < found && squares[static_cast<std::size_t>(j)] <= widest; ++j) {
-      const float at = distance_[static_cast<std::size_t>(around[static_cast<std::size_t>(j)])];
+      const float at =
+          seen_.distance[static_cast<std::size_t>(around[static_cast<std::size_t>(j)])];
       if (at <= d) depth.push_back(at);
     }
     std::sort(depth.begin(), depth.end());
@@ -226,7 +246,7 @@ class ShadowSearch {
     constexpr float kPi = 3.14159265F;
     constexpr float kHalf = 0.9F * kPi;  // less than that: at the rim, errors decide
     if (others.size() < 3) return false;
-    const float* u = &direction_[4 * i];
+    const float* u = &seen_.direction[4 * i];
     std::size_t least = 0;
     for (std::size_t a = 1; a < 3; ++a) {
       if (std::fabs(u[a]) < std::fabs(u[least])) least = a;
@@ -238,7 +258,7 @@ class ShadowSearch {
     const Eigen::Vector3f y = ray.cross(x);
     std::vector<float> angles;
     for (const std::size_t q : others) {
-      const float* v = &direction_[4 * q];
+      const float* v = &seen_.direction[4 * q];
       const Eigen::Vector3f off(v[0] - u[0], v[1] - u[1], v[2] - u[2]);
       angles.push_back(std::atan2(off.dot(y), off.dot(x)));
     }
@@ -251,20 +271,18 @@ class ShadowSearch {
   }
 
   int threads_;
-  std::vector<float> xyz_;        ///< 4 floats
-  std::vector<float> direction_;  ///< 4 floats: of length 1
-  std::vector<float> distance_;
+  std::vector<float> xyz_;      ///< 4 floats
   std::vector<float> normal_;   ///< 4 floats
   std::vector<float> width_;    ///< spacing
   std::vector<float> spacing_;  ///< the same, 0 off all surfaces
-  float depth_ = 0.F;           ///< of the cloud, as seen from the place
+  SeenFrom seen_;
   search::MedianHashIndex directions_;
 };
 
 }  // namespace
 
 bool Shadows::confirm() const {
-  return steps > kFewSteps && covered < kMostCovered * steps;
+  return steps > kFewSteps && covered < kMostCovered * steps && !better_across;
 }
 
 bool Shadows::reveal() const {
@@ -285,13 +303,13 @@ bool Shadows::allow() const {
 
 Shadows findShadows(const PointView& points, const std::array<float, 3>& place, int threads) {
   if (points.size == 0) return {};
-  return ShadowSearch(points, place, threads).run(0.F);
+  return ShadowSearch(points, threads).run(place, 0.F);
 }
 
 std::optional<Shadows> revealingShadows(const PointView& points, const std::array<float, 3>& place,
                                         int threads) {
   if (points.size == 0) return std::nullopt;
-  const Shadows found = ShadowSearch(points, place, threads).run(kOpen);
+  const Shadows found = ShadowSearch(points, threads).run(place, kOpen);
   return found.reveal() ? std::optional(found) : std::nullopt;
 }
 

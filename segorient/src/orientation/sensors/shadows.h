@@ -20,6 +20,9 @@ struct Shadows {
   float covered = 0.F;  ///< with nearer points all around, of those on surfaces
 
   float open = 0.F;  ///< of all directions, those where there is nothing
+  /// Whether the place across the middle says as much: of a landscape that something far above it
+  /// saw, steps look much alike from far below.
+  bool better_across = false;
 
   float coveredOfSteps() const { return steps > 0.F ? covered / steps : 0.F; }
   /// Whether surfaces end where a sensor in that place would have it.
