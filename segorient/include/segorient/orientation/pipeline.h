@@ -166,6 +166,7 @@ SEGORIENT_ORIENTATION_EXPORT OrientedCloud segmentCloud(const PointView& points,
                                                         const PipelineProgress& progress = {});
 
 /// Bytes that orientCloud() takes beside its input at most, or a little more: linear in the points.
+/// Clouds without noise take half of it.
 SEGORIENT_ORIENTATION_EXPORT std::size_t expectedMemory(std::size_t points,
                                                         const PipelineOptions& options);
 

@@ -25,7 +25,7 @@ bool HidingPlace::isPlausible(const PointView& points, const std::vector<float>&
 HidingPlace lookFrom(const PointView& points, const std::array<float, 3>& place, int threads) {
   std::vector<std::uint32_t> rows(points.size);
   std::iota(rows.begin(), rows.end(), 0U);
-  Scan scan(points, rows, place, threads);
+  Scan scan(points, rows, place, nullptr, threads);
   const std::vector<std::uint8_t> hidden = scan.hidden(false);
   const auto count = std::accumulate(hidden.begin(), hidden.end(), std::size_t{0});
   HidingPlace out;

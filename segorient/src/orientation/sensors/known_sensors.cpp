@@ -136,7 +136,7 @@ class Finder {
     KnownSensor& report = out_.scans[s];
     if (report.moving || report.points < kLeastPoints) return;
     const std::vector<std::uint32_t> rows(rows_.begin() + start_[s], rows_.begin() + start_[s + 1]);
-    Scan scan(points_, rows, report.position, threads_);
+    Scan scan(points_, rows, report.position, &nb_, threads_);
     const Scan::Density density = scan.density();
     report.density = density.ratio;
     std::vector<std::uint8_t> hidden = scan.hidden(false);

@@ -24,6 +24,7 @@ constexpr int kPlane = 24;
 // ns a point, see resolveThreads().
 constexpr double kRayTime = 2000.0;
 constexpr double kPairTime = 1000.0;
+constexpr double kSpacingTime = 20.0;
 
 // Of those whose mean distance is the spacing.
 constexpr int kSpacing = 6;
@@ -68,7 +69,7 @@ struct Scan::Row {
 };
 
 Scan::Scan(const PointView& points, const std::vector<std::uint32_t>& rows,
-           const std::array<float, 3>& sensor, int threads)
+           const std::array<float, 3>& sensor, const Neighborhoods* neighborhoods, int threads)
     : xyz_(4 * rows.size(), 0.F), threads_(threads) {
   Box box;
   for (std::size_t i = 0; i < rows.size(); ++i) {
@@ -77,15 +78,19 @@ Scan::Scan(const PointView& points, const std::vector<std::uint32_t>& rows,
   }
   if (!rows.empty()) extent_ = box.diagonal();
   seen_ = seeFrom(sensor, view());
+  if (neighborhoods != nullptr && rows.size() == points.size && neighborhoods->k() > kPlane) {
+    near_ = neighborhoods;
+    return;
+  }
   search::MedianHashIndex::Options options;
   options.threads = threads;
   index_.build(view(), nullptr, options);
 }
 
 void Scan::nearest(std::size_t i, int entries, Row& out) const {
-  if (near_.k() > 0) {
-    out.indices = near_.indices(i);
-    out.count = std::min(near_.count(i), entries);
+  if (near_ != nullptr) {
+    out.indices = near_->indices(i);
+    out.count = std::min(near_->count(i), entries);
     return;
   }
   std::array<float, kPlane + 1> squares;
@@ -105,10 +110,15 @@ std::size_t Scan::stride() const {
 }
 
 std::vector<std::uint8_t> Scan::hidden(bool all) {
-  if (all && near_.k() == 0) {
-    index_.nearestKAll(kPlane + 1, near_, false);
-    spacing_.resize(size());
-    for (std::size_t i = 0; i < size(); ++i) spacing_[i] = meanDistance(view(), near_, i, kSpacing);
+  if (all && near_ == nullptr) {
+    index_.nearestKAll(kPlane + 1, own_, false);
+    near_ = &own_;
+  }
+  if (all && spacing_.empty()) {
+    std::vector<float> spacing(size());
+#pragma omp parallel for num_threads(resolveThreads(threads_, size(), kSpacingTime))
+    for (std::size_t i = 0; i < size(); ++i) spacing[i] = spacingOf(i);
+    spacing_ = std::move(spacing);
   }
   const std::size_t step = all ? 1 : stride();
   const std::size_t n = (size() + step - 1) / step;

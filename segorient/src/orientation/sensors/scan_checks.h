@@ -20,8 +20,12 @@ namespace segorient::detail {
 class Scan {
  public:
   /// \param rows of the points
+  /// \param neighborhoods of the points, which must outlive this if all of them are the sensor's;
+  ///        null = none are known
   Scan(const PointView& points, const std::vector<std::uint32_t>& rows,
-       const std::array<float, 3>& sensor, int threads);
+       const std::array<float, 3>& sensor, const Neighborhoods* neighborhoods, int threads);
+  Scan(const Scan&) = delete;
+  Scan& operator=(const Scan&) = delete;
 
   std::size_t size() const { return seen_.size(); }
 
@@ -54,8 +58,9 @@ class Scan {
   SeenFrom seen_;
   float extent_ = 0.F;  ///< diagonal of its box
   search::MedianHashIndex index_;
-  Neighborhoods near_;          ///< empty until all are asked for
-  std::vector<float> spacing_;  ///< the same
+  const Neighborhoods* near_ = nullptr;  ///< null unless they are known, or all were asked for
+  Neighborhoods own_;                    ///< those, where they were not known
+  std::vector<float> spacing_;           ///< empty until all are asked for
   int threads_;
 };
 
