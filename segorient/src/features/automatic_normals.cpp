@@ -18,10 +18,8 @@ namespace {
 using detail::CloudNoise;
 using detail::cubicSize;
 using detail::Explained;
-using detail::kCleanNoise;
 using detail::kCubicNeighbors;
 using detail::kTriangulationNeighbors;
-using detail::kTriangulationNoise;
 using detail::Surfaces;
 
 // A cubic surface is the better one where it leaves so much less than a quadratic one does, in
@@ -32,8 +30,8 @@ constexpr double kBetter = 0.9;
 // Without noise, a quadratic surface that leaves less than this share of what a plane leaves has
 // found a bend, even a sharp one: of an edge through the middle it leaves a quarter.
 constexpr double kBend = 0.2;
-// Cubic surfaces that leave less than this share of what quadratic ones do have found the next term
-// of a series.
+// Cubic surfaces that leave less than this share of what quadratic ones do of most points have
+// found the next term of a series: noise alone makes one point in seven look so (F test).
 constexpr double kNextTerm = 0.5;
 // Near edges, where a plane fits a few neighbours as well as noise lets it, they are all on one
 // side.
@@ -68,13 +66,13 @@ class Estimation {
   AutomaticNormalReport run(std::vector<pcl::index_t>* unexplained) {
     takeQuadratics();
     if (unexplained != nullptr) *unexplained = open_;
-    if (in_spacings_ < kCleanNoise) {
+    if (detail::isClean(in_spacings_)) {
       keepEdges();
       if (isAnalytic()) takeCubics();
     }
     report_.traits.analytic = report_.analytic;
     report_.at_edges = open_.size();
-    report_.triangulated = in_spacings_ < kTriangulationNoise;
+    report_.triangulated = detail::fewTell(in_spacings_);
     if (report_.triangulated) {
       takePlanes();
       triangulate();

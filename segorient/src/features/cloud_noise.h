@@ -52,7 +52,9 @@ std::vector<pcl::index_t> sampleRows(const std::vector<pcl::index_t>& of);
 SEGORIENT_FEATURES_EXPORT CloudNoise sampleNoise(const PointView& points,
                                                  const Neighborhoods& neighborhoods, int threads);
 
-/// Least noise, in spacings: less cannot be told from what a quadratic leaves of a smooth surface.
+/// Least noise, in spacings: less cannot be told from what a quadratic leaves of a smooth surface,
+/// h^3 / (6 R^2) a spacing h away where the radius R of its curvature changes within R. Of R = 4 h,
+/// a quarter circle by six points, that is a hundredth.
 constexpr double kLeastNoise = 0.01;
 
 /// Whether noise explains what a surface leaves of a neighbourhood: its standard deviation, with

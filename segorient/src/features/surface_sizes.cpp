@@ -13,13 +13,11 @@ namespace {
 
 // Neighbourhoods of the quadratic surfaces that are tried.
 constexpr std::array<int, 6> kSizes{10, 16, 24, 32, 48, kMostAutomaticNeighbors};
-// Smallest neighbourhood where small surfaces beat local triangulations.
-constexpr int kSmallestNoisy = 16;
 // Neighbourhoods that are worth trying, per unit of noise over spacing. Noise turns the normals of
 // k neighbours by about noise / (spacing k): with 400 it has sunk to a fraction of a degree, below
-// 90 it is several degrees, more than what the larger neighbourhood costs at an edge.
+// 100 it is several degrees, more than what the larger neighbourhood costs at an edge.
 constexpr double kLargestPerNoise = 400.0;
-constexpr double kSmallestPerNoise = 90.0;
+constexpr double kSmallestPerNoise = 100.0;
 // Beyond this noise a few neighbours are a ball of points, whose residual hardly grows with the
 // noise and says nothing of the surface: then only the largest neighbourhood is left.
 constexpr double kSaturatedNoise = 0.45;
@@ -31,12 +29,18 @@ constexpr int kSmallestCubic = 24;
 
 }  // namespace
 
+bool isClean(double noise) {
+  return kLargestPerNoise * noise < kSizes[1];
+}
+
+bool fewTell(double noise) {
+  return kSmallestPerNoise * noise < kSizes.front();
+}
+
 std::vector<int> quadraticSizes(double noise, int available) {
   std::vector<int> sizes;
-  const bool clean = noise < kCleanNoise;
-  const double largest = clean ? kSizes.front() : kLargestPerNoise * noise;
-  const double least = noise < kTriangulationNoise ? kSizes.front() : kSmallestNoisy;
-  const double smallest = std::max(least, kSmallestPerNoise * noise);
+  const double largest = kLargestPerNoise * noise;
+  const double smallest = std::max<double>(kSizes.front(), kSmallestPerNoise * noise);
   for (std::size_t s = kSizes.size(); s-- > 0;) {
     const bool enough = s > 0 && !sizes.empty() && kSizes[s] < smallest;
     if (enough) break;

@@ -23,11 +23,9 @@
 namespace segorient::detail {
 namespace {
 
-// Shares of pairs of neighbours that face each other. From the first on, a patch of some ten points
-// may be the wrong way, and one level is tried; all are from the second on, as clean clouds, thin
-// ones and noise of half a spacing have fewer.
+// Share of pairs of neighbours that face each other from which on a patch of some ten points may be
+// the wrong way.
 constexpr float kSuspicious = 0.0001F;
-constexpr float kContradictory = 0.001F;
 // Radii in mean distances to the six nearest, sqrt(2) apart: layers up to half a radius apart are
 // one surface to a level. They keep about a fifth, a third and a tenth of the points; the last
 // half of them, which costs as much as all others, for noise on thin walls, where these fail.
@@ -38,8 +36,6 @@ constexpr float kFinest = 1.F;
 // so thin that half of a point's neighbours are on its other side. Without such walls all levels
 // see the same surface, and where the first is no better, the others are not.
 constexpr float kWalls = 0.005F;
-// Energies of solutions that are equally good differ by less than a tenth, as other points count.
-constexpr float kClearlyLess = 0.9F;
 
 // What is known of single points, for the points of a subset. Whether sensors are to be believed
 // shows in how densely they see, which an even subset does not: that is taken from the cloud.
@@ -108,7 +104,6 @@ class Choice {
     best_.found.sheets = sheets;
   }
 
-  bool made() const { return chosen_ > 0.F; }
   /// Whether a level had clearly less energy, be it that it was not chosen for uniting walls.
   bool hasLess() const { return has_less_; }
   bool hasWalls() const { return own_.pairs.backs >= kWalls; }
@@ -194,8 +189,7 @@ float followCoarserLevels(const PointView& points, const Neighborhoods& neighbor
   if (facing < kSuspicious) return 0.F;
   Choice choice(points, neighborhoods, hints, orient, threads, fine);
   choice.tryLevel(kFirst);
-  const bool others = choice.made() || facing >= kContradictory;
-  if (others && (choice.hasLess() || choice.hasWalls())) {
+  if (choice.hasLess() || choice.hasWalls()) {
     for (const float f : kOthers) choice.tryLevel(f);
     if (!choice.explainsHalf()) choice.tryLevel(kFinest);
   }

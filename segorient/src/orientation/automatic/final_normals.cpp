@@ -2,6 +2,8 @@
 // Copyright (c) 2026, the segorient authors
 #include "orientation/automatic/final_normals.h"
 
+#include <segorient/orientation/first_stages.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -25,8 +27,8 @@ namespace {
 constexpr float kClean = 0.05F;
 // Without noise, surfaces of the fewest neighbours are all that is tried.
 constexpr int kFewest = 10;
-// Neighbours for the surfaces on both sides of an edge, as `normals --recompute` has them.
-constexpr int kEdgeNeighbors = 12;
+// For the surfaces on both sides of an edge, as `normals --recompute` has them.
+constexpr int kEdgeNeighbors = FirstStages::kDefaultNeighbors;
 // The first round's labels are those of means over the edge, the next ones' of its own result.
 constexpr int kRounds = 3;
 // 143 degrees: normals of two walls, or of both sides of a blade.

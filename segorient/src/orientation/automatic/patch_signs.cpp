@@ -13,6 +13,7 @@
 #include "orientation/automatic/even_cells.h"
 #include "orientation/automatic/patch_equations.h"
 #include "orientation/automatic/sheet_signs.h"
+#include "orientation/automatic/sign_energy.h"
 #include "orientation/automatic/sign_patches.h"
 #include "orientation/winding/dipole_fields.h"
 
@@ -26,8 +27,7 @@ constexpr float kSmooth = 1.F;  // a cell and its neighbours, so that no single 
 // What cells see no plane of: bodies in contact .03 (edges), walls of half a spacing, layers and
 // outliers .1 and more. There, cells mix what the signs should tell apart.
 constexpr float kNoSurface = 0.1F;
-constexpr int kRounds = 5;        // each leaves out what the last one left undecided
-constexpr float kBetter = 0.75F;  // of two equally good ones one has up to .1 less
+constexpr int kRounds = 5;  // each leaves out what the last one left undecided
 
 bool isClosed(const std::vector<ComponentOrientationResult>& components) {
   double sum = 0.0;
@@ -121,7 +121,7 @@ CellSigns findCellSigns(const PointView& points, const std::vector<float>& norma
   if (!first.allowed) return out;
   const Signs own = Signs::Constant(first.signs.size(), equations.side());
   PatchSolution best;
-  best.energy = kBetter * equations.judge(own).energy;
+  best.energy = kClearlyLess * equations.judge(own).energy;
   for (const PatchSolution& other : {first, equations.solve(first.signs, kRounds - 1, false),
                                      equations.solve(own, kRounds, true)}) {
     if (other.allowed && other.energy < best.energy) best = other;

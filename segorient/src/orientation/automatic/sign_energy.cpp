@@ -21,7 +21,6 @@ constexpr std::size_t kPairRows = 20000;  // one pair in 10,000 is then some ten
 constexpr std::size_t kSamples = 2000;    // a share of the surface is known to about .01 then
 // In distances to the sixth neighbour. A cell holds the layers of scans that are a spacing apart.
 constexpr float kCell = 1.5F;
-constexpr float kInFront = 1.5F;
 // Area per square of the mean distance to the six nearest of a blue-noise subset (measured; .866 of
 // a hexagonal grid).
 constexpr float kAreaPerSquare = 0.92F;
@@ -148,7 +147,7 @@ SignEnergy SignJudge::judge(const std::vector<float>& normals) const {
     const float* p = points_[samples_[s]];
     const float* n = &normals[4 * samples_[s]];
     if (!isFinite(n)) continue;
-    const float far = kInFront * sixth_;
+    const float far = kCell * sixth_;  // nearer, single cells stand out
     const float x[3] = {p[0] + far * n[0], p[1] + far * n[1], p[2] + far * n[2]};
     in_front[s] = std::min(std::fabs(winding.evaluate(x, sixth_)), 0.5F);
   }

@@ -11,6 +11,9 @@
 
 namespace segorient::detail {
 
+/// Energies of solutions that are equally good differ by less than a tenth, as other points count.
+constexpr float kClearlyLess = 0.9F;
+
 /// Neighbours whose normals are opposed: means over all pairs of how far they are.
 struct OpposedPairs {
   /// Pairs that face each other. The two sides of a wall have their backs to each other, and a gap

@@ -203,11 +203,10 @@ class Solver {
     const double turned = ownResidual(c, true);
     if (share > rule.gain && turned <= rule.residual) return true;
     // Where other parts around are turned wrongly as well, and still are, less of the sum is
-    // gained.
-    constexpr double kSome = 0.1;
-    constexpr double kFits = 0.08;    // as a closed surface does with noise of half a spacing
+    // gained. A plane of random points has .07 with noise of a spacing.
+    constexpr double kFits = 0.08;
     constexpr double kMisfits = 0.3;  // w is more than 1/2 off
-    return share > kSome && turned <= std::min(kFits, rule.residual) &&
+    return share > 0.0 && turned <= std::min(kFits, rule.residual) &&
            ownResidual(c, false) > kMisfits;
   }
 

@@ -38,8 +38,8 @@ std::vector<ComponentWinding> solveComponents(const PointView& points,
                                               const std::vector<std::int32_t>& components,
                                               std::size_t count, int threads = 0);
 
-/// When turnParts() turns a part over. It also does where only a tenth is gained, as others around
-/// are still wrong, if the part's own mean square falls from above .3 to .08 or less (or to
+/// When turnParts() turns a part over. It also does where less is gained, as others around are
+/// still wrong, if the part's own mean square falls from above .3 to .08 or less (or to
 /// `residual`, if that is less).
 struct TurnRule {
   double gain = 1.0 / 3.0;  ///< the sum of squares around the part falls by more than this share
