@@ -297,6 +297,8 @@ TEST(NoiseField, MendsOnlyNormalsThatAreFarOff) {
   field.radius = 0.1F;
   field.factor = 1.F;
   field.averaged_below = 0.7F;
+  Neighborhoods alone;
+  alone.reset(1, 1, false);
   const auto cosineAfter = [&](std::size_t i, double degrees) {
     const Eigen::Map<const Eigen::Vector3f> n(&ball.normals[4 * i]);
     const Eigen::Vector3f across = n.unitOrthogonal();
@@ -305,7 +307,7 @@ TEST(NoiseField, MendsOnlyNormalsThatAreFarOff) {
     detail::AutoNormals found;
     found.normals = {tilted[0], tilted[1], tilted[2], 0.F};
     found.confidences = {1.F};
-    detail::takeNoiseField({&ball.xyz[4 * i], 4, 1}, field, 1, found);
+    detail::takeNoiseField({&ball.xyz[4 * i], 4, 1}, alone, field, 1, found);
     return Eigen::Map<const Eigen::Vector3f>(found.normals.data()).dot(n);
   };
   for (std::size_t i = 0; i < 50; ++i) {

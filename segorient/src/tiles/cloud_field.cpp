@@ -11,7 +11,7 @@
 namespace segorient::detail {
 namespace {
 
-constexpr int kSix = 6;  // neighbours of the spacing
+constexpr int kRing = 8;  // as many as the pairs that face each other are sought among
 
 void addCells(const std::vector<float>& places, float unit, const std::vector<float>& vectors,
               float vector_unit, CloudField& out) {
@@ -35,8 +35,8 @@ std::vector<float> placesOf(const CloudField& field, float unit) {
   return out;
 }
 
-void takeNoise(const PointView& points, float unit, const CloudField& field, int threads,
-               AutoNormals& found) {
+void takeNoise(const PointView& points, const Neighborhoods& neighborhoods, float unit,
+               const CloudField& field, int threads, AutoNormals& found) {
   NoiseField noise;
   noise.places = placesOf(field, unit);
   for (const FieldCell& cell : field.cells) {
@@ -45,7 +45,8 @@ void takeNoise(const PointView& points, float unit, const CloudField& field, int
   }
   noise.radius = field.radius / unit;
   noise.averaged_below = field.averaged_below;
-  takeNoiseField(points, noise, threads, found);
+  noise.consistent = field.noise == CloudField::kConsistentNoise;
+  takeNoiseField(points, neighborhoods, noise, threads, found);
 }
 
 void takeSigns(const PointView& points, float unit, const CloudField& field, int threads,
@@ -65,7 +66,7 @@ void takeSigns(const PointView& points, float unit, const CloudField& field, int
 
 CloudField findNoise(const PointView& places, const std::vector<float>& normals, int threads) {
   PreparedCloud cloud(places, nullptr, threads);
-  cloud.findNeighbors(kSix, false);
+  cloud.findNeighbors(kRing, false);
   std::vector<float> of_points;
   for (std::size_t i = 0; i < cloud.size(); ++i) {
     const float* n = &normals[4 * cloud.rowOf(i)];
@@ -76,7 +77,7 @@ CloudField findNoise(const PointView& places, const std::vector<float>& normals,
   CloudField out;
   if (noise.empty()) return out;
   const float unit = cloud.unit();
-  out.noise = 1;
+  out.noise = noise.consistent ? CloudField::kConsistentNoise : CloudField::kNoise;
   out.radius = unit * noise.radius;
   addCells(noise.places, unit, noise.dipoles, unit * unit, out);
   for (std::size_t c = 0; c < out.cells.size(); ++c) {
@@ -96,10 +97,14 @@ CloudField findSigns(const PreparedCloud& cloud, const std::vector<float>& norma
   return out;
 }
 
-void takeField(const PointView& points, float unit, const CloudField& field, int threads,
-               AutoNormals& found) {
+void takeField(const PointView& points, const Neighborhoods& neighborhoods, float unit,
+               const CloudField& field, int threads, AutoNormals& found) {
   if (field.cells.empty()) return;
-  (field.noise != 0 ? takeNoise : takeSigns)(points, unit, field, threads, found);
+  if (field.noise != 0) {
+    takeNoise(points, neighborhoods, unit, field, threads, found);
+  } else {
+    takeSigns(points, unit, field, threads, found);
+  }
 }
 
 }  // namespace segorient::detail

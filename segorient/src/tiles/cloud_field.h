@@ -22,9 +22,9 @@ CloudField findNoise(const PointView& places, const std::vector<float>& normals,
 CloudField findSigns(const PreparedCloud& cloud, const std::vector<float>& normals, float spacing,
                      const std::vector<ComponentOrientationResult>& components, int threads);
 
-/// Gives a tile's points what the field tells of them. \param points of the tile \param unit theirs
-/// \param field relative to the tile's origin
-void takeField(const PointView& points, float unit, const CloudField& field, int threads,
-               AutoNormals& found);
+/// Gives a tile's points what the field tells of them. \param points of the tile, with neighbours
+/// \param unit theirs \param field relative to the tile's origin
+void takeField(const PointView& points, const Neighborhoods& neighborhoods, float unit,
+               const CloudField& field, int threads, AutoNormals& found);
 
 }  // namespace segorient::detail

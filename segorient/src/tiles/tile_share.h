@@ -145,8 +145,11 @@ struct FieldCell {
 struct CloudField {
   std::vector<FieldCell> cells;  ///< none = it says nothing
   float radius = 0.F;            ///< of the smoothing in noise, else the spacing of patches
-  std::uint8_t noise = 0;        ///< which of the two it is
-  float averaged_below = 0.F;    ///< in noise: see NoiseField
+  /// Which of the two it is: 0, or in noise whether NoiseField::consistent.
+  std::uint8_t noise = 0;
+  static constexpr std::uint8_t kNoise = 1;
+  static constexpr std::uint8_t kConsistentNoise = 2;
+  float averaged_below = 0.F;  ///< in noise: see NoiseField
 };
 
 struct TileOptions {

@@ -23,9 +23,6 @@
 namespace segorient::detail {
 namespace {
 
-// Share of pairs of neighbours that face each other from which on a patch of some ten points may be
-// the wrong way.
-constexpr float kSuspicious = 0.0001F;
 // Radii in mean distances to the six nearest, sqrt(2) apart: layers up to half a radius apart are
 // one surface to a level. They keep about a fifth, a third and a tenth of the points; the last
 // half of them, which costs as much as all others, for noise on thin walls, where these fail.

@@ -15,6 +15,8 @@
 #include "common/threads.h"
 #include "features/sheet_fit.h"
 #include "orientation/automatic/even_cells.h"
+#include "orientation/automatic/sign_energy.h"
+#include "orientation/automatic/torn_sheets.h"
 #include "orientation/winding/dipole_fields.h"
 #include "orientation/winding/field_solver.h"
 
@@ -121,14 +123,15 @@ NoiseField findNoiseField(const PointView& points, const Neighborhoods& neighbor
   // open, or a wall whose two sides came out as one sheet, and which of them cannot be told.
   out.most = kSure / std::max(kSure, own.spread);
   if (hidesTwoSides(points, neighborhoods, normals, threads)) out.most = 0.F;
+  out.consistent = opposedPairs(points, neighborhoods, normals, threads).facing < kSuspicious;
   out.places = std::move(subset.places);
   return out;
 }
 
 // How steep the field is, by that of a plane without noise, limits the confidence: the two sides of
 // a wall, and what is turned the wrong way around, take from it.
-void takeNoiseField(const PointView& points, const NoiseField& field, int threads,
-                    AutoNormals& found) {
+void takeNoiseField(const PointView& points, const Neighborhoods& neighborhoods,
+                    const NoiseField& field, int threads, AutoNormals& found) {
   // Noise makes the field less steep everywhere; where it is .7 of a plane's and more, one normal
   // in 1,000 was wrong.
   constexpr float kSteep = 1.25F;
@@ -136,14 +139,21 @@ void takeNoiseField(const PointView& points, const NoiseField& field, int thread
   const PointView places{field.places.data(), 4, field.places.size() / 4};
   const std::vector<float> falls =
       steepestDescents(points, {places, field.dipoles}, field.radius, threads);
+  std::vector<std::uint8_t> against(points.size, 0);
+  for (std::size_t i = 0; i < points.size; ++i) {
+    against[i] = dot(&found.normals[4 * i], &falls[4 * i]) < 0.F ? 1 : 0;
+  }
+  std::vector<std::uint8_t> turned = against;
+  if (field.consistent) keepSheetsWhole(neighborhoods, found.normals, turned);
   for (std::size_t i = 0; i < points.size; ++i) {
     float* n = &found.normals[4 * i];
     float& confidence = found.confidences[i];
     const float* g = &falls[4 * i];
     const float length = std::sqrt(dot(g, g));
     if (isFinite(n) && length > 0.F && std::isfinite(length)) {
-      const float sign = dot(n, g) < 0.F ? -1.F : 1.F;
-      const bool averaged = sign * dot(n, g) < field.averaged_below * length;
+      const float sign = turned[i] != 0 ? -1.F : 1.F;
+      const bool averaged =
+          turned[i] == against[i] && sign * dot(n, g) < field.averaged_below * length;
       float sum[3];
       for (std::size_t a = 0; a < 3; ++a) {
         sum[a] = sign * n[a] + (averaged ? g[a] / length : 0.F);

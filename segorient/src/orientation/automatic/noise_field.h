@@ -23,6 +23,8 @@ struct NoiseField {
   float radius = 0.F;          ///< of the smoothing
   float factor = 0.F;          ///< that makes its winding number 1/2 on the surface
   float most = 1.F;            ///< confidence of any point
+  /// Whether no neighbours face each other: only the field contradicts the normals' signs.
+  bool consistent = false;
   /// Cosine below which normals are averaged with the field's direction: all of them, unless it is
   /// coarser than what the points themselves tell; with 0 it tells only their sides.
   float averaged_below = 1.F;
@@ -42,10 +44,14 @@ SEGORIENT_ORIENTATION_EXPORT NoiseField findNoiseField(const PointView& points,
                                                        const std::vector<float>& normals,
                                                        int threads);
 
-/// Each point's normal is averaged with the direction of the field where the point was measured.
+/// Each point's normal is averaged with the direction of the field where the point was measured,
+/// and turned over where that falls the other way. Where only the field says so, it tears no sheet:
+/// keepSheetsWhole().
 /// \param points those of the field, or some of them
 /// \param found normals and confidences may change
-SEGORIENT_ORIENTATION_EXPORT void takeNoiseField(const PointView& points, const NoiseField& field,
-                                                 int threads, AutoNormals& found);
+SEGORIENT_ORIENTATION_EXPORT void takeNoiseField(const PointView& points,
+                                                 const Neighborhoods& neighborhoods,
+                                                 const NoiseField& field, int threads,
+                                                 AutoNormals& found);
 
 }  // namespace segorient::detail

@@ -13,6 +13,9 @@ namespace segorient::detail {
 
 /// Energies of solutions that are equally good differ by less than a tenth, as other points count.
 constexpr float kClearlyLess = 0.9F;
+/// Share of pairs of neighbours that face each other from which on a patch of some ten points may
+/// be the wrong way: with fewer, nothing contradicts itself.
+constexpr float kSuspicious = 0.0001F;
 
 /// Neighbours whose normals are opposed: means over all pairs of how far they are.
 struct OpposedPairs {

@@ -120,7 +120,7 @@ AutoStages runAutoStages(PreparedCloud& cloud, const PipelineOptions& options,
       NoiseField field =
           findNoiseField(cloud.points(), cloud.neighborhoods(), oriented.normals, options.threads);
       if (!noisy) field.averaged_below = kAcross;
-      takeNoiseField(cloud.points(), field, options.threads, oriented);
+      takeNoiseField(cloud.points(), cloud.neighborhoods(), field, options.threads, oriented);
     } else if (oriented.orientation.toward.empty()) {
       takeCellSigns(points,
                     findCellSigns(points, oriented.normals, oriented.spacing,
