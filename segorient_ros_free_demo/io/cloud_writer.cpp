@@ -31,15 +31,16 @@ void writePcdHeader(const OutputCloud& cloud, OutputFile& file) {
   file.write(header.str());
 }
 
-void writePcdRows(const OutputCloud& cloud, OutputFile& file) {
+void writePcdRows(const OutputCloud& cloud, OutputFile& file, int threads = 1) {
   std::size_t row_bytes = 0;
   for (const Column& c : cloud.columns) row_bytes += c.field.bytes();
-  writeRows(cloud.size, row_bytes, file, [&](std::size_t row, std::uint8_t* to) {
+  const auto make_row = [&](std::size_t row, std::uint8_t* to) {
     for (const Column& c : cloud.columns) {
       std::memcpy(to, c.data + row * c.stride, c.field.bytes());
       to += c.field.bytes();
     }
-  });
+  };
+  writeRows(cloud.size, row_bytes, file, make_row, threads);
 }
 
 }  // namespace
@@ -85,8 +86,8 @@ void writeCloud(const OutputCloud& cloud, OutputFile& file) {
   writePcd(cloud, file);
 }
 
-CloudWriter::CloudWriter(OutputFile& file, const Bounds& bulk)
-    : file_(file), kind_(Kind::PCD), summary_(bulk) {
+CloudWriter::CloudWriter(OutputFile& file, const Bounds& bulk, int threads)
+    : file_(file), threads_(threads), kind_(Kind::PCD), summary_(bulk) {
   const std::string ending = fileEnding(file.path());
   if (ending == ".ply") kind_ = Kind::PLY;
   if (ending == ".las") kind_ = Kind::LAS;
@@ -111,8 +112,8 @@ void CloudWriter::add(const OutputCloud& block, std::uint64_t size) {
   const ConstantViewpoint viewpoint(block);
   const OutputCloud cloud = kind_ == Kind::PCD ? block : viewpoint.addedTo(block);
   if (!begun_) begin(cloud, size);
-  if (kind_ == Kind::PLY) writePlyRows(cloud, file_);
-  if (kind_ == Kind::PCD) writePcdRows(cloud, file_);
+  if (kind_ == Kind::PLY) writePlyRows(cloud, file_, threads_);
+  if (kind_ == Kind::PCD) writePcdRows(cloud, file_, threads_);
   if (kind_ == Kind::LAS) las_->add(cloud);
 }
 

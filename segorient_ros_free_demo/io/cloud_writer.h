@@ -80,7 +80,7 @@ class LasWriter;
 class CloudWriter {
  public:
   /// \param bulk where the points are but for strays; only LAS asks for it
-  CloudWriter(OutputFile& file, const Bounds& bulk);
+  CloudWriter(OutputFile& file, const Bounds& bulk, int threads = 1);
   ~CloudWriter();
   CloudWriter(const CloudWriter&) = delete;
   CloudWriter& operator=(const CloudWriter&) = delete;
@@ -98,6 +98,7 @@ class CloudWriter {
   void begin(const OutputCloud& block, std::uint64_t size);
 
   OutputFile& file_;
+  int threads_;
   Kind kind_;
   bool begun_ = false;
   LasSummary summary_;

@@ -97,16 +97,17 @@ void writePlyHeader(const OutputCloud& cloud, OutputFile& file) {
   file.write(header + "end_header\n");
 }
 
-void writePlyRows(const OutputCloud& cloud, OutputFile& file) {
+void writePlyRows(const OutputCloud& cloud, OutputFile& file, int threads) {
   const std::vector<PlyProperty> properties = plyProperties(cloud);
   std::size_t row_bytes = 0;
   for (const PlyProperty& p : properties) row_bytes += bytesOf(p);
-  writeRows(cloud.size, row_bytes, file, [&](std::size_t row, std::uint8_t* to) {
+  const auto make_row = [&](std::size_t row, std::uint8_t* to) {
     for (const PlyProperty& p : properties) {
       makeValue(p, p.column->data + row * p.column->stride + p.offset, to);
       to += bytesOf(p);
     }
-  });
+  };
+  writeRows(cloud.size, row_bytes, file, make_row, threads);
 }
 
 void writePly(const OutputCloud& cloud, OutputFile& file) {

@@ -7,6 +7,6 @@
 namespace segorient::program {
 
 void writePlyHeader(const OutputCloud& cloud, OutputFile& file);
-void writePlyRows(const OutputCloud& cloud, OutputFile& file);
+void writePlyRows(const OutputCloud& cloud, OutputFile& file, int threads = 1);
 
 }  // namespace segorient::program

@@ -13,14 +13,17 @@
 
 namespace segorient::program {
 
-/// Points of one packet of a chunk.
-struct ChunkPacket {
+/// What the work on one packet takes, in nanoseconds: see Parts.
+constexpr double kPacketTime = 30000.0;
+
+/// Which points of a chunk one packet has: those of some cells that follow one another.
+struct PacketRange {
+  std::size_t begin = 0;  ///< among the points by cell
+  std::size_t end = 0;
   std::uint32_t tile = 0;
   std::uint32_t first_cell = 0;
   std::uint32_t last_cell = 0;
-  std::vector<StoredPoint> points;   ///< in the order of the chunk
-  PlaceOrder order;                  ///< of their places, which were added to it
-  std::vector<std::uint8_t> packed;  ///< for who makes files of them
+  std::size_t size() const { return end - begin; }
 };
 
 /// A chunk is as many rows of the inputs as memory has room for. Plan gives its points to the tiles
@@ -30,24 +33,23 @@ class ChunkOrder {
  public:
   explicit ChunkOrder(const TileTree& tree);
 
-  /// Cuts a chunk into packets, ascending by tile, each of some cells that follow one another.
-  /// \param points all of one output \param prepare called for several packets at once, which it
-  /// may change \param visit called for one after the other
-  void forEachPacket(const std::vector<StoredPoint>& points, int threads,
-                     const std::function<void(ChunkPacket&)>& prepare,
-                     const std::function<void(ChunkPacket&)>& visit) const;
+  /// Cuts a chunk into packets. \param points all of one output; those of no cell are left out
+  void cut(const std::vector<StoredPoint>& points);
+  /// Of the chunk that was cut, ascending by tile.
+  const std::vector<PacketRange>& packets() const { return packets_; }
+  /// Adds the places of one of them to an order, by any number of threads.
+  /// \param points those that were cut
+  void addPlaces(const std::vector<StoredPoint>& points, const PacketRange& range,
+                 PlaceOrder& order) const;
+  /// Which point of the chunk is the i-th of a packet, as their places were added.
+  std::size_t pointOf(const PacketRange& range, std::size_t i) const {
+    return order_[range.begin + i];
+  }
 
  private:
-  // Of the points by cell.
-  struct Range {
-    std::size_t begin = 0;
-    std::size_t end = 0;
-    std::uint32_t first_cell = 0;
-    std::uint32_t last_cell = 0;
-  };
-  std::vector<Range> cut(const std::vector<std::size_t>& begin) const;
-
   std::vector<std::uint32_t> tile_of_cell_;
+  std::vector<std::uint32_t> order_;  // the points of the chunk by cell
+  std::vector<PacketRange> packets_;
 };
 
 }  // namespace segorient::program

@@ -47,15 +47,18 @@ class Probe {
       if (nodes[n].axis >= 0) is_near_[n] = is_near_[n + 1] | is_near_[nodes[n].upper];
     }
   }
-  /// \param seen_from relative to the origin; null where no point carries that
-  void add(const Place& place, const float* seen_from) {
+  /// Whether a point is of a part, or of what surrounds it.
+  bool wants(const Place& place) const {
     std::uint32_t n = 0;
     while (is_near_[n] != 0 && tree_.nodes()[n].axis >= 0) n = tree_.halfOf(n, place);
-    if (is_near_[n] == 0) return;
+    if (is_near_[n] == 0) return false;
     bool wanted = false;
     tree_.forEachWithin(place, tree_.nodes()[n].reach,
                         [&](auto t, double) { wanted |= chosen_[t] != 0; });
-    if (!wanted) return;
+    return wanted;
+  }
+  /// \param seen_from relative to the origin; null where no point carries that
+  void add(const Place& place, const float* seen_from) {
     const std::array<float, 3> p = near(place, origin_);
     points_.insert(points_.end(), p.begin(), p.end());
     if (seen_from != nullptr) viewpoints_.insert(viewpoints_.end(), seen_from, seen_from + 3);

@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "common/bulk_bounds.h"
+#include "common/parts.h"
 #include "io/cloud_stream.h"
 #include "support/command_line.h"
 #include "tiles/plan_inputs.h"
@@ -113,6 +114,19 @@ double roundingStep(const TileTree& tree) {
   return std::isfinite(least) ? std::ldexp(1.0, std::ilogb(least / kSpacingsInReach) - kBits) : 0.0;
 }
 
+// \param out by point: whether it is one of the probe's
+void findWanted(const Probe& probe, const StoredPoint* points, std::size_t size, int threads,
+                std::vector<std::uint8_t>& out) {
+  constexpr double kPointTime = 60.0;  // nanoseconds
+  out.resize(size);
+  const Parts parts(size, threads, kPointTime);
+  parts.forEach([&](std::size_t part) {
+    for (std::size_t i = parts.begin(part); i < parts.end(part); ++i) {
+      out[i] = points[i].cell != kNoCell && probe.wants(points[i].place) ? 1 : 0;
+    }
+  });
+}
+
 // The second pass: each point to its tile.
 void distribute(const std::string& folder, const StepProgress& progress, const PlanSensors& sensors,
                 int threads, Probe& probe, Plan& plan) {
@@ -121,12 +135,14 @@ void distribute(const std::string& folder, const StepProgress& progress, const P
   Viewpoints viewpoints(sensors);
   plan.step = roundingStep(plan.tree);
   const Trajectory trajectory = trajectoryOf(plan);
-  std::vector<StoredPoint> points;  // of a block
+  std::vector<std::uint8_t> wanted;  // by row of a block
   std::uint64_t row = 0;
   for (std::uint32_t o = 0; o < plan.outputs.size(); ++o) {
     const auto visit = [&](CloudTable& block) {
       viewpoints.begin(block);
+      StoredPoint* points = files.add(block.size);
       storePoints(plan, block, threads, points);
+      findWanted(probe, points, block.size, threads, wanted);
       for (std::size_t i = 0; i < block.size; ++i, ++row) {
         StoredPoint& point = points[i];
         if (point.cell == kNoCell) continue;
@@ -136,8 +152,9 @@ void distribute(const std::string& folder, const StepProgress& progress, const P
         if (plan.keep_orientation) {
           point.normal = near(block.triple(block.normals(), i), {0.0, 0.0, 0.0});
         }
-        probe.add(point.place, plan.has_viewpoints ? point.seen_from.data() : nullptr);
-        files.add(point);
+        if (wanted[i] != 0) {
+          probe.add(point.place, plan.has_viewpoints ? point.seen_from.data() : nullptr);
+        }
         ++plan.finite;
       }
       if (progress) {

@@ -104,21 +104,26 @@ void forEachBlock(const Plan& plan, const PlanOutput& output, const Trajectory& 
   end();
 }
 
-void storePoints(const Plan& plan, const CloudTable& block, int threads,
-                 std::vector<StoredPoint>& out) {
+void storePoints(const Plan& plan, const CloudTable& block, int threads, StoredPoint* out) {
   constexpr double kPointTime = 150.0;  // nanoseconds
-  out.assign(block.size, StoredPoint());
   const auto xyz = block.xyz();
   const Parts parts(block.size, threads, kPointTime);
   parts.forEach([&](std::size_t part) {
-    for (std::size_t i = parts.begin(part); i < parts.end(part); ++i) {
-      const std::array<double, 3> place = block.triple(xyz, i);
-      out[i].cell = kNoCell;
-      if (!std::isfinite(place[0]) || !std::isfinite(place[1]) || !std::isfinite(place[2])) {
-        continue;
+    constexpr std::size_t kGroup = 16;
+    std::array<TileTree::Place, kGroup> places;
+    std::array<std::uint32_t, kGroup> cells;
+    for (std::size_t first = parts.begin(part); first < parts.end(part); first += kGroup) {
+      const std::size_t count = std::min(kGroup, parts.end(part) - first);
+      for (std::size_t j = 0; j < count; ++j) {
+        places[j] = storedPlace(plan, block.triple(xyz, first + j));
       }
-      out[i].place = storedPlace(plan, place);
-      out[i].cell = plan.tree.cellOf(out[i].place);
+      plan.tree.findCells(places.data(), count, cells.data());
+      for (std::size_t j = 0; j < count; ++j) {
+        const TileTree::Place& p = places[j];
+        const bool finite = std::isfinite(p[0]) && std::isfinite(p[1]) && std::isfinite(p[2]);
+        out[first + j].place = p;
+        out[first + j].cell = finite ? cells[j] : kNoCell;
+      }
     }
   });
 }

@@ -6,8 +6,6 @@
 
 #include <cstdint>
 #include <functional>
-#include <limits>
-#include <vector>
 
 #include "io/cloud_table.h"
 #include "tiles/plan.h"
@@ -26,12 +24,8 @@ namespace segorient::program {
 void forEachBlock(const Plan& plan, const PlanOutput& output, const Trajectory& trajectory,
                   const std::function<void(CloudTable&)>& visit, const std::function<void()>& end);
 
-/// Cell of a point whose place is not finite.
-constexpr std::uint32_t kNoCell = std::numeric_limits<std::uint32_t>::max();
-
-/// Places and cells of a block's points as tiles have them.
-void storePoints(const Plan& plan, const CloudTable& block, int threads,
-                 std::vector<StoredPoint>& out);
+/// Places and cells of a block's points as tiles have them. \param out room for all of them
+void storePoints(const Plan& plan, const CloudTable& block, int threads, StoredPoint* out);
 
 /// The plan's; without poses where it has none.
 Trajectory trajectoryOf(const Plan& plan);

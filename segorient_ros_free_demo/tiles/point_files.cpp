@@ -7,6 +7,7 @@
 #include <cstdio>
 #include <cstring>
 
+#include "common/parts.h"
 #include "io/errors.h"
 #include "tiles/plan.h"
 
@@ -14,6 +15,7 @@ namespace segorient::program {
 namespace {
 
 constexpr std::uint64_t kMostTilePoints = 0xffffffffU;  // as rows of 32 bits tell them apart
+constexpr std::size_t kAtOnce = 1024;                   // packets that are made ready at once
 
 }  // namespace
 
@@ -53,38 +55,68 @@ void PointFiles::append(std::size_t tile, const void* data, std::size_t bytes) {
   files_[tile].offset += bytes;
 }
 
+StoredPoint* PointFiles::add(std::size_t count) {
+  chunk_.resize(chunk_.size() + count);
+  return chunk_.data() + (chunk_.size() - count);
+}
+
 void PointFiles::endChunk(std::uint32_t output) {
+  order_.cut(chunk_);
+  const std::vector<PacketRange>& packets = order_.packets();
+  std::vector<Packed> batch(std::min(kAtOnce, packets.size()));
   std::vector<std::uint8_t> bytes;  // of one tile
   std::uint32_t tile = 0;
-  const auto pack = [&](ChunkPacket& points) {
-    packPoints(points.points.data(), points.order, fields_, points.packed);
-  };
-  order_.forEachPacket(chunk_, threads_, pack, [&](ChunkPacket& points) {
-    if (points.tile != tile && !bytes.empty()) {
-      append(tile, bytes.data(), bytes.size());
-      bytes.clear();
+  for (std::size_t first = 0; first < packets.size(); first += batch.size()) {
+    const std::size_t count = std::min(batch.size(), packets.size() - first);
+    const Parts parts(count, threads_, kPacketTime);
+    parts.forEach([&](std::size_t part) {
+      for (std::size_t i = parts.begin(part); i < parts.end(part); ++i) {
+        pack(packets[first + i], batch[i]);
+      }
+    });
+    for (std::size_t i = 0; i < count; ++i) {
+      const PacketRange& range = packets[first + i];
+      if (range.tile != tile && !bytes.empty()) {
+        append(tile, bytes.data(), bytes.size());
+        bytes.clear();
+      }
+      tile = range.tile;
+      list(range, batch[i], output);
+      bytes.insert(bytes.end(), batch[i].bytes.begin(), batch[i].bytes.end());
     }
-    tile = points.tile;
-    File& file = files_[tile];
-    if (file.starts.empty() || file.starts.back().output != output) {
-      file.starts.push_back({file.points, output, 0});
-    }
-    const std::vector<std::uint8_t>& packed = points.packed;
-    PointPacket packet;
-    packet.first_cell = points.first_cell;
-    packet.last_cell = points.last_cell;
-    packet.count = static_cast<std::uint32_t>(points.points.size());
-    packet.bytes = static_cast<std::uint32_t>(packed.size());
-    packet.checksum = checksumOf(packed.data(), packed.size());
-    file.packets.push_back(packet);
-    file.points += packet.count;
-    if (file.points > kMostTilePoints) {
-      throw FileError(aside(tile), "has more than four billion points in one place");
-    }
-    bytes.insert(bytes.end(), packed.begin(), packed.end());
-  });
+  }
   if (!bytes.empty()) append(tile, bytes.data(), bytes.size());
   chunk_.clear();
+}
+
+void PointFiles::pack(const PacketRange& range, Packed& out) const {
+  PlaceOrder order;
+  order_.addPlaces(chunk_, range, order);
+  std::vector<StoredPoint> points;
+  for (std::size_t i = 0; i < range.size() && (fields_.viewpoints || fields_.normals); ++i) {
+    points.push_back(chunk_[order_.pointOf(range, i)]);
+  }
+  packPoints(points.data(), order, fields_, out.bytes);
+  out.checksum = checksumOf(out.bytes.data(), out.bytes.size());
+}
+
+// Notes a packet in the list of its tile's file.
+void PointFiles::list(const PacketRange& range, const Packed& points, std::uint32_t output) {
+  File& file = files_[range.tile];
+  if (file.starts.empty() || file.starts.back().output != output) {
+    file.starts.push_back({file.points, output, 0});
+  }
+  PointPacket packet;
+  packet.first_cell = range.first_cell;
+  packet.last_cell = range.last_cell;
+  packet.count = static_cast<std::uint32_t>(range.size());
+  packet.bytes = static_cast<std::uint32_t>(points.bytes.size());
+  packet.checksum = points.checksum;
+  file.packets.push_back(packet);
+  file.points += packet.count;
+  if (file.points > kMostTilePoints) {
+    throw FileError(aside(range.tile), "has more than four billion points in one place");
+  }
 }
 
 std::vector<std::uint64_t> PointFiles::commit() {

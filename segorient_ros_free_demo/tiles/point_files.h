@@ -33,8 +33,8 @@ class PointFiles {
   PointFiles(const PointFiles&) = delete;
   PointFiles& operator=(const PointFiles&) = delete;
 
-  /// Of a chunk.
-  void add(const StoredPoint& point) { chunk_.push_back(point); }
+  /// Adds points to the chunk. \return the first of them, to be told until the next call
+  StoredPoint* add(std::size_t count);
   /// After the last point of a chunk. \param output that its points will be part of; those of one
   /// come one after the other
   void endChunk(std::uint32_t output);
@@ -42,6 +42,10 @@ class PointFiles {
   std::vector<std::uint64_t> commit();
 
  private:
+  struct Packed {
+    std::vector<std::uint8_t> bytes;
+    std::uint64_t checksum = 0;
+  };
   struct File {
     std::vector<PointPacket> packets;
     std::vector<OutputStart> starts;
@@ -49,6 +53,8 @@ class PointFiles {
     std::uint64_t offset = 0;
   };
   std::string aside(std::size_t tile) const;
+  void pack(const PacketRange& range, Packed& out) const;
+  void list(const PacketRange& range, const Packed& points, std::uint32_t output);
   void append(std::size_t tile, const void* data, std::size_t bytes);
 
   std::string folder_;

@@ -102,7 +102,8 @@ void packPoints(const StoredPoint* points, PlaceOrder& order, const PointFields&
   order.order(&bits);
   Viewpoints viewpoints;
   if (fields.viewpoints) viewpoints.find(points, order.size());
-  for (std::size_t i = 0; i < order.size(); ++i) {
+  const bool places_only = !fields.viewpoints && !fields.normals;
+  for (std::size_t i = 0; i < order.size() && !places_only; ++i) {
     const StoredPoint& p = points[order.at(i)];
     if (fields.viewpoints) viewpoints.put(p.seen_from, bits);
     if (fields.normals) bits.put(packedNormal(p.normal), kNormalBits);

@@ -5,19 +5,22 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 #include "tiles/place_order.h"
 
 namespace segorient::program {
 
+/// Cell of a point whose place is not finite.
+constexpr std::uint32_t kNoCell = std::numeric_limits<std::uint32_t>::max();
+
 /// A point as it is in the input.
 struct StoredPoint {
   std::array<double, 3> place{0, 0, 0};
   std::array<float, 3> seen_from{0, 0, 0};  ///< where points carry that, see Plan
   std::array<float, 3> normal{0, 0, 0};     ///< the same; 0 = unknown
-  std::uint32_t number = 0;                 ///< of its row among those of a chunk; not stored
-  std::uint32_t cell = 0;                   ///< of the tree; not stored
+  std::uint32_t cell = kNoCell;             ///< of the tree; not stored
 };
 
 /// What points carry beside their places.
@@ -27,6 +30,7 @@ struct PointFields {
 };
 
 /// Points near each other in few bytes, in the order that PlaceOrder gives them.
+/// \param points what is stored of them beside their places; not looked at if that is nothing
 /// \param order of their places, which were added to it in the order of the points
 void packPoints(const StoredPoint* points, PlaceOrder& order, const PointFields& fields,
                 std::vector<std::uint8_t>& out);

@@ -142,6 +142,12 @@ RowReader::RowReader(const std::string& path, std::uint64_t run, std::uint32_t t
   at_ = static_cast<std::size_t>(start->number % kBlockRows);
 }
 
+void RowReader::skip(std::uint64_t rows) {
+  const std::uint64_t to = block_ * kBlockRows + at_ + rows;
+  if (to / kBlockRows != block_) load(static_cast<std::size_t>(to / kBlockRows));
+  at_ = static_cast<std::size_t>(to % kBlockRows);
+}
+
 void RowReader::load(std::size_t number) {
   block_ = number;
   at_ = 0;

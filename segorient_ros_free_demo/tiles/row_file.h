@@ -24,6 +24,8 @@ class RowReader {
   void next() {
     if (++at_ >= rows_.size()) load(block_ + 1);
   }
+  /// Goes on by so many rows.
+  void skip(std::uint64_t rows);
 
  private:
   void load(std::size_t block);

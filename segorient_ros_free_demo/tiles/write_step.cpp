@@ -5,8 +5,10 @@
 #include <cmath>
 #include <limits>
 #include <memory>
+#include <optional>
 #include <utility>
 
+#include "common/parts.h"
 #include "io/cloud_writer.h"
 #include "io/file_endings.h"
 #include "support/colors.h"
@@ -42,28 +44,54 @@ class Results {
   void take(const std::vector<CloudTable>& blocks, std::size_t size) {
     normals.assign(4 * size, kNaN);
     labels.assign(size, kNoSegment);
-    points_.clear();
-    std::uint32_t number = 0;
+    points_.resize(size);
+    std::size_t first = 0;
     for (const CloudTable& block : blocks) {
-      storePoints(plan_, block, threads_, block_);
-      for (StoredPoint& point : block_) {
-        point.number = number++;
-        if (point.cell != kNoCell) points_.push_back(point);
-      }
+      storePoints(plan_, block, threads_, &points_[first]);
+      first += block.size;
     }
-    const auto sort = [](ChunkPacket& packet) { packet.order.order(nullptr); };
-    order_.forEachPacket(points_, threads_, sort, [&](ChunkPacket& packet) {
-      RowReader& rows = *rows_[packet.tile];
-      for (std::size_t i = 0; i < packet.points.size() && !rows.done(); ++i, rows.next()) {
-        copy(packet.tile, rows.row(), packet.points[packet.order.at(i)].number);
-      }
-    });
+    order_.cut(points_);
+    const std::vector<PacketRange>& packets = order_.packets();
+    // How many rows of its tile are before each packet in this chunk.
+    std::vector<std::uint64_t> before;
+    std::uint64_t rows = 0;
+    for (std::size_t p = 0; p < packets.size(); ++p) {
+      if (p == 0 || packets[p].tile != packets[p - 1].tile) rows = 0;
+      before.push_back(rows);
+      rows += packets[p].size();
+    }
+    const Parts parts(packets.size(), threads_, kPacketTime);
+    parts.forEach(
+        [&](std::size_t part) { takePackets(before, parts.begin(part), parts.end(part)); });
+    for (std::size_t p = 0; p < packets.size(); ++p) {
+      const bool last = p + 1 == packets.size() || packets[p + 1].tile != packets[p].tile;
+      if (last) rows_[packets[p].tile]->skip(before[p] + packets[p].size());
+    }
   }
 
   std::vector<float> normals;  // 4 a row, with the curvature
   std::vector<std::uint32_t> labels;
 
  private:
+  // Those from `first` to `last`, with readers of their own.
+  void takePackets(const std::vector<std::uint64_t>& before, std::size_t first, std::size_t last) {
+    PlaceOrder order;
+    std::optional<RowReader> rows;
+    for (std::size_t p = first; p < last; ++p) {
+      const PacketRange& range = order_.packets()[p];
+      if (p == first || range.tile != order_.packets()[p - 1].tile) {
+        rows.emplace(*rows_[range.tile]);
+        rows->skip(before[p]);
+      }
+      order.clear();
+      order_.addPlaces(points_, range, order);
+      order.order(nullptr);
+      for (std::size_t i = 0; i < range.size() && !rows->done(); ++i, rows->next()) {
+        copy(range.tile, rows->row(), order_.pointOf(range, order.at(i)));
+      }
+    }
+  }
+
   void copy(std::size_t tile, const RowRecord& r, std::size_t i) {
     std::copy_n(r.normal, 4, &normals[4 * i]);
     const auto label = static_cast<std::size_t>(r.label);
@@ -76,7 +104,6 @@ class Results {
   const Plan& plan_;
   int threads_;
   ChunkOrder order_;
-  std::vector<StoredPoint> block_;
   std::vector<StoredPoint> points_;
   LabelFile labels_;
   std::vector<std::vector<std::int8_t>> signs_;  // of each tile's pieces
@@ -85,7 +112,7 @@ class Results {
 
 // \param first row of the block among those of the results
 void addBlock(const CloudTable& block, const Results& results, std::size_t first, bool colors,
-              std::uint64_t size, CloudWriter& writer) {
+              std::uint64_t size, int threads, CloudWriter& writer) {
   OutputCloud out(block);
   const float* n = &results.normals[4 * first];
   const std::uint32_t* labels = &results.labels[first];
@@ -95,7 +122,14 @@ void addBlock(const CloudTable& block, const Results& results, std::size_t first
   out.add("curvature", n + 3, 4);
   std::vector<std::uint32_t> rgb;
   if (colors && block.find("rgb") == nullptr) {
-    for (std::size_t i = 0; i < block.size; ++i) rgb.push_back(segmentColor(labels[i]));
+    constexpr double kPointTime = 20.0;  // nanoseconds
+    rgb.resize(block.size);
+    const Parts parts(block.size, threads, kPointTime);
+    parts.forEach([&](std::size_t part) {
+      for (std::size_t i = parts.begin(part); i < parts.end(part); ++i) {
+        rgb[i] = segmentColor(labels[i]);
+      }
+    });
     out.columns.push_back(
         {{"rgb", 'F', 4, 1, 0}, reinterpret_cast<const std::uint8_t*>(rgb.data()), 4});
   }
@@ -113,7 +147,7 @@ void writeStep(const Plan& plan, const std::string& folder, std::size_t output, 
   labelStep(plan, folder);
   const PlanOutput& to = plan.outputs[output];
   OutputFile file(to.path);
-  CloudWriter writer(file, plan.bulk);
+  CloudWriter writer(file, plan.bulk, threads);
   const Trajectory trajectory = trajectoryOf(plan);
   std::uint64_t size = 0;
   for (std::size_t i = to.first_input; i < to.first_input + to.inputs; ++i) {
@@ -145,7 +179,7 @@ void writeStep(const Plan& plan, const std::string& folder, std::size_t output, 
         results.take(chunk, rows);
         std::size_t first = 0;
         for (const CloudTable& block : chunk) {
-          addBlock(block, results, first, colors, size, writer);
+          addBlock(block, results, first, colors, size, threads, writer);
           first += block.size;
         }
         written += rows;

@@ -4,8 +4,11 @@
 #include <segorient/search/median_hash_index.h>
 
 #include <limits>
+#include <stdexcept>
+#include <string>
 
 #include "brute_force.h"
+#include "common/parts.h"
 #include "common/threads.h"
 #include "search_clouds.h"
 
@@ -30,6 +33,20 @@ TEST(Threads, AsManyAsTheWorkIsWorth) {
   EXPECT_EQ(resolveThreads(0, 1000000000, 1000.0), all);
   EXPECT_LE(resolveThreads(0, 2000, 10000.0), 4) << "20 milliseconds";
   EXPECT_EQ(resolveThreads(5, 1, 1.0), 5) << "who asks for them gets them";
+}
+
+// Whatever the threads do first, the message is the same.
+TEST(Threads, WhatTheFirstOfTheFailedPartsThrowsIsThrown) {
+  const Parts parts(100, 4, 1.0);
+  std::string message;
+  try {
+    parts.forEach([](std::size_t part) {
+      if (part > 0) throw std::runtime_error(std::to_string(part));
+    });
+  } catch (const std::runtime_error& error) {
+    message = error.what();
+  }
+  EXPECT_EQ(message, "1");
 }
 
 TEST(Threads, AnyNumberFindsTheSame) {

@@ -98,7 +98,7 @@ TEST(Packing, PointsComeBackExactly) {
     std::uint32_t row = 0;
     PlaceOrder order;
     for (StoredPoint& p : points) {
-      p.number = row++;
+      ++row;
       for (double& x : p.place) {
         x = uniform(random);
         if (kind == 0 || kind == 4) x = static_cast<double>(static_cast<float>(x));
@@ -154,7 +154,7 @@ TEST(Packing, RowsComeBack) {
     for (int a = 0; a < 3; ++a) r.normal[a] = n[a] / length;
     r.normal[3] = 0.01F;
     if (i % 17 == 0) std::fill_n(r.normal, 4, std::numeric_limits<float>::quiet_NaN());
-    r.label = i < 3000 ? static_cast<std::int32_t>(random() % 3) : -1;
+    r.label = i < 4000 ? static_cast<std::int32_t>(random() % 3) : -1;
     r.followed = static_cast<std::int32_t>(i % 2);
   }
   const std::string path = scratch.file("rows");
@@ -174,6 +174,18 @@ TEST(Packing, RowsComeBack) {
     }
     EXPECT_TRUE(reader.done());
   }
+  // Within a block, into another, onto its first row, and behind the last one.
+  RowReader reader(path, 1, 2, 1);
+  std::size_t at = 2500;
+  for (const std::size_t on : {0U, 3U, 1000U, 593U, 400U}) {
+    reader.skip(on);
+    at += on;
+    ASSERT_FALSE(reader.done());
+    EXPECT_EQ(reader.row().label, rows[at].label) << at;
+    EXPECT_EQ(reader.row().followed, rows[at].followed) << at;
+  }
+  reader.skip(rows.size() - at);
+  EXPECT_TRUE(reader.done());
 }
 
 }  // namespace

@@ -59,6 +59,14 @@ TEST(TileTree, EveryPlaceHasOneOwnerAtNoDistance) {
 }
 
 // What wholeRadius() promises, by brute force: all points so near are in the tile, too.
+TEST(TileTree, CellsOfSeveralPlacesAreThoseOfEach) {
+  const std::vector<Place> points = unevenSheet(3000);
+  const TileTree tree(points, 1.0, 400.0);
+  std::vector<std::uint32_t> cells(points.size());
+  tree.findCells(points.data(), points.size(), cells.data());
+  for (std::size_t i = 0; i < points.size(); ++i) EXPECT_EQ(cells[i], tree.cellOf(points[i]));
+}
+
 TEST(TileTree, WithinTheWholeRadiusNoPointIsMissing) {
   const std::vector<Place> points = unevenSheet(3000);
   const TileTree tree(points, 1.0, 600.0);

@@ -163,6 +163,19 @@ double TileTree::wholeRadius(const Place& p, double reach, double distance) cons
   return std::min(looked_at, leastReach(0, p, looked_at) - distance);
 }
 
+void TileTree::findCells(const Place* places, std::size_t count, std::uint32_t* cells) const {
+  std::fill_n(cells, count, 0U);
+  for (bool descends = count > 0; descends;) {
+    descends = false;
+    for (std::size_t i = 0; i < count; ++i) {
+      const Node& node = nodes_[cells[i]];
+      if (node.axis < 0) continue;
+      cells[i] = halfOf(cells[i], places[i]);
+      descends = true;
+    }
+  }
+}
+
 std::uint32_t TileTree::owner(const Place& p, double& reach) const {
   std::uint32_t n = 0;
   std::uint32_t tile = 0;

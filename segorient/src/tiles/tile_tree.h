@@ -57,6 +57,8 @@ class SEGORIENT_TILES_EXPORT TileTree {
     while (nodes_[n].axis >= 0) n = halfOf(n, p);
     return n;
   }
+  /// The cells of several places: faster than one by one, as steps do not wait for each other.
+  void findCells(const Place* places, std::size_t count, std::uint32_t* cells) const;
   /// Of a node that has halves, the one that a place is in.
   std::uint32_t halfOf(std::uint32_t n, const Place& p) const {
     const Node& node = nodes_[n];
