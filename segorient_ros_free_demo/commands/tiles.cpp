@@ -21,9 +21,11 @@ constexpr const char* kPurpose =
     "machines that share a folder:\n"
     "  segorient tiles plan DIR IN... OUT --memory 2G   once, first; prints how many tiles\n"
     "  segorient tiles tile DIR N                       each tile from 0 on, in any order\n"
-    "  segorient tiles join DIR                         once, after all tiles\n"
-    "  segorient tiles tile DIR N                       each tile again, in any order, or not:\n"
-    "                                                   write does what is left of that\n"
+    "  segorient tiles join DIR                         once, after all tiles; prints which of "
+    "them\n"
+    "                                                   are to be worked on again\n"
+    "  segorient tiles tile DIR N                       these again, in any order, or not: write\n"
+    "                                                   does what is left of that\n"
     "  segorient tiles write DIR [N]                    each output from 0 on, or all\n"
     "  segorient tiles draw DIR OUT.ply                 after join: tiles, halos and the graph as "
     "a\n"
@@ -113,7 +115,10 @@ int runTiles(const std::vector<std::string>& words) {
   }
   const Plan plan = loadPlan(folder);  // before the folder is made where there is none
   const WorkFolder work(folder, step == "join");
-  if (step == "join") joinStep(plan, folder, common.threads);
+  if (step == "join") {
+    joinStep(plan, folder, common.threads);
+    for (const std::size_t t : tilesAgain(plan, folder)) std::printf("again %zu\n", t);
+  }
   if (draws) drawStep(plan, folder, number);
   if (step == "tile") {
     forEachAsked(number, plan.tiles(), "tile", [&](std::size_t n) {

@@ -131,6 +131,15 @@ JoinSummary joinStep(const Plan& plan, const std::string& folder, int threads) {
   return summary;
 }
 
+std::vector<std::size_t> tilesAgain(const Plan& plan, const std::string& folder) {
+  std::vector<std::size_t> out;
+  for (std::size_t t = 0; t < plan.tiles(); ++t) {
+    const auto tile = static_cast<std::uint32_t>(t);
+    if (loadSigns(tilePath(folder, t, "signs"), plan.run, tile).again) out.push_back(t);
+  }
+  return out;
+}
+
 std::uint64_t labelStep(const Plan& plan, const std::string& folder) {
   const auto count = [](const LabelFile& labels) {
     std::uint64_t segments = 0;

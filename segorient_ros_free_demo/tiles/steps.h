@@ -39,6 +39,8 @@ struct JoinSummary {
 
 /// The signs of all tiles' pieces, from what tiles say of them.
 JoinSummary joinStep(const Plan& plan, const std::string& folder, int threads);
+/// After the join: the tiles that have to be worked on again, ascending.
+std::vector<std::size_t> tilesAgain(const Plan& plan, const std::string& folder);
 
 /// Writes one output: the points of its inputs in their order. Finishes tiles that are not.
 void writeStep(const Plan& plan, const std::string& folder, std::size_t output, int threads,

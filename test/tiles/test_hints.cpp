@@ -69,6 +69,21 @@ TEST_F(Hints, NormalsOfTheInputTurnASheet) {
   EXPECT_NE(run.err.find("has no normals"), std::string::npos) << run.err;
 }
 
+// Which sensors are to be believed, the whole knows: each tile is worked on again, and join says
+// so.
+TEST_F(Hints, JoinNamesTheTilesThatAreToBeDoneAgain) {
+  const std::string in = writeDoubles(scratch.file("in.ply"), sheet({}));
+  const std::string folder = scratch.file("work");
+  const Outcome plan = runProgram({"tiles", "plan", folder, in, out, "--viewpoint=2,3,-9",
+                                   "--memory", "1G", "--tile-points", "700"});
+  ASSERT_EQ(plan.out, "tiles 4\noutputs 1\n") << plan.err;
+  ASSERT_EQ(runProgram({"tiles", "tile", folder}).status, 0);
+  for (int i = 0; i < 2; ++i) {
+    const Outcome join = runProgram({"tiles", "join", folder});
+    EXPECT_EQ(join.out, "again 0\nagain 1\nagain 2\nagain 3\n") << join.err;
+  }
+}
+
 // A sensor that flew below, by the points' time.
 TEST_F(Hints, ATrajectoryTurnsASheetAndIsWritten) {
   const std::string in =

@@ -80,7 +80,9 @@ TEST(Tiles, StepsOneByOneGiveTheBytesOfTheCommand) {
   EXPECT_EQ(runProgram({"tiles", "tile", folder, "4"}).status, 2);
   expectRuns({"tiles", "tile", folder});
   for (int i = 0; i < 2; ++i) {
-    expectRuns({"tiles", "join", folder});
+    const Outcome join = runProgram({"tiles", "join", folder});
+    EXPECT_EQ(join.status, 0) << join.err;
+    EXPECT_EQ(join.out, "") << "a smooth body whose tiles know their signs";
     expectRuns({"tiles", "write", folder});
     EXPECT_TRUE(readFile(at_once) == readFile(by_steps));
   }

@@ -63,7 +63,8 @@ def _slots(client: Any) -> int:
     return min(slots.values(), default=1)
 
 
-def _counts(text: str) -> List[int]:
+def _numbers(text: str) -> List[int]:
+    """Those behind the words of a step's lines."""
     return [int(line.split()[1]) for line in text.splitlines()]
 
 
@@ -117,11 +118,11 @@ def orient(
             raise
 
     plan = [*tiles, "plan", folder, *map(_absolute, inputs), _absolute(output)]
-    count, outputs = _counts(run([[*plan, "--memory", memory, *alone, *options]])[0])
+    count, outputs = _numbers(run([[*plan, "--memory", memory, *alone, *options]])[0])
     every_tile = [[*tiles, "tile", folder, str(n), *how] for n in range(count)]
     run(every_tile)
-    run([[*tiles, "join", folder, *alone]])
-    run(every_tile)  # with the signs of the whole, where a tile's own were others
+    again = _numbers(run([[*tiles, "join", folder, *alone]])[0])
+    run([every_tile[n] for n in again])  # with the signs of the whole, as their own were others
     last = alone if outputs == 1 else how
     run([[*tiles, "write", folder, str(n), *last] for n in range(outputs)])
     run([[*tiles, "clean", folder]])
