@@ -65,6 +65,7 @@ JoinSummary readSummary(const Plan& plan, const std::string& folder) {
   summary.pieces = file.value<std::uint64_t>();
   summary.again = file.value<std::uint64_t>();
   summary.components = file.list<ComponentOrientationResult>();
+  summary.sensors_dropped = file.value<bool>();
   file.end();
   return summary;
 }
@@ -78,6 +79,7 @@ JoinSummary joinStep(const Plan& plan, const std::string& folder, int threads) {
   options.patch_points = plan.patch_points;
   options.threads = threads;
   options.hints = hintsOf(plan, plan.origin);
+  options.sensors_found = plan.found_sensors > 0;
   for (const PlanSeed& s : plan.seeds) {
     OrientationHints::Seed seed;
     for (std::size_t a = 0; a < 3; ++a) {
@@ -123,10 +125,12 @@ JoinSummary joinStep(const Plan& plan, const std::string& folder, int threads) {
   }
   summary.pieces = joined.pieces;
   summary.components = std::move(joined.components);
+  summary.sensors_dropped = joined.sensors_dropped;
   TileFileWriter file(joinPath(folder), TileFileKind::JOIN, plan.run);
   file.value(summary.pieces);
   file.value(summary.again);
   file.list(summary.components);
+  file.value(summary.sensors_dropped);
   file.commit();
   return summary;
 }

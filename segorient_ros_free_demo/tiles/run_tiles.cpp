@@ -39,7 +39,7 @@ std::string reportText(const Plan& plan, const JoinSummary& joined, std::uint64_
   json.field("tiles_finished_again", joined.again);
   json.field("pieces", joined.pieces);
   json.field("segments", segments);
-  json.field("sensors_found", plan.found_sensors);
+  json.field("sensors_found", joined.sensors_dropped ? 0U : plan.found_sensors);
   json.field("noise_in_spacings", plan.traits.noise);
   json.field("denoised", plan.traits.denoise != 0);
   json.beginObject("seconds");
@@ -135,7 +135,10 @@ void runAllSteps(const TileRequest& request, const std::string& folder_asked_for
               static_cast<unsigned long long>(segments),
               static_cast<unsigned long long>(joined.pieces),
               static_cast<unsigned long long>(joined.components.size()));
-  if (plan.found_sensors > 0) std::printf("sensors found   %u\n", plan.found_sensors);
+  if (plan.found_sensors > 0) {
+    std::printf("sensors found   %u%s\n", plan.found_sensors,
+                joined.sensors_dropped ? ", but see surfaces from both sides" : "");
+  }
   std::printf("seconds         %.2f\n", seconds.count());
   for (const PlanOutput& out : plan.outputs) std::printf("written         %s\n", out.path.c_str());
 }

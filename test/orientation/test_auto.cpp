@@ -127,6 +127,31 @@ TEST(Auto, GroundOfAMillionPointsFacesUp) {
   for (std::size_t i = 0; i < kPoints; i += 1000) ASSERT_GT(slope.normals[4 * i + 2], 0.F) << i;
 }
 
+// Each body is looked at by itself, however many there are: of a few points of each, a column or
+// two may have one layer by chance.
+TEST(Auto, ManySmallBodiesAreNoGround) {
+  std::mt19937 rng(50);
+  std::normal_distribution<float> gauss;
+  std::uniform_real_distribution<float> unit(-1.F, 1.F);
+  std::vector<float> xyz;
+  std::vector<float> normals;
+  for (int i = 0; i < 200000; ++i) {
+    const int body = i / 200;
+    const float x = 4.F * static_cast<float>(body % 20);
+    const float y = 4.F * static_cast<float>(body / 20);
+    float n[3] = {body % 2 == 0 ? gauss(rng) : 0.F, gauss(rng), gauss(rng)};
+    const float length = std::sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
+    for (float& c : n) c /= length;
+    if (body % 2 == 0) {
+      xyz.insert(xyz.end(), {x + n[0], y + n[1], n[2], 0.F});
+    } else {  // a lying pipe
+      xyz.insert(xyz.end(), {x + 1.5F * unit(rng), y + 0.4F * n[1], 0.4F * n[2], 0.F});
+    }
+    normals.insert(normals.end(), {n[0], n[1], n[2], 0.F});
+  }
+  EXPECT_GE(shareOutward(orient(xyz).normals, normals), 0.999);
+}
+
 // Most of a street is walls, and it is hollow; but each column over the ground has one layer.
 TEST(Auto, GroundBetweenWallsFacesUp) {
   std::mt19937 rng(49);

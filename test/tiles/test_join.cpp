@@ -131,5 +131,42 @@ TEST(Join, NothingAndTilesWithoutPiecesAreJoined) {
   EXPECT_TRUE(joined.tiles[0].patches.empty());
 }
 
+// A level sheet of 40 by 40 patches, as one piece that faces up. Its left half was seen from above,
+// its right half from above and from below in turns.
+JoinedTiles joinSheet(bool sensors_found) {
+  std::vector<TilePatch> patches;
+  JoinOptions options;
+  for (std::uint32_t i = 0; i < 1600; ++i) {
+    TilePatch p;
+    p.position[0] = 0.1F * static_cast<float>(i % 40);
+    p.position[1] = 0.1F * static_cast<float>(i / 40);
+    p.normal[2] = 1.F;
+    p.spacing = 0.1F;
+    p.piece = 0;
+    p.points = p.reliable = 1;
+    p.row = i;
+    patches.push_back(p);
+    const bool left = i % 40 < 20;
+    const float z = left || i % 2 == 0 ? 3.F : -3.F;
+    options.hints.viewpoints.insert(options.hints.viewpoints.end(), {left ? 1.F : 3.F, 2.F, z});
+  }
+  options.sensors_found = sensors_found;
+  TileJoiner joiner;
+  joiner.addTile({1600}, {}, patches, {}, {0.0, 0.0, 0.0});
+  return joiner.join(options);
+}
+
+// Of sensors that were given, the others are followed. Those that were found together explain the
+// densities together, or do not.
+TEST(Join, FoundSensorsOfWhichOneSeesBothSidesAreNotFollowed) {
+  const JoinedTiles given = joinSheet(false);
+  EXPECT_FALSE(given.sensors_dropped);
+  EXPECT_FALSE(given.tiles[0].toward.empty());
+  const JoinedTiles found = joinSheet(true);
+  EXPECT_TRUE(found.sensors_dropped);
+  EXPECT_TRUE(found.tiles[0].toward.empty());
+  EXPECT_EQ(found.tiles[0].patches.size(), 1600U);
+}
+
 }  // namespace
 }  // namespace segorient::test

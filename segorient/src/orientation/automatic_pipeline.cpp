@@ -149,14 +149,6 @@ bool leavesAllToSurface(const AutoOrientation& found) {
                                            [](const KnownSensor& s) { return s.used; }));
 }
 
-// Whether sensors that were found, and followed, together see sheets from both sides: then some of
-// the places, and with them the others, explain densities by chance only.
-bool contradictSurface(const SensorReport& found, const AutoOrientation& oriented) {
-  return found.sure() &&
-         std::any_of(oriented.sensors.begin(), oriented.sensors.end(),
-                     [](const KnownSensor& s) { return !s.used && s.contrary > kMostContrary; });
-}
-
 }  // namespace
 
 void runAutomatic(const PointView& points, const PipelineOptions& given, StageClock& clock,
@@ -170,7 +162,7 @@ void runAutomatic(const PointView& points, const PipelineOptions& given, StageCl
   };
   const auto run = [&](const PointHints& known) {
     AutoStages result = runOnce(known);
-    if (!contradictSurface(report.sensors, result.orientation)) return result;
+    if (!report.sensors.sure() || !seeBothSides(result.orientation.sensors)) return result;
     for (FoundSensor& s : report.sensors.sensors) s.sure = false;
     report.sensors.why += ", but see surfaces from both sides";
     return runOnce(resolveHints(withoutPlaces(givenHints(options)), work.surface.cloud));

@@ -10,6 +10,7 @@
 #include "common/median.h"
 #include "orientation/automatic/orient_sheets.h"
 #include "orientation/automatic/stages.h"
+#include "orientation/sensors/known_sensors.h"
 #include "search/prepared_cloud.h"
 #include "tiles/cloud_field.h"
 #include "tiles/piece_graph.h"
@@ -53,8 +54,8 @@ void tally(const std::vector<TileTie>& in_a, std::int32_t first_a, const std::ve
 }
 
 // Neighbours are needed only to check sensors.
-PointHints hintsOf(const JoinOptions& options, PreparedCloud& cloud) {
-  PointHints out = resolveHints(options.hints, cloud);
+PointHints hintsOf(const OrientationHints& hints, PreparedCloud& cloud) {
+  PointHints out = resolveHints(hints, cloud);
   if (out.has_viewpoint || !out.sensors.empty()) {
     cloud.findNeighbors(kSheetNeighbors, false);
   }
@@ -128,6 +129,7 @@ CloudField TileJoiner::Impl::findField(const AutoOrientation& orientation, const
     return detail::findSigns(cloud.cloud, normals, median(cloud.spacing),
                              orientation.result.components, options.threads);
   }
+  if (field_points.empty()) return {};  // tiles whose sensors were known did not ask
   std::vector<float> places;
   std::vector<float> of_rows;
   for (const FieldPoint& p : field_points) {
@@ -227,7 +229,7 @@ JoinedTiles TileJoiner::join(const JoinOptions& options) {
     count += p.points;
   }
   Impl::PatchCloud patches = i.makeCloud({xyz.data(), 3, i.patches.size()}, options.threads);
-  const PointHints hints = hintsOf(options, patches.cloud);
+  PointHints hints = hintsOf(options.hints, patches.cloud);
   SheetField field;
   field.normals = patches.normals.data();
   field.spacing = patches.spacing.data();
@@ -241,9 +243,19 @@ JoinedTiles TileJoiner::join(const JoinOptions& options) {
     some_point[at(patches.segmentation.labels[p])] = static_cast<pcl::index_t>(p);
   }
   for (BorderVote& v : votes) v.where = some_point[at(v.a)];
-  AutoOrientation orientation = orientSheets(patches.cloud.points(), patches.cloud.neighborhoods(),
-                                             field, patches.segmentation, std::move(votes), count,
-                                             AutomaticOptions{}, hints, options.threads);
+  const auto orient = [&] {
+    return orientSheets(patches.cloud.points(), patches.cloud.neighborhoods(), field,
+                        patches.segmentation, votes, count, AutomaticOptions{}, hints,
+                        options.threads);
+  };
+  AutoOrientation orientation = orient();
+  if (options.sensors_found && detail::seeBothSides(orientation.sensors)) {
+    OrientationHints rest = options.hints;
+    rest.viewpoints.clear();
+    hints = hintsOf(rest, patches.cloud);
+    orientation = orient();
+    out.sensors_dropped = true;
+  }
   i.distribute(orientation, patches, out);
   if (hints.nothing()) out.field = i.findField(orientation, patches, options);
   out.components = std::move(orientation.result.components);

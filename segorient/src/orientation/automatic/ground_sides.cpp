@@ -19,8 +19,10 @@ constexpr double kPointsOfColumn = 16.0;
 constexpr float kApart = 2.F;
 // Sine of 10 degrees: as far as normals err, so that walls closer to vertical face neither way.
 constexpr float kSteep = 0.17F;
-// A share of the columns is known to a hundredth by then.
+// Of a component: a share of the columns is known to a hundredth by then.
 constexpr std::size_t kSample = 65536;
+// Standard deviations of a sum of signs by chance: a few columns tell nothing.
+constexpr float kByChance = 3.F;
 constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
 
 /// The columns over one component.
@@ -73,7 +75,7 @@ class Columns {
         if (one_layer) sum += up > 0.F ? 1.F : -1.F;
       }
     }
-    return count > 0.F ? sum / count : 0.F;
+    return std::fabs(sum) > kByChance * std::sqrt(count) ? sum / count : 0.F;
   }
 
  private:
@@ -92,11 +94,20 @@ class Columns {
 std::vector<float> facingUp(const SheetSigns& sheets) {
   const std::size_t count = sheets.windings.size();
   if (sheets.hints.surface == SurfaceKind::CLOSED) return std::vector<float>(count, 0.F);
-  const std::size_t step = std::max<std::size_t>(1, sheets.points.size / kSample);
+  std::vector<std::size_t> sizes(count, 0);
+  for (const std::int32_t s : sheets.segmentation.labels) {
+    if (s >= 0) ++sizes[at(sheets.component_of[at(s)])];
+  }
+  // Each component has a sample of its own, be there one or thousands.
+  std::vector<std::size_t> seen;
   const auto forEachPoint = [&](const auto& act) {
-    for (std::size_t i = 0; i < sheets.points.size; i += step) {
+    seen.assign(count, 0);
+    for (std::size_t i = 0; i < sheets.points.size; ++i) {
       const std::int32_t s = sheets.segmentation.labels[i];
-      if (s >= 0) act(at(sheets.component_of[at(s)]), static_cast<std::uint32_t>(i));
+      if (s < 0) continue;
+      const std::size_t c = at(sheets.component_of[at(s)]);
+      const std::size_t step = std::max<std::size_t>(1, sizes[c] / kSample);
+      if (seen[c]++ % step == 0) act(c, static_cast<std::uint32_t>(i));
     }
   };
   std::vector<Columns> columns(count);

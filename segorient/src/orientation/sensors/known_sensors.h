@@ -6,6 +6,7 @@
 #include <segorient/common/point_view.h>
 #include <segorient/orientation/sensors.h>
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
@@ -21,6 +22,14 @@ constexpr float kFewHidden = 0.02F;
 /// Share of the pairs of neighbours on one sheet that sensors see from two sides: true ones leave
 /// .01, others mostly .05 and more, on the scans of 39 virtual and real clouds.
 constexpr float kMostContrary = 0.01F;
+
+/// Whether one of the sensors is not followed as it sees sheets from both sides. Of sensors that
+/// were found together, the places, and with that one the others, then explain densities by chance
+/// only.
+inline bool seeBothSides(const std::vector<KnownSensor>& sensors) {
+  return std::any_of(sensors.begin(), sensors.end(),
+                     [](const KnownSensor& s) { return !s.used && s.contrary > kMostContrary; });
+}
 
 /// Where each point was seen from, as far as that is known and not contradicted.
 struct KnownSensors {
