@@ -11,6 +11,7 @@
 #include <memory>
 #include <random>
 
+#include "orientation/sensors/known_sensors.h"
 #include "sheet_fixture.h"
 
 namespace segorient::test {
@@ -287,6 +288,22 @@ TEST(KnownSensors, RowsMayComeInAnyOrder) {
       ASSERT_EQ(cloud.normals[4 * i + a], other.normals[4 * (scans.size() - 1 - i) + a]) << i;
     }
   }
+}
+
+TEST(KnownSensors, BothSidesAreSeenIfOneIsNotFollowedForThat) {
+  const auto follow = [](bool used, float contrary) {
+    KnownSensor out;
+    out.used = used;
+    out.contrary = contrary;
+    return out;
+  };
+  const KnownSensor good = follow(true, 0.F);
+  EXPECT_FALSE(detail::seeBothSides({}));
+  EXPECT_FALSE(detail::seeBothSides({good, good}));
+  EXPECT_TRUE(detail::seeBothSides({good, follow(false, 0.05F)}));
+  // It was believed all the same, or was refused for another reason.
+  EXPECT_FALSE(detail::seeBothSides({good, follow(true, 0.05F)}));
+  EXPECT_FALSE(detail::seeBothSides({good, follow(false, 0.F)}));
 }
 
 }  // namespace

@@ -74,15 +74,10 @@ PipelineOptions withoutUnknownPlaces(const PipelineOptions& options) {
   return withHints(options, std::move(hints));
 }
 
-std::array<float, 3> inUnitOf(const PreparedCloud& cloud, std::array<float, 3> place) {
-  for (float& v : place) v /= cloud.unit();
-  return place;
-}
-
 // One place for all points that nothing was turned to.
 KnownSensor refusedPlace(const std::array<float, 3>& place, const PreparedCloud& cloud) {
   KnownSensor out;
-  out.position = inUnitOf(cloud, place);
+  out.position = cloud.inUnit(place);
   out.points = cloud.size();
   out.used = false;
   return out;
@@ -102,8 +97,11 @@ PointHints findHints(const PointView& points, const PipelineOptions& options, Pr
   }
   const bool is_place = place && isFinite(place->data());
   Shadows shadows;
+  SeenShadows seen;
   if (is_place && !isImage(given, points.size)) {
-    shadows = findShadows(cloud.points(), inUnitOf(cloud, *place), options.threads);
+    shadows = findShadows(cloud.points(), cloud.inUnit(*place), options.threads);
+    // What does not confirm a place reveals none.
+    seen.nothing_at = place;
   }
   if (shadows.confirm()) {
     PointHints known = resolveHints(given, cloud);
@@ -111,14 +109,14 @@ PointHints findHints(const PointView& points, const PipelineOptions& options, Pr
     return known;
   }
   if (is_place) found.suggested.push_back(*place);
-  SensorReport sensors = addFoundSensors(points, cloud, options.threads, found);
+  SensorReport sensors = addFoundSensors(points, cloud, options.threads, found, seen);
   if (is_place && !contradictsPlace(cloud, sensors, *place)) {
     PointHints known = resolveHints(given, cloud);
     known.shadows = shadows;
     known.place_found = sensors.sure() && !sensors.sensors[0].suggested;
     const bool is_fact = known.place_found || !given.viewpoints.empty();
     if (is_fact || given.surface == SurfaceKind::OPEN || !shadows.deny()) return known;
-    hiding = lookFrom(cloud.points(), inUnitOf(cloud, *place), options.threads);
+    hiding = lookFrom(cloud.points(), cloud.inUnit(*place), options.threads);
     // What was found in that very place is no more than compared, either.
     if (sensors.sure()) {
       return findHints(points, asIfNotThere(options, *place), cloud, report, hiding);
@@ -129,10 +127,7 @@ PointHints findHints(const PointView& points, const PipelineOptions& options, Pr
   report.sensors = std::move(sensors);
   if (report.sensors.sensors.empty()) report.sensors.sensor_of = {};
   PointHints known = resolveHints(found, cloud);
-  const std::vector<FoundSensor>& all = report.sensors.sensors;
-  if (!all.empty() && all[0].evidence == SensorEvidence::SHADOWS) {
-    known.shadows = findShadows(cloud.points(), inUnitOf(cloud, all[0].position), options.threads);
-  }
+  known.shadows = seen.of_sensor;
   return known;
 }
 

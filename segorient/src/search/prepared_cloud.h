@@ -10,6 +10,7 @@
 #include <segorient/common/impl/point_search.hpp>
 
 #include <algorithm>
+#include <array>
 #include <cstddef>
 #include <vector>
 
@@ -39,6 +40,11 @@ class SEGORIENT_SEARCH_EXPORT PreparedCloud {
   std::size_t rows() const { return cloud_.row_of.size(); }  ///< input rows
   PointView points() const { return cloud_.view(); }
   float unit() const { return cloud_.unit; }
+  /// A place in input coordinates in those of points().
+  std::array<float, 3> inUnit(std::array<float, 3> place) const {
+    for (float& v : place) v /= unit();
+    return place;
+  }
   const CompactCloud& cloud() const { return cloud_; }
 
   /// The point of a row, -1 where it is not finite or not used.

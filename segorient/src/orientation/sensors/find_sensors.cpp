@@ -129,11 +129,15 @@ SensorReport searchSensors(PreparedCloud& cloud, const SensorOptions& options) {
 
 // Thinned clouds have lost their densities, which leaves who hides whom. That there is one layer
 // over the ground says less.
-void trySuggestedShadows(PreparedCloud& cloud, const SensorOptions& options, SensorReport& out) {
+void trySuggestedShadows(PreparedCloud& cloud, const SensorOptions& options,
+                         detail::SeenShadows& seen, SensorReport& out) {
   if (out.sure() && out.sensors[0].kind != SensorKind::ABOVE) return;
-  for (const std::array<float, 3>& s : options.suggestions) {
+  for (const std::array<float, 3>& suggestion : options.suggestions) {
+    if (suggestion == seen.nothing_at) continue;
+    const std::array<float, 3> s = cloud.inUnit(suggestion);
     const auto shadows = detail::revealingShadows(cloud.points(), s, options.threads);
     if (!shadows) continue;
+    seen.of_sensor = *shadows;
     FoundSensor sensor;
     sensor.evidence = SensorEvidence::SHADOWS;
     sensor.position = s;
@@ -151,7 +155,7 @@ void trySuggestedShadows(PreparedCloud& cloud, const SensorOptions& options, Sen
 }  // namespace
 
 SensorReport detail::sensorsOf(const PointView& points, PreparedCloud& cloud,
-                               const SensorOptions& options) {
+                               const SensorOptions& options, SeenShadows& shadows) {
   SensorReport out;
   std::optional<FoundSensor> camera;
   if (options.image_width > 0) camera = cameraOfImage(points, options.image_width);
@@ -161,11 +165,9 @@ SensorReport detail::sensorsOf(const PointView& points, PreparedCloud& cloud,
     out.why = "the rays of the image meet in one place";
   } else {
     SensorOptions scaled = options;
-    for (std::array<float, 3>& s : scaled.suggestions) {
-      for (float& v : s) v /= cloud.unit();
-    }
+    for (std::array<float, 3>& s : scaled.suggestions) s = cloud.inUnit(s);
     out = searchSensors(cloud, scaled);
-    trySuggestedShadows(cloud, scaled, out);
+    trySuggestedShadows(cloud, options, shadows, out);
     for (FoundSensor& s : out.sensors) {
       for (float& v : s.position) v *= cloud.unit();
     }
@@ -180,7 +182,8 @@ SensorReport detail::sensorsOf(const PointView& points, PreparedCloud& cloud,
 
 SensorReport findSensors(const PointView& points, const SensorOptions& options) {
   PreparedCloud cloud(points, nullptr, options.threads);
-  return detail::sensorsOf(points, cloud, options);
+  detail::SeenShadows shadows;
+  return detail::sensorsOf(points, cloud, options, shadows);
 }
 
 }  // namespace segorient

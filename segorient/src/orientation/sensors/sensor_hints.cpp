@@ -8,8 +8,6 @@
 #include <limits>
 #include <optional>
 
-#include "orientation/sensors/sensor_search.h"
-
 namespace segorient::detail {
 namespace {
 
@@ -37,14 +35,14 @@ bool isImage(const OrientationHints& hints, std::size_t rows) {
 }
 
 SensorReport addFoundSensors(const PointView& points, PreparedCloud& cloud, int threads,
-                             OrientationHints& hints) {
+                             OrientationHints& hints, SeenShadows& shadows) {
   SensorOptions options;
   options.threads = threads;
   options.suggestions = hints.suggested;
   // One image that is the whole cloud has a camera of its own; of several, each would be looked
   // for.
   if (isImage(hints, points.size)) options.image_width = hints.grids[0].width;
-  SensorReport report = sensorsOf(points, cloud, options);
+  SensorReport report = sensorsOf(points, cloud, options, shadows);
   if (report.sure()) addViewpoints(report, hints);
   return report;
 }

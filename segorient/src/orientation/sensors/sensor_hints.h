@@ -10,6 +10,7 @@
 #include <cstddef>
 #include <optional>
 
+#include "orientation/sensors/sensor_search.h"
 #include "search/prepared_cloud.h"
 
 namespace segorient::detail {
@@ -24,7 +25,7 @@ bool isImage(const OrientationHints& hints, std::size_t rows);
 /// Looks for sensors; what is sure becomes a hint of each row, as if it were given.
 /// \param points the rows that `cloud` was prepared from
 SensorReport addFoundSensors(const PointView& points, PreparedCloud& cloud, int threads,
-                             OrientationHints& hints);
+                             OrientationHints& hints, SeenShadows& shadows);
 
 /// The hints without what they say of places that a sensor had.
 OrientationHints withoutPlaces(const OrientationHints& hints);

@@ -5,12 +5,25 @@
 #include <segorient/common/point_view.h>
 #include <segorient/orientation/sensors.h>
 
+#include <array>
+#include <optional>
+
+#include "orientation/sensors/shadows.h"
 #include "search/prepared_cloud.h"
 
 namespace segorient::detail {
 
+/// Shadows that need not be looked for again.
+struct SeenShadows {
+  /// A suggestion, in input coordinates, whose shadows reveal no sensor.
+  std::optional<std::array<float, 3>> nothing_at;
+  /// Found: those that told of a sensor; no steps where something else did.
+  Shadows of_sensor;
+};
+
 /// findSensors() of a cloud that is prepared.
 /// \param points the rows that it was prepared from, for an image
-SensorReport sensorsOf(const PointView& points, PreparedCloud& cloud, const SensorOptions& options);
+SensorReport sensorsOf(const PointView& points, PreparedCloud& cloud, const SensorOptions& options,
+                       SeenShadows& shadows);
 
 }  // namespace segorient::detail
