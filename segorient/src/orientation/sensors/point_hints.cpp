@@ -6,6 +6,8 @@
 #include <cmath>
 #include <limits>
 
+#include "common/in_double.h"
+
 namespace segorient {
 namespace {
 
@@ -42,10 +44,6 @@ void add(const Vector& v, float* out) {
 
 std::size_t rowsOf(const std::vector<float>& values) {
   return values.size() / 3;
-}
-
-std::array<double, 3> inDouble(const float* v) {
-  return {static_cast<double>(v[0]), static_cast<double>(v[1]), static_cast<double>(v[2])};
 }
 
 void addDirections(const OrientationHints& hints, const PreparedCloud& cloud,
