@@ -71,15 +71,9 @@ void PatchEquations::findFields(float radius, int threads) {
   }
 }
 
-double PatchEquations::side() const {
-  const Eigen::VectorXf w = fields_.rowwise().sum();
-  return static_cast<double>(w.dot(areas_)) < 0.0 ? -1.0 : 1.0;
-}
-
 // Each sign in turn takes its best value while the others stay: down to the one minimum, as the sum
 // is convex.
-Signs PatchEquations::descend(Signs signs, const Eigen::VectorXf& weights,
-                              const Eigen::VectorXf& targets) const {
+Signs PatchEquations::descend(Signs signs, const Eigen::VectorXf& weights) const {
   const auto n = static_cast<Eigen::Index>(size());
   const Eigen::MatrixXf weighted = weights.cwiseSqrt().asDiagonal() * fields_;
   Eigen::MatrixXf squares = Eigen::MatrixXf::Zero(n, n);
@@ -88,8 +82,7 @@ Signs PatchEquations::descend(Signs signs, const Eigen::VectorXf& weights,
   Eigen::MatrixXd matrix = squares.cast<double>();
   Signs wanted(n);
   for (Eigen::Index p = 0; p < n; ++p) {
-    wanted[p] =
-        static_cast<double>((fields_.col(p).array() * weights.array() * targets.array()).sum());
+    wanted[p] = 0.5 * static_cast<double>(fields_.col(p).dot(weights));
     matrix(p, p) += kTie * static_cast<double>(patches_.areas[static_cast<std::size_t>(p)]);
   }
   for (const PatchBorder& border : patches_.borders) {
@@ -113,29 +106,22 @@ Signs PatchEquations::descend(Signs signs, const Eigen::VectorXf& weights,
   return signs;
 }
 
-PatchSolution PatchEquations::solve(Signs start, int rounds, bool layers) const {
+PatchSolution PatchEquations::solve(Signs start, int rounds) const {
   constexpr float kBack = 0.05F;  // of a patch's weight, so that it can come back
   Signs signs = std::move(start);
   const bool from_nothing = signs.isZero();
   for (int round = 0; round < rounds; ++round) {
     Eigen::VectorXf weights = areas_;
-    Eigen::VectorXf targets = Eigen::VectorXf::Constant(areas_.size(), 0.5F);
-    if (round > 0 || !from_nothing) {
-      const Eigen::VectorXf w = fields_ * signs.cast<float>();
-      for (Eigen::Index k = 0; k < w.size(); ++k) {
-        const std::int32_t p = patch_at_[static_cast<std::size_t>(k)];
-        if (p >= 0) {
-          // Half a sign is enough to be asked.
-          const auto sure = static_cast<float>(std::fabs(signs[p])) / 0.5F;
-          weights[k] *= std::min(1.F, kBack + sure);
-        }
-        if (layers && w[k] > 1.F) targets[k] = std::floor(w[k]) + 0.5F;
+    for (Eigen::Index k = 0; k < weights.size(); ++k) {
+      const std::int32_t p = patch_at_[static_cast<std::size_t>(k)];
+      if (p < 0) {
+        weights[k] = 0.F;
+      } else if (round > 0 || !from_nothing) {
+        // Half a sign is enough to be asked.
+        weights[k] *= std::min(1.F, kBack + 2.F * static_cast<float>(std::fabs(signs[p])));
       }
     }
-    for (Eigen::Index k = 0; k < weights.size(); ++k) {
-      if (patch_at_[static_cast<std::size_t>(k)] < 0) weights[k] = 0.F;
-    }
-    signs = descend(std::move(signs), weights, targets);
+    signs = descend(std::move(signs), weights);
   }
   return judge(std::move(signs));
 }

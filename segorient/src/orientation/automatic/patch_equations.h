@@ -34,17 +34,15 @@ class PatchEquations {
   std::size_t size() const { return patches_.size(); }
   const SignPatches& patches() const { return patches_; }
 
-  /// \param start signs; all 0 for none \param layers whether bodies may overlap
-  PatchSolution solve(Signs start, int rounds, bool layers) const;
+  /// \param start signs; all 0 for none
+  PatchSolution solve(Signs start, int rounds) const;
   /// By whole signs: mean square difference of the winding number from the middle between two whole
   /// numbers, over what is decided, with neighbours that contradict each other.
   PatchSolution judge(Signs signs) const;
-  /// -1 where the patches as they are, all together, have the inside out, otherwise 1.
-  double side() const;
 
  private:
   void findFields(float radius, int threads);
-  Signs descend(Signs signs, const Eigen::VectorXf& weights, const Eigen::VectorXf& targets) const;
+  Signs descend(Signs signs, const Eigen::VectorXf& weights) const;
 
   const EvenCells& cells_;
   SignPatches patches_;

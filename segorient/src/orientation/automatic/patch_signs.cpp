@@ -94,7 +94,7 @@ PatchSolution solveFromNothing(const PatchEquations& equations) {
   float surface = 0.F;
   for (const float share : equations.patches().areas) surface += share;
   if (equations.size() == 0 || surface < 1.F - kNoSurface) return {};
-  return equations.solve(Signs::Zero(static_cast<Eigen::Index>(equations.size())), 1, false);
+  return equations.solve(Signs::Zero(static_cast<Eigen::Index>(equations.size())), 1);
 }
 
 // A coarse look at a large cloud, for a tenth of the time: open sheets bound no bodies.
@@ -119,11 +119,9 @@ CellSigns findCellSigns(const PointView& points, const std::vector<float>& norma
   const PatchEquations equations(out.cells, radius, threads);
   const PatchSolution first = solveFromNothing(equations);
   if (!first.allowed) return out;
-  const Signs own = Signs::Constant(first.signs.size(), equations.side());
   PatchSolution best;
-  best.energy = kClearlyLess * equations.judge(own).energy;
-  for (const PatchSolution& other : {first, equations.solve(first.signs, kRounds - 1, false),
-                                     equations.solve(own, kRounds, true)}) {
+  best.energy = kClearlyLess * equations.judge(Signs::Ones(first.signs.size())).energy;
+  for (const PatchSolution& other : {first, equations.solve(first.signs, kRounds - 1)}) {
     if (other.allowed && other.energy < best.energy) best = other;
   }
   if (!best.allowed) return out;

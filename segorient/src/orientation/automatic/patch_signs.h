@@ -32,9 +32,8 @@ struct CellSigns {
 /// with a_x the area of x as a share of all, w_p the winding number of patch p, t_x = 1/2 (between
 /// the outside, 0, and the inside, 1), and c_pq how far p and q continue one another. That is
 /// convex: from nothing there is one solution. Faces in contact, with the inside on both sides, get
-/// signs near 0 and are left out of a second round. Where bodies overlap, the winding number goes
-/// from 1 to 2 and t_x is 3/2: which it is, is told by the solution before. Of these and of the
-/// normals as they are, the best by whole signs is taken if it is clearly better.
+/// signs near 0 and are left out of more rounds. Of these solutions and of the normals as they are,
+/// the best by whole signs is taken if it is clearly better.
 ///
 /// Nothing is found where the winding number is that of a closed surface already.
 ///
