@@ -59,14 +59,28 @@ TEST_P(SeveralStations, AreFoundAndShareThePoints) {
 
 INSTANTIATE_TEST_SUITE_P(Sensors, SeveralStations, testing::Values(0.0, 0.8));
 
-// A lidar of few beams that turns while it goes along.
-TEST(Sensors, AMovingScannerIsFoundAlongItsWay) {
-  Scan scan;
+// A lidar of few beams that turns while it goes along, in a room and between two long walls, where
+// most straight lines leave the scene.
+struct Way {
+  Room room;
+  Vector first;
+  Vector step;
+};
+
+class MovingScanner : public testing::TestWithParam<Way> {};
+
+TEST_P(MovingScanner, IsFoundAlongItsWay) {
+  const Way& way = GetParam();
+  Scan scan(way.room);
   constexpr int kPoses = 12;
-  const auto pose = [](int i) { return Vector{1.0 + 0.3 * i, 1.6 + 0.04 * i, 1.3}; };
+  const auto pose = [&](int i) {
+    Vector out = way.first;
+    for (std::size_t a = 0; a < 3; ++a) out[a] += i * way.step[a];
+    return out;
+  };
   for (int i = 0; i < kPoses; ++i) {
-    for (double e = -25.0; e <= 15.0; e += 2.5) {
-      for (double a = 0.1 * i; a < 360.0; a += 1.5) {
+    for (double e = -24.0; e <= 8.0; e += 2.0) {
+      for (double a = 0.1 * i; a < 360.0; a += 1.0) {
         const double azimuth = a * kPi / 180.0;
         const double elevation = e * kPi / 180.0;
         scan.add(pose(i), {std::cos(elevation) * std::cos(azimuth),
@@ -81,11 +95,18 @@ TEST(Sensors, AMovingScannerIsFoundAlongItsWay) {
     EXPECT_TRUE(s.sure);
     double nearest = 1e30;
     for (int i = 0; i < kPoses; ++i) nearest = std::min(nearest, distanceTo(s, pose(i)));
-    EXPECT_LT(nearest, 0.4);
+    // Between two poses, and .1 of the room's height.
+    EXPECT_LT(nearest, 0.5 * way.step[0] + 0.1 * way.room.size[2]);
     points += s.points;
   }
   EXPECT_EQ(points, scan.view().size);
 }
+
+INSTANTIATE_TEST_SUITE_P(Sensors, MovingScanner,
+                         testing::Values(Way{{}, {1.0, 1.6, 1.3}, {0.3, 0.04, 0.0}},
+                                         Way{{{50.0, 6.0, 5.0}, {30.0, 0.0, 0.0}, {34.0, 2.0, 2.0}},
+                                             {6.0, 2.7, 1.8},
+                                             {1.2, 0.03, 0.0}}));
 
 // What somebody says of all points gives way to densities that tell the station for sure.
 TEST(Sensors, AWrongPlaceForAllPointsIsReportedAndDoesNoHarm) {

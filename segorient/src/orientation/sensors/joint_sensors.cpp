@@ -26,8 +26,7 @@ namespace {
 // What may be left of the deviation. Several stations have more to adapt: true ones in rooms and
 // yards left .03 to .28, or nothing but chance; wrong ones around single bodies .33 and more.
 constexpr float kSureSeveral = 0.3F;
-// Along a line inside the scene, with free beams: true ones left .05 to .35, others .53 and more;
-// outside the scene .35 came about, but no vehicle goes there.
+// Along a line inside the scene, with free beams: true ones left .05 to .35, others .53 and more.
 constexpr float kSureTrack = 0.4F;
 // Stations whose axis lies level, as that of scanners that tilt, are sought where densities vary by
 // so many times what chance makes of them, and only inside of the scene. The same is asked of them;
@@ -124,9 +123,10 @@ bool areInside(const std::vector<std::array<double, 3>>& positions, const detail
 }
 
 // Scanners that tilt turn about a level axis.
+// \param left what a scanner on its way leaves of the deviation: it is to be less
 void lookForTilted(PreparedCloud& cloud, const DensityPatches& patches,
-                   const detail::Extent& extent, const detail::Occupancy& occupancy, int threads,
-                   SensorReport& report) {
+                   const detail::Extent& extent, const detail::Occupancy& occupancy, float left,
+                   int threads, SensorReport& report) {
   if (report.deviation < kVariesTilted * report.chance) return;
   detail::Stations best;
   for (std::size_t a = 0; a < 2; ++a) {
@@ -139,6 +139,7 @@ void lookForTilted(PreparedCloud& cloud, const DensityPatches& patches,
   const float ratio = best.cost / report.deviation;
   const bool much = report.deviation >= kVariesMuch * report.chance;
   if (best.positions.empty() || ratio > (much ? kSureWhereMuch : kSureSeveral)) return;
+  if (ratio >= left) return;
   if (!areInside(best.positions, extent)) return;
   addSensors(best.positions, SensorKind::STATION, best.axis, ratio, report);
   assignPlaces(cloud, patches, detail::stationOf(patches, occupancy, best), threads, report);
@@ -163,13 +164,12 @@ void detail::findSeveral(PreparedCloud& cloud, const DensityPatches& patches, in
   }
   const detail::Track track = detail::searchTrack(patches, extent, threads);
   const float left = track.cost / report.deviation;
-  if (!track.inside || left > kSureTrack) {
-    lookFromAbove(cloud, patches, extent, report);
-    if (report.sensors.empty()) {
-      lookForTilted(cloud, patches, extent, occupancy, threads, report);
-    }
-    return;
+  const bool is_track = left <= kSureTrack;
+  if (!is_track) lookFromAbove(cloud, patches, extent, report);
+  if (report.sensors.empty() && left > kSureSeveral) {
+    lookForTilted(cloud, patches, extent, occupancy, left, threads, report);
   }
+  if (!is_track || !report.sensors.empty()) return;
   addSensors(track.places, SensorKind::MOVING, kUp, left, report);
   assignPlaces(cloud, patches, detail::placeOf(patches, occupancy, track), threads, report);
   report.why = "places along a line explain the densities";

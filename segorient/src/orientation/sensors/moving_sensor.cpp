@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <limits>
 #include <numeric>
 #include <utility>
 
@@ -180,7 +181,8 @@ std::array<double, 3> longDirection(const DensityPatches& patches) {
   return {c, s, 2.0 * reach};
 }
 
-// Lines of one length along the scene and across it, in its middle and beside, low and high.
+// Lines of one length along the scene and across it, in its middle and beside, low and high, as far
+// as they are inside.
 std::vector<Line> startLines(const DensityPatches& patches, const Extent& extent, double part) {
   const std::array<double, 3> spread = longDirection(patches);
   const double length = spread[2];
@@ -195,7 +197,11 @@ std::vector<Line> startLines(const DensityPatches& patches, const Extent& extent
         for (const double height : {0.12, 0.3, 0.6}) {
           const double z = extent.low[2] + height * (extent.high[2] - extent.low[2]);
           const double half = 0.5 * part * length;
-          out.push_back({x - half * dx, y - half * dy, x + half * dx, y + half * dy, z});
+          const auto within = [&](double v, std::size_t a) {
+            return std::clamp(v, extent.low[a], extent.high[a]);
+          };
+          out.push_back({within(x - half * dx, 0), within(y - half * dy, 1),
+                         within(x + half * dx, 0), within(y + half * dy, 1), z});
         }
       }
     }
@@ -203,12 +209,19 @@ std::vector<Line> startLines(const DensityPatches& patches, const Extent& extent
   return out;
 }
 
-bool isInside(const std::vector<Position>& places, const Extent& extent) {
-  return std::all_of(places.begin(), places.end(), [&](const Position& p) {
-    bool in = true;
-    for (std::size_t a = 0; a < 3; ++a) in = in && p[a] >= extent.low[a] && p[a] <= extent.high[a];
-    return in;
-  });
+// No vehicle leaves the scene, where sums of a few places adapt to much. A line is inside where its
+// ends are.
+bool isInside(const Line& line, const Extent& extent) {
+  const auto lies = [&](double v, std::size_t a) {
+    return v >= extent.low[a] && v <= extent.high[a];
+  };
+  return lies(line[0], 0) && lies(line[2], 0) && lies(line[1], 1) && lies(line[3], 1) &&
+         lies(line[4], 2);
+}
+
+double costOf(const Line& line, const Extent& extent, TrackModel& model) {
+  return isInside(line, extent) ? static_cast<double>(model.fit(placesAlong(line)))
+                                : std::numeric_limits<double>::infinity();
 }
 
 }  // namespace
@@ -228,7 +241,7 @@ Track searchTrack(const DensityPatches& patches, const Extent& extent, int threa
     TrackModel model(some);
 #pragma omp for schedule(static)
     for (std::size_t i = 0; i < lines.size(); ++i) {
-      costs[i] = static_cast<double>(model.fit(placesAlong(lines[i])));
+      costs[i] = costOf(lines[i], extent, model);
     }
   }
   std::vector<std::size_t> order;
@@ -243,9 +256,7 @@ Track searchTrack(const DensityPatches& patches, const Extent& extent, int threa
 #pragma omp parallel for schedule(static, 1) num_threads(team)
   for (std::size_t s = 0; s < order.size(); ++s) {
     TrackModel model(some);
-    const auto cost = [&](const Line& line) {
-      return static_cast<double>(model.fit(placesAlong(line)));
-    };
+    const auto cost = [&](const Line& line) { return costOf(line, extent, model); };
     const std::vector<double> steps(5, kStep * extent.diagonal());
     costs[order[s]] = minimize(cost, steps, kEvaluations, lines[order[s]]);
   }
@@ -257,7 +268,6 @@ Track searchTrack(const DensityPatches& patches, const Extent& extent, int threa
   TrackModel model(patches);
   out.cost = model.fit(out.places);
   out.beams = model.beams();
-  out.inside = isInside(out.places, extent);
   return out;
 }
 

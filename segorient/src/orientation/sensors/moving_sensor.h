@@ -12,13 +12,13 @@
 
 namespace segorient::detail {
 
-/// A sensor that went along a straight level line while it turned about the z axis: a lidar on a
-/// vehicle. Its beams are nobody's grid: how many there are by elevation is found with the line.
+/// A sensor that went along a straight level line inside the scene while it turned about the z
+/// axis: a lidar on a vehicle. Its beams are nobody's grid: how many there are by elevation is
+/// found with the line.
 struct Track {
   std::vector<std::array<double, 3>> places;  ///< from one end to the other, equally far apart
   std::vector<float> beams;                   ///< by elevation, from straight down, relative
   float cost = 0.F;                           ///< as costOf()
-  bool inside = false;                        ///< whether the line is in the scene, as a vehicle is
 };
 
 Track searchTrack(const DensityPatches& patches, const Extent& extent, int threads);
