@@ -79,6 +79,7 @@ JoinSummary joinStep(const Plan& plan, const std::string& folder, int threads) {
   options.patch_points = plan.patch_points;
   options.threads = threads;
   options.hints = hintsOf(plan, plan.origin);
+  options.place = plan.place;
   options.sensors_found = plan.found_sensors > 0;
   for (const PlanSeed& s : plan.seeds) {
     OrientationHints::Seed seed;

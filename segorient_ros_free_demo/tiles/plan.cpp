@@ -31,6 +31,12 @@ void forEachNumber(P& p, const Visit& visit) {
   visit(p.open);
   visit(p.find_sensors);
   visit(p.found_sensors);
+  visit(p.place.shadows.steps);
+  visit(p.place.shadows.covered);
+  visit(p.place.shadows.open);
+  visit(p.place.shadows.better_across);
+  visit(p.place.found);
+  visit(p.place_refused);
   visit(p.memory);
   visit(p.keep_orientation);
   visit(p.adds_scans);

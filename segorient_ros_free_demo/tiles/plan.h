@@ -94,6 +94,9 @@ struct Plan {
   float beta = 0.F;
   float epsilon = 0.F;
   std::uint32_t found_sensors = 0;
+  CloudPlace place;
+  /// Whether the one place that all points were said to have been seen from is not followed.
+  bool place_refused = false;
   std::string trajectory;
   std::vector<PlanSeed> seeds;
 

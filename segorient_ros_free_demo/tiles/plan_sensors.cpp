@@ -4,6 +4,11 @@
 
 #include <algorithm>
 #include <limits>
+#include <utility>
+
+#include "orientation/sensors/place_choice.h"
+#include "search/prepared_cloud.h"
+#include "tiles/plan_probe.h"
 
 namespace segorient::program {
 namespace {
@@ -12,34 +17,53 @@ constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
 
 }  // namespace
 
-PlanSensors::PlanSensors(const Plan& plan, const PointSample& sample, std::size_t image_width,
-                         int threads) {
-  const bool known = plan.has_viewpoint || plan.has_viewpoints || plan.up;
-  if (known || !plan.find_sensors || plan.closed) return;
+PlanSensors::PlanSensors(const Plan& plan, const PointSample& sample, const PlacesSaid& said,
+                         std::size_t image_width, int threads) {
+  const std::optional<TileTree::Place> of_points = said.one();
+  const bool columns = plan.has_viewpoints && !said.none();
+  // Each point knows its own, or what is known is not a place.
+  if ((columns && !of_points) || !plan.trajectory.empty()) return;
+  if (plan.up || plan.keep_orientation) return;
+  if (!plan.find_sensors || plan.closed) return;
+  takeSample(plan, sample);
+  const std::size_t size = points_.size() / 3;
+  OrientationHints given = hintsOf(plan, plan.origin);
+  if (columns) {
+    const std::array<float, 3> place = near(*of_points, plan.origin);
+    for (std::size_t i = 0; i < size; ++i) {
+      given.viewpoints.insert(given.viewpoints.end(), place.begin(), place.end());
+    }
+  }
+  given.suggested = {near({0.0, 0.0, 0.0}, plan.origin)};
+  if (by_row_ && image_width > 0) given.grids = {{0, image_width, size / image_width}};
+  choose(given, threads);
+  if (by_row_ || sure_ == 0) return;
+  search::MedianHashIndex::Options search_options;
+  search_options.threads = threads;
+  index_.build({points_.data(), 3, size}, nullptr, search_options);
+}
+
+void PlanSensors::takeSample(const Plan& plan, const PointSample& sample) {
   by_row_ = plan.rows <= kSamplePoints;
   const std::size_t size = by_row_ ? static_cast<std::size_t>(plan.rows) : sample.places().size();
   points_.assign(3 * size, kNaN);
   for (std::size_t i = 0; i < sample.places().size(); ++i) {
     const std::size_t to = by_row_ ? static_cast<std::size_t>(sample.rows()[i]) : i;
-    for (std::size_t a = 0; a < 3; ++a) {
-      points_[3 * to + a] = static_cast<float>(sample.places()[i][a] - plan.origin[a]);
-    }
+    const std::array<float, 3> p = near(sample.places()[i], plan.origin);
+    std::copy(p.begin(), p.end(), points_.begin() + static_cast<std::ptrdiff_t>(3 * to));
   }
-  SensorOptions options;
-  options.threads = threads;
-  options.image_width = by_row_ ? image_width : 0;
-  for (std::size_t a = 0; a < 3; ++a) {
-    options.suggestions[0][a] = static_cast<float>(-plan.origin[a]);
-  }
-  const PointView points{points_.data(), 3, size};
-  report_ = findSensors(points, options);
+}
+
+void PlanSensors::choose(const OrientationHints& given, int threads) {
+  const PointView points{points_.data(), 3, points_.size() / 3};
+  PreparedCloud cloud(points, nullptr, threads);
+  detail::PlaceChoice choice = detail::choosePlaces(points, given, true, cloud, threads);
+  place_ = {choice.shadows, choice.place_found};
+  follows_given_ = !choice.hints;
+  report_ = std::move(choice.sensors);
   if (!report_.sure()) return;
   sure_ = static_cast<std::size_t>(std::count_if(report_.sensors.begin(), report_.sensors.end(),
                                                  [](const FoundSensor& s) { return s.sure; }));
-  if (by_row_) return;
-  search::MedianHashIndex::Options search_options;
-  search_options.threads = threads;
-  index_.build(points, nullptr, search_options);
 }
 
 std::array<float, 3> PlanSensors::of(std::uint64_t row, const std::array<float, 3>& place) const {

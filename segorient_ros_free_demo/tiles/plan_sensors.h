@@ -6,8 +6,10 @@
 #include <segorient/search/median_hash_index.h>
 
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "tiles/plan.h"
@@ -15,20 +17,54 @@
 
 namespace segorient::program {
 
-/// Sensors that nobody named, found in a sample of the whole cloud: where each of its points was
-/// seen from. A thinner cloud has the same ratios of densities, from which they are found.
+/// Where some points of a cloud say that they were seen from.
+class PlacesSaid {
+ public:
+  using Place = TileTree::Place;
+  void add(const Place& p) {
+    const bool known = std::isfinite(p[0]) && std::isfinite(p[1]) && std::isfinite(p[2]);
+    if (first_.empty()) first_.push_back(p);
+    one_ = one_ && known && p == first_[0];
+    any_ = any_ || known;
+  }
+  bool none() const { return !any_; }
+  /// The place, if it is one for all of them.
+  std::optional<Place> one() const {
+    return one_ && any_ ? std::optional(first_[0]) : std::nullopt;
+  }
+
+ private:
+  std::vector<Place> first_;
+  bool one_ = true;
+  bool any_ = false;
+};
+
+/// Where the points of a cloud were seen from, by a sample of all of it, as choosePlaces() decides
+/// of a cloud in memory. A thinner cloud has the same ratios of densities, from which sensors are
+/// found, and the same shadows.
 class PlanSensors {
  public:
-  /// Looks for them, unless the plan knows some.
+  /// Looks for sensors unless some are known, and whether to believe in one place for all points.
+  /// \param said by the points of the sample
   /// \param image_width see SensorOptions; 0 unless the sample is one whole range image
-  PlanSensors(const Plan& plan, const PointSample& sample, std::size_t image_width, int threads);
+  PlanSensors(const Plan& plan, const PointSample& sample, const PlacesSaid& said,
+              std::size_t image_width, int threads);
 
+  /// Whether the places that are given are followed.
+  bool followsGiven() const { return follows_given_; }
+  /// What is known of the one that is followed.
+  const CloudPlace& place() const { return place_; }
   std::size_t found() const { return sure_; }
   /// Where a point was seen from, relative to the plan's origin; NaN where no sensor is sure.
   std::array<float, 3> of(std::uint64_t row, const std::array<float, 3>& place) const;
 
  private:
+  void takeSample(const Plan& plan, const PointSample& sample);
+  void choose(const OrientationHints& given, int threads);
+
   SensorReport report_;
+  CloudPlace place_;
+  bool follows_given_ = true;
   std::size_t sure_ = 0;
   bool by_row_ = false;        // the sample is all there is
   std::vector<float> points_;  // 3 each

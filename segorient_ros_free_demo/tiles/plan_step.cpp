@@ -28,13 +28,20 @@ bool isFinite(const Place& p) {
   return std::isfinite(p[0]) && std::isfinite(p[1]) && std::isfinite(p[2]);
 }
 
+// NaN where a file names none.
+Place headerPlace(const CloudTable& block) {
+  const Place here{block.viewpoint[0], block.viewpoint[1], block.viewpoint[2]};
+  constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
+  return here != Place{0, 0, 0} ? here : Place{kUnknown, kUnknown, kUnknown};
+}
+
 // Draws a sample of all inputs: of those that are small enough all points are looked at, of others
 // some of each of many pages from all over them, by no pattern that a file could have, too. Those
 // of a page may lie side by side: few of them, so that what is measured between points of the
 // sample is not only between those. \param begin called with each input's layout
 template <typename Begin>
 void drawSample(const Plan& plan, const StepProgress& progress, const Begin& begin,
-                PointSample& sample) {
+                PointSample& sample, PlacesSaid& said) {
   constexpr std::uint64_t kAll = std::uint64_t{1} << 22;   // points
   constexpr std::uint64_t kRead = std::uint64_t{1} << 21;  // of more
   constexpr std::uint64_t kPage = 32;
@@ -53,10 +60,14 @@ void drawSample(const Plan& plan, const StepProgress& progress, const Begin& beg
       stream.skipTo(row);
       if (!stream.next(block, static_cast<std::size_t>(page))) break;
       const auto xyz = block.xyz();
+      const bool says_places = plan.has_viewpoints && block.hasViewpoints();
+      if (plan.has_viewpoints && !says_places) said.add(headerPlace(block));
       for (std::size_t i = 0; i < block.size; ++i) {
         if (!all && PointSample::scatter(in.first_row + row + i) % kOfPage != 0) continue;
         const Place place = block.triple(xyz, i);
-        if (isFinite(place)) sample.add(in.first_row + row + i, place);
+        if (!isFinite(place)) continue;
+        sample.add(in.first_row + row + i, place);
+        if (says_places) said.add(block.triple(block.viewpoints(), i));
       }
       if (progress) {
         progress(0.35 * static_cast<double>(in.first_row + row) / static_cast<double>(plan.rows));
@@ -82,23 +93,18 @@ class Viewpoints {
   explicit Viewpoints(const PlanSensors& sensors) : sensors_(sensors) {}
   void begin(const CloudTable& layout) {
     columns_ = layout.hasViewpoints();
-    const Place here{layout.viewpoint[0], layout.viewpoint[1], layout.viewpoint[2]};
-    known_ = here != Place{0, 0, 0};
-    header_ = here;
+    header_ = headerPlace(layout);
   }
   std::array<float, 3> of(const CloudTable& block, std::size_t row, std::uint64_t number,
                           const Place& place, const Place& origin) const {
     if (sensors_.found() > 0) return sensors_.of(number, near(place, origin));
     if (columns_) return near(block.triple(block.viewpoints(), row), origin);
-    if (known_) return near(header_, origin);
-    constexpr float kUnknown = std::numeric_limits<float>::quiet_NaN();
-    return {kUnknown, kUnknown, kUnknown};
+    return near(header_, origin);
   }
 
  private:
   const PlanSensors& sensors_;
   bool columns_ = false;
-  bool known_ = false;
   Place header_{0, 0, 0};
 };
 
@@ -190,6 +196,16 @@ double mostPoints(const TileRequest& request, double points_each) {
   return std::max(1.0, points_each > 1.0 ? kSafe * most : most);
 }
 
+void followSensors(const PlanSensors& sensors, Plan& plan) {
+  if (!sensors.followsGiven()) {
+    plan.place_refused = plan.has_viewpoint || plan.has_viewpoints;
+    plan.has_viewpoint = plan.has_viewpoints = false;
+  }
+  plan.place = sensors.place();
+  plan.found_sensors = static_cast<std::uint32_t>(sensors.found());
+  plan.has_viewpoints = plan.has_viewpoints || sensors.found() > 0;
+}
+
 }  // namespace
 
 Plan planStep(const TileRequest& request, const std::string& folder, const StepProgress& progress) {
@@ -220,6 +236,7 @@ Plan planStep(const TileRequest& request, const std::string& folder, const StepP
   openInputs(folder, plan);
   addSeeds(request.seeds, plan);
   PointSample sample;
+  PlacesSaid said;
   std::size_t image_width = 0;
   std::size_t row_bytes = 0;
   drawSample(
@@ -229,7 +246,7 @@ Plan planStep(const TileRequest& request, const std::string& folder, const StepP
         const bool image = layout.height > 1 && layout.width * layout.height == plan.rows;
         image_width = image ? layout.width : 0;
       },
-      sample);
+      sample, said);
   const std::vector<Place>& places = sample.places();
   const double points_each =
       static_cast<double>(plan.rows) / std::max(1.0, static_cast<double>(sample.places().size()));
@@ -244,9 +261,8 @@ Plan planStep(const TileRequest& request, const std::string& folder, const StepP
   plan.chunk_rows = chunkRows(request, row_bytes);
   plan.patch_points = static_cast<std::uint32_t>((plan.rows + kSamplePoints - 1) / kSamplePoints);
   Probe probe(places, points_each, plan.origin);
-  const PlanSensors sensors(plan, sample, image_width, request.threads);
-  plan.found_sensors = static_cast<std::uint32_t>(sensors.found());
-  plan.has_viewpoints = plan.has_viewpoints || sensors.found() > 0;
+  const PlanSensors sensors(plan, sample, said, image_width, request.threads);
+  followSensors(sensors, plan);
   distribute(folder, progress, sensors, request.threads, probe, plan);
   OrientationHints hints = hintsOf(plan, plan.origin);
   hints.viewpoints = probe.viewpoints();

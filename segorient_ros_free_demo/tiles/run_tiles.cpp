@@ -30,6 +30,11 @@ std::string stageName(const char* stage, std::size_t tile, std::size_t tiles) {
   return std::string(stage) + " " + std::to_string(tile + 1) + "/" + std::to_string(tiles);
 }
 
+// Whether a place that was given is not followed.
+bool leavesPlaceAside(const Plan& plan, const JoinSummary& joined) {
+  return plan.place_refused || (plan.found_sensors == 0 && joined.sensors_dropped);
+}
+
 std::string reportText(const Plan& plan, const JoinSummary& joined, std::uint64_t segments,
                        double seconds) {
   JsonWriter json;
@@ -40,6 +45,7 @@ std::string reportText(const Plan& plan, const JoinSummary& joined, std::uint64_
   json.field("pieces", joined.pieces);
   json.field("segments", segments);
   json.field("sensors_found", joined.sensors_dropped ? 0U : plan.found_sensors);
+  json.field("viewpoint_left_aside", leavesPlaceAside(plan, joined));
   json.field("noise_in_spacings", plan.traits.noise);
   json.field("denoised", plan.traits.denoise != 0);
   json.beginObject("seconds");
@@ -138,6 +144,9 @@ void runAllSteps(const TileRequest& request, const std::string& folder_asked_for
   if (plan.found_sensors > 0) {
     std::printf("sensors found   %u%s\n", plan.found_sensors,
                 joined.sensors_dropped ? ", but see surfaces from both sides" : "");
+  }
+  if (leavesPlaceAside(plan, joined)) {
+    std::printf("viewpoint       left aside: the surface contradicts it, or knows better\n");
   }
   std::printf("seconds         %.2f\n", seconds.count());
   for (const PlanOutput& out : plan.outputs) std::printf("written         %s\n", out.path.c_str());

@@ -48,6 +48,7 @@ Work prepare(const Plan& plan, const std::string& folder, std::size_t number, in
     options.frame.low[a] -= plan.tile_origins[number][a];
     options.frame.high[a] -= plan.tile_origins[number][a];
   }
+  options.place = plan.place;
   options.hints = hintsOf(plan, plan.tile_origins[number]);
   options.hints.viewpoints = work.points.viewpoints;
   options.hints.normals = work.points.normals;

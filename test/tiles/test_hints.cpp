@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 #include <random>
 
 #include "run_program.h"
@@ -147,6 +148,56 @@ TEST_F(Hints, ARoomFacesItsSensorAsInMemory) {
   ASSERT_EQ(runProgram({"orient", in, whole, "-q", "--viewpoint=0.2,0.1,0.3", "--open"}).status, 0);
   expectRuns({"orient", in, out, "--viewpoint=0.2,0.1,0.3", "--open"});
   EXPECT_EQ(sameSides(whole, out), 6000U);
+}
+
+// A landscape goes on behind its hills as seen from below, which no single place could have seen:
+// only the whole knows that.
+TEST_F(Hints, APlaceBehindWhichTheLandGoesOnIsNotFollowedAsInMemory) {
+  std::mt19937 random(5);
+  std::uniform_real_distribution<double> uniform(-3.0, 3.0);
+  std::vector<double> xyz;
+  for (int i = 0; i < 6000; ++i) {
+    const double x = uniform(random);
+    const double y = uniform(random);
+    const double z =
+        0.5 * std::sin(1.7 * x) * std::cos(1.3 * y) + 0.3 * std::cos(0.9 * x + 2.0 * y);
+    xyz.insert(xyz.end(), {x, y, z});
+  }
+  const std::string in = writeDoubles(scratch.file("in.ply"), xyz);
+  const std::string whole = scratch.file("whole.ply");
+  ASSERT_EQ(runProgram({"orient", in, whole, "-q", "--viewpoint=1,-2,-2"}).status, 0);
+  EXPECT_EQ(facingDown(whole), 0U);
+  expectRuns({"orient", in, out, "--viewpoint=1,-2,-2"});
+  EXPECT_EQ(sameSides(whole, out), 6000U);
+  // As the place of each point it is a fact, in both.
+  std::vector<double> rows;
+  for (std::size_t i = 0; i < xyz.size(); i += 3) {
+    rows.insert(rows.end(), {xyz[i], xyz[i + 1], xyz[i + 2], 1.0, -2.0, -2.0});
+  }
+  const std::string told =
+      writeFields(scratch.file("told.ply"), {"x", "y", "z", "vp_x", "vp_y", "vp_z"}, rows);
+  ASSERT_EQ(runProgram({"orient", told, whole, "-q"}).status, 0);
+  expectRuns({"orient", told, out});
+  EXPECT_EQ(sameSides(whole, out), 6000U);
+}
+
+// A column of places that are all unknown says no more than none.
+TEST_F(Hints, UnknownPlacesAreNone) {
+  std::vector<double> rows;
+  const std::vector<double> xyz = room(6000);
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  for (std::size_t i = 0; i < xyz.size(); i += 3) {
+    rows.insert(rows.end(), {xyz[i], xyz[i + 1], xyz[i + 2], nan, nan, nan});
+  }
+  const std::string in =
+      writeFields(scratch.file("in.ply"), {"x", "y", "z", "vp_x", "vp_y", "vp_z"}, rows);
+  const std::string folder = scratch.file("work");
+  ASSERT_EQ(runProgram({"tiles", "plan", folder, in, out, "--memory", "1G", "--tile-points", "700"})
+                .status,
+            0);
+  ASSERT_EQ(runProgram({"tiles", "tile", folder}).status, 0);
+  // With places, each tile would be.
+  EXPECT_EQ(runProgram({"tiles", "join", folder}).out, "");
 }
 
 // Ground and fronts along a street, each point seen from the nearest of 20 poses.

@@ -2,6 +2,9 @@
 // Copyright (c) 2026, the segorient authors
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
+#include <cmath>
 #include <utility>
 #include <vector>
 
@@ -166,6 +169,73 @@ TEST(Join, FoundSensorsOfWhichOneSeesBothSidesAreNotFollowed) {
   EXPECT_TRUE(found.sensors_dropped);
   EXPECT_TRUE(found.tiles[0].toward.empty());
   EXPECT_EQ(found.tiles[0].patches.size(), 1600U);
+}
+
+TilePatch patchAt(const std::array<float, 3>& position, const std::array<float, 3>& normal,
+                  float spacing, std::int32_t piece, std::uint32_t row) {
+  TilePatch p;
+  std::copy(position.begin(), position.end(), p.position);
+  std::copy(normal.begin(), normal.end(), p.normal);
+  p.spacing = spacing;
+  p.piece = piece;
+  p.points = p.reliable = 1;
+  p.row = row;
+  return p;
+}
+
+// Two level sheets one above the other, both even: of the lower one, how many patches are turned to
+// the place above that is said to have seen all.
+long followersBelow(const CloudPlace& place) {
+  std::vector<TilePatch> patches;
+  for (std::uint32_t i = 0; i < 3200; ++i) {
+    const std::uint32_t k = i % 1600;
+    const float z = i < 1600 ? 1.F : 0.F;
+    patches.push_back(
+        patchAt({0.1F * static_cast<float>(k % 40), 0.1F * static_cast<float>(k / 40), z},
+                {0.F, 0.F, 1.F}, 0.1F, i < 1600 ? 0 : 1, i));
+  }
+  JoinOptions options;
+  options.hints.has_viewpoint = true;
+  options.hints.viewpoint = {2.F, 2.F, 9.F};
+  options.place = place;
+  TileJoiner joiner;
+  joiner.addTile({1600, 1600}, {}, patches, {}, {0.0, 0.0, 0.0});
+  const std::vector<float> toward = joiner.join(options).tiles[0].toward;
+  long known = 0;
+  for (std::size_t i = 1600; i < 3200 && 3 * i < toward.size(); ++i) {
+    known += toward[3 * i + 2] > 0.F ? 1 : 0;
+  }
+  return known;
+}
+
+TEST(Join, WhatShadowsSayOfOnePlaceIsHeard) {
+  EXPECT_LT(followersBelow({}), 400);
+  CloudPlace place;
+  place.shadows.steps = 0.3F;
+  EXPECT_EQ(followersBelow(place), 1600);
+}
+
+// A closed body knows its outside better than a place that can't have seen it whole.
+TEST(Join, APlaceThatDecidesNothingIsLeftAside) {
+  constexpr std::uint32_t kPatches = 2000;
+  std::vector<TilePatch> patches;
+  for (std::uint32_t i = 0; i < kPatches; ++i) {
+    const float z = 1.F - (2.F * static_cast<float>(i) + 1.F) / kPatches;
+    const float r = std::sqrt(1.F - z * z);
+    const float turn = 2.39996323F * static_cast<float>(i);
+    const std::array<float, 3> n{r * std::cos(turn), r * std::sin(turn), z};
+    patches.push_back(patchAt(n, {-n[0], -n[1], -n[2]}, 0.08F, 0, i));
+  }
+  JoinOptions options;
+  options.hints.has_viewpoint = true;
+  options.hints.viewpoint = {5.F, 0.F, 0.F};
+  TileJoiner joiner;
+  joiner.addTile({kPatches}, {}, patches, {}, {0.0, 0.0, 0.0});
+  const JoinedTiles joined = joiner.join(options);
+  EXPECT_TRUE(joined.sensors_dropped);
+  EXPECT_TRUE(joined.tiles[0].toward.empty());
+  ASSERT_EQ(joined.tiles[0].pieces.size(), 1U);
+  EXPECT_EQ(joined.tiles[0].pieces[0], -1);
 }
 
 }  // namespace

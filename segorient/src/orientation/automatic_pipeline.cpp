@@ -15,9 +15,9 @@
 #include "orientation/pipeline_stages.h"
 #include "orientation/sensors/hiding_place.h"
 #include "orientation/sensors/known_sensors.h"
+#include "orientation/sensors/place_choice.h"
 #include "orientation/sensors/point_hints.h"
 #include "orientation/sensors/sensor_hints.h"
-#include "orientation/sensors/shadows.h"
 
 namespace segorient::detail {
 namespace {
@@ -54,14 +54,6 @@ PipelineOptions asIfUnseen(const PipelineOptions& options) {
   return withHints(options, withoutPlaces(givenHints(options)));
 }
 
-// The same, and nobody had thought of that place.
-PipelineOptions asIfNotThere(const PipelineOptions& options, const std::array<float, 3>& place) {
-  OrientationHints hints = withoutPlaces(givenHints(options));
-  auto& suggested = hints.suggested;
-  suggested.erase(std::remove(suggested.begin(), suggested.end(), place), suggested.end());
-  return withHints(options, std::move(hints));
-}
-
 // A column of unknown places, as some files have it, says no more than none.
 PipelineOptions withoutUnknownPlaces(const PipelineOptions& options) {
   const std::vector<float>& places = givenHints(options).viewpoints;
@@ -74,74 +66,24 @@ PipelineOptions withoutUnknownPlaces(const PipelineOptions& options) {
   return withHints(options, std::move(hints));
 }
 
-// One place for all points that nothing was turned to.
-KnownSensor refusedPlace(const std::array<float, 3>& place, const PreparedCloud& cloud) {
-  KnownSensor out;
-  out.position = cloud.inUnit(place);
-  out.points = cloud.size();
-  out.used = false;
-  return out;
-}
-
-// What the caller knows, and where nothing is known of sensors, what can be found. One place for
-// all points may be a guess of whoever gives it: unless shadows confirm it, sensors that densities
-// tell for sure are followed, if they are not in that place, too.
 // \param hiding the place, where it is only to be compared with what is found without it
 PointHints findHints(const PointView& points, const PipelineOptions& options, PreparedCloud& cloud,
                      PipelineReport& report, std::optional<HidingPlace>& hiding) {
   const OrientationHints& given = givenHints(options);
-  const std::optional<std::array<float, 3>> place = onlyPlace(given, points.size);
-  OrientationHints found = place ? withoutPlaces(given) : given;
-  if (!options.orientation.automatic.find_sensors || !lacksSensors(found)) {
-    return resolveHints(given, cloud);
-  }
-  const bool is_place = place && isFinite(place->data());
-  Shadows shadows;
-  SeenShadows seen;
-  if (is_place && !isImage(given, points.size)) {
-    shadows = findShadows(cloud.points(), cloud.inUnit(*place), options.threads);
-    // What does not confirm a place reveals none.
-    seen.nothing_at = place;
-  }
-  if (shadows.confirm()) {
-    PointHints known = resolveHints(given, cloud);
-    known.shadows = shadows;
-    return known;
-  }
-  if (is_place) found.suggested.push_back(*place);
-  SensorReport sensors = addFoundSensors(points, cloud, options.threads, found, seen);
-  if (is_place && !contradictsPlace(cloud, sensors, *place)) {
-    PointHints known = resolveHints(given, cloud);
-    known.shadows = shadows;
-    known.place_found = sensors.sure() && !sensors.sensors[0].suggested;
-    const bool is_fact = known.place_found || !given.viewpoints.empty();
-    if (is_fact || given.surface == SurfaceKind::OPEN || !shadows.deny()) return known;
-    hiding = lookFrom(cloud.points(), cloud.inUnit(*place), options.threads);
-    // What was found in that very place is no more than compared, either.
-    if (sensors.sure()) {
-      return findHints(points, asIfNotThere(options, *place), cloud, report, hiding);
-    }
-  } else if (place) {
-    report.known_sensors.push_back(refusedPlace(*place, cloud));
-  }
-  report.sensors = std::move(sensors);
-  if (report.sensors.sensors.empty()) report.sensors.sensor_of = {};
-  PointHints known = resolveHints(found, cloud);
-  known.shadows = seen.of_sensor;
+  PlaceChoice choice = choosePlaces(points, given, options.orientation.automatic.find_sensors,
+                                    cloud, options.threads);
+  PointHints known = resolveHints(choice.hints ? *choice.hints : given, cloud);
+  known.shadows = choice.shadows;
+  known.place_found = choice.place_found;
+  if (choice.refused) report.known_sensors.push_back(*choice.refused);
+  if (choice.hiding) hiding = std::move(choice.hiding);
+  report.sensors = std::move(choice.sensors);
   return known;
 }
 
 // Whether places are given: those that are found would be found again.
 bool saysPlaces(const OrientationHints& hints) {
   return hints.has_viewpoint || !hints.viewpoints.empty();
-}
-
-// Whether places were given, and they decided nothing: none is believed, or the surface knows
-// better everywhere.
-bool leavesAllToSurface(const AutoOrientation& found) {
-  return !found.sensors.empty() &&
-         (found.place_idle || std::none_of(found.sensors.begin(), found.sensors.end(),
-                                           [](const KnownSensor& s) { return s.used; }));
 }
 
 }  // namespace
@@ -165,7 +107,7 @@ void runAutomatic(const PointView& points, const PipelineOptions& given, StageCl
   AutoStages result = run(findHints(points, options, work.surface.cloud, report, hiding));
   std::vector<KnownSensor> doubted = std::move(report.known_sensors);
   if (!hiding && doubted.empty() && saysPlaces(givenHints(options)) &&
-      leavesAllToSurface(result.orientation)) {
+      result.orientation.leavesAllToSurface()) {
     doubted = std::move(result.orientation.sensors);
     result = run(findHints(points, asIfUnseen(options), work.surface.cloud, report, hiding));
   }

@@ -11,6 +11,7 @@
 #include "orientation/automatic/orient_sheets.h"
 #include "orientation/automatic/stages.h"
 #include "orientation/sensors/known_sensors.h"
+#include "orientation/sensors/sensor_hints.h"
 #include "search/prepared_cloud.h"
 #include "tiles/cloud_field.h"
 #include "tiles/piece_graph.h"
@@ -54,8 +55,10 @@ void tally(const std::vector<TileTie>& in_a, std::int32_t first_a, const std::ve
 }
 
 // Neighbours are needed only to check sensors.
-PointHints hintsOf(const OrientationHints& hints, PreparedCloud& cloud) {
+PointHints hintsOf(const OrientationHints& hints, const CloudPlace& place, PreparedCloud& cloud) {
   PointHints out = resolveHints(hints, cloud);
+  out.shadows = place.shadows;
+  out.place_found = place.found;
   if (out.has_viewpoint || !out.sensors.empty()) {
     cloud.findNeighbors(kSheetNeighbors, false);
   }
@@ -229,7 +232,7 @@ JoinedTiles TileJoiner::join(const JoinOptions& options) {
     count += p.points;
   }
   Impl::PatchCloud patches = i.makeCloud({xyz.data(), 3, i.patches.size()}, options.threads);
-  PointHints hints = hintsOf(options.hints, patches.cloud);
+  PointHints hints = hintsOf(options.hints, options.place, patches.cloud);
   SheetField field;
   field.normals = patches.normals.data();
   field.spacing = patches.spacing.data();
@@ -249,10 +252,11 @@ JoinedTiles TileJoiner::join(const JoinOptions& options) {
                         options.threads);
   };
   AutoOrientation orientation = orient();
-  if (options.sensors_found && detail::seeBothSides(orientation.sensors)) {
-    OrientationHints rest = options.hints;
-    rest.viewpoints.clear();
-    hints = hintsOf(rest, patches.cloud);
+  // As in memory.
+  const bool dropped = options.sensors_found ? detail::seeBothSides(orientation.sensors)
+                                             : orientation.leavesAllToSurface();
+  if (dropped) {
+    hints = hintsOf(detail::withoutPlaces(options.hints), {}, patches.cloud);
     orientation = orient();
     out.sensors_dropped = true;
   }

@@ -38,6 +38,7 @@ struct JoinOptions {
   std::uint32_t patch_points = 1;  ///< most points of a patch
   /// As for orientCloud(), but by patch, in the order in which tiles and their patches were added.
   OrientationHints hints;
+  CloudPlace place;  ///< of the whole cloud
   /// Whether the viewpoints were found, not given: they are followed only if none of them sees
   /// sheets from both sides.
   bool sensors_found = false;
@@ -49,7 +50,7 @@ struct JoinedTiles {
   CloudField field;
   std::vector<ComponentOrientationResult> components;  ///< by descending number of points
   std::size_t pieces = 0;                              ///< of all tiles
-  bool sensors_dropped = false;                        ///< whether found ones were not followed
+  bool sensors_dropped = false;                        ///< whether no sensor is followed in the end
 };
 
 /// Puts tiles together: pieces that two tiles see the same points of vote on each other as pieces

@@ -136,6 +136,8 @@ void Tile::run() {
   record.final_traits.edges = traits.edges != 0;
   record.denoise = traits.denoise != 0;
   hints_ = resolveHints(options_.hints, cloud_);
+  hints_.shadows = options_.place.shadows;
+  hints_.place_found = options_.place.found;
   const PipelineOptions pipeline = pipelineOptions();
   if (signs_ != nullptr && !hasLevel()) {
     fine_.prepareRecord(*signs_, options_.patch_points, hints_);

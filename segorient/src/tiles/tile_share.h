@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "common/bulk_bounds.h"
+#include "orientation/sensors/shadows.h"
 
 // What one tile of a large cloud contributes to its orientation. The structures of numbers are
 // stored as they are in memory.
@@ -51,6 +52,13 @@ struct TileTraits {
 /// \param hints as for orientCloud(); they are not sought where there are none
 SEGORIENT_TILES_EXPORT TileTraits measureTileTraits(const PointView& points, int k,
                                                     const OrientationHints& hints, int threads = 0);
+
+/// What the whole cloud says of the one place that all of its points are said to have been seen
+/// from, see PointHints.
+struct CloudPlace {
+  detail::Shadows shadows;
+  bool found = false;  ///< whether a search for sensors came to it, too, by itself
+};
 
 /// Which points of a tile's input are its own.
 enum class TileRole : std::uint8_t {
@@ -166,6 +174,7 @@ struct TileOptions {
   /// What is known beforehand, by row of the tile's input. It helps the tile where its normals need
   /// signs; what it says of the whole is for the join.
   OrientationHints hints;
+  CloudPlace place;  ///< of the whole cloud
 };
 
 /// Neighbours, normals, pieces, votes and segments of a tile: all but the signs. Where the cloud

@@ -10,6 +10,7 @@
 #include <segorient/orientation/sensors.h>
 #include <segorient/segmentation/segmentation.h>
 
+#include <algorithm>
 #include <cstdint>
 #include <vector>
 
@@ -30,6 +31,14 @@ struct AutoOrientation {
   /// 3 floats a point: unit vector to the sensor that saw it, 0 where none is known or believed;
   /// empty without any
   std::vector<float> toward;
+
+  /// Whether places were given, and they decided nothing: none is believed, or the surface knows
+  /// better everywhere.
+  bool leavesAllToSurface() const {
+    return !sensors.empty() &&
+           (place_idle || std::none_of(sensors.begin(), sensors.end(),
+                                       [](const KnownSensor& s) { return s.used; }));
+  }
 };
 
 /// Orients segments that do not mix sides, whatever they are part of: closed or open, nested,

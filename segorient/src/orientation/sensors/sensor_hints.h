@@ -2,6 +2,7 @@
 // Copyright (c) 2026, the segorient authors
 #pragma once
 
+#include <segorient/common/export.h>
 #include <segorient/common/point_view.h>
 #include <segorient/orientation/orientation_hints.h>
 #include <segorient/orientation/sensors.h>
@@ -28,7 +29,7 @@ SensorReport addFoundSensors(const PointView& points, PreparedCloud& cloud, int 
                              OrientationHints& hints, SeenShadows& shadows);
 
 /// The hints without what they say of places that a sensor had.
-OrientationHints withoutPlaces(const OrientationHints& hints);
+SEGORIENT_ORIENTATION_EXPORT OrientationHints withoutPlaces(const OrientationHints& hints);
 
 /// The place that all rows are said to have been seen from, if that is one.
 std::optional<std::array<float, 3>> onlyPlace(const OrientationHints& hints, std::size_t rows);
