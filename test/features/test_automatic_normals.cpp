@@ -210,6 +210,36 @@ TEST(AutomaticNormals, SeekMoreNeighborsWhereTheNoiseAsks) {
   }
 }
 
+// Where noise asks for more neighbours than there are in the table, no table of all is made.
+TEST(AutomaticNormals, PartByPartTheSameAtOnce) {
+  for (const float noise : {0.13F, 0.2F, 0.3F}) {
+    const Sample sample = noisyCube(9000, noise);
+    const Automatic at_once = automatic(sample);
+    search::MedianHashIndex index;
+    index.build(sample.view(), nullptr, {});
+    std::vector<float> found(4 * sample.normals.size());
+    std::vector<pcl::index_t> unexplained;
+    const AutomaticNormalReport report = estimateNormalsAutomatically(
+        sample.view(), index, neighborsOf(sample.view(), 32), 0, found.data(), &unexplained);
+    EXPECT_EQ(report.text(), at_once.report.text());
+    EXPECT_EQ(found, at_once.normals);
+    EXPECT_EQ(unexplained.size(), report.at_edges);
+    EXPECT_TRUE(std::is_sorted(unexplained.begin(), unexplained.end()));
+
+    // Some rows only: the others keep what they have.
+    std::vector<pcl::index_t> some;
+    for (pcl::index_t i = 0; i < 9000; i += 7) some.push_back(i);
+    std::vector<float> of_some(found.size(), 5.F);
+    estimateNormalsAutomatically(sample.view(), index, neighborsOf(sample.view(), 32), 0,
+                                 of_some.data(), nullptr, &some, &report.traits);
+    for (std::size_t i = 0; i < 9000; ++i) {
+      for (std::size_t a = 0; a < 4; ++a) {
+        ASSERT_EQ(of_some[4 * i + a], i % 7 == 0 ? found[4 * i + a] : 5.F) << i;
+      }
+    }
+  }
+}
+
 TEST(AutomaticNormals, SmallAndDegenerateClouds) {
   for (const std::size_t count : {0U, 1U, 2U, 3U, 7U, 20U}) {
     Sample sample = torus(count, 5);

@@ -67,13 +67,11 @@ TEST(ScanScale, LinesOfAScannerShowButNoChance) {
 TEST(ScanScale, FewPointsAndLines) {
   std::vector<float> line;
   for (int i = 0; i < 40; ++i) line.insert(line.end(), {static_cast<float>(i), 0.F, 0.F, 0.F});
-  const std::vector<float> spacing(40, 1.F);
+  const auto fail = [](std::size_t, const detail::Plane&) { FAIL() << "a line has no plane"; };
   detail::MoreNeighbors more(viewOf(line), 0);
-  for (const detail::ScanPlane& p : detail::fitScanPlanes(more, spacing, 8, 0)) {
-    EXPECT_EQ(p.scale, 0) << "a line has no plane";
-  }
+  detail::fitScanPlanes(more, 8, fail);
   detail::MoreNeighbors none({nullptr, 4, 0}, 0);
-  EXPECT_TRUE(detail::fitScanPlanes(none, {}, 8, 0).empty());
+  detail::fitScanPlanes(none, 8, fail);
 }
 
 }  // namespace

@@ -52,8 +52,9 @@ TEST(Memory, NeedGrowsWithPointsAndNeighbours) {
   many.k = 64;
   EXPECT_EQ(expectedMemory(0, few), 0U);
   EXPECT_EQ(expectedMemory(2'000'000, few), 2 * expectedMemory(1'000'000, few));
-  EXPECT_EQ(expectedMemory(1000, many) - expectedMemory(1000, few), 1000U * 56U * 4U);
-  EXPECT_LE(expectedMemory(1'000'000, {}), 600'000'000U) << "with noise";
+  // The table, and that of smoothed positions.
+  EXPECT_EQ(expectedMemory(1000, many) - expectedMemory(1000, few), 1000U * 56U * 4U * 2U);
+  EXPECT_LE(expectedMemory(1'000'000, {}), 470'000'000U) << "with noise";
   PipelineOptions seen;
   OrientationHints hints;
   hints.has_viewpoint = true;

@@ -3,6 +3,11 @@
 #include <gtest/gtest.h>
 #include <segorient/search/median_hash_index.h>
 
+#include <algorithm>
+#include <mutex>
+#include <stdexcept>
+#include <vector>
+
 #include "brute_force.h"
 #include "search_clouds.h"
 
@@ -74,6 +79,38 @@ TEST_P(AllPoints, SameForAnyNumberOfThreadsAndWithoutDistances) {
   }
 }
 
+TEST_P(AllPoints, RegionByRegionTheSameRows) {
+  const SearchCloud& cloud = GetParam();
+  const std::vector<pcl::index_t> indices = everyOtherIndex(cloud);
+  for (const int threads : {1, 3}) {
+    for (const auto* of : {static_cast<const std::vector<pcl::index_t>*>(nullptr), &indices}) {
+      MedianHashIndex::Options options;
+      options.region_size = 100;
+      options.threads = threads;
+      MedianHashIndex index;
+      index.build(cloud.view(), of, options);
+      Neighborhoods all;
+      index.nearestKAll(33, all, false);
+      std::mutex mutex;
+      std::size_t visited = 0;
+      index.nearestKByRegion(
+          33, [&](const std::vector<pcl::index_t>& rows, const Neighborhoods& table) {
+            const std::lock_guard<std::mutex> lock(mutex);
+            visited += rows.size();
+            ASSERT_EQ(table.size(), rows.size());
+            for (std::size_t i = 0; i < rows.size(); ++i) {
+              const auto row = static_cast<std::size_t>(rows[i]);
+              const int count = all.count(row);
+              ASSERT_EQ(table.count(i), count);
+              ASSERT_TRUE(std::equal(all.indices(row), all.indices(row) + count, table.indices(i)))
+                  << "row " << row;
+            }
+          });
+      EXPECT_EQ(visited, index.size());
+    }
+  }
+}
+
 INSTANTIATE_TEST_SUITE_P(Clouds, AllPoints, testing::ValuesIn(searchClouds(1000)));
 
 TEST(AllPoints, ManyRegionsAgreeWithSingleQueries) {
@@ -130,6 +167,25 @@ TEST(AllPoints, KLargerThanTheCloud) {
   for (std::size_t i = 0; i < 7; ++i) {
     EXPECT_EQ(row(table, i), bruteForceRow(cloud.view(), static_cast<pcl::index_t>(i), 50));
   }
+}
+
+TEST(AllPoints, RegionByRegionOfNothing) {
+  MedianHashIndex index;
+  const auto fail = [](const std::vector<pcl::index_t>&, const Neighborhoods&) { FAIL(); };
+  index.nearestKByRegion(5, fail);
+  const SearchCloud cloud = searchClouds(7).front();
+  index.build(cloud.view(), nullptr, {});
+  index.nearestKByRegion(0, fail);
+  index.nearestKByRegion(-3, fail);
+}
+
+TEST(AllPoints, RegionByRegionPassesOnWhatIsThrown) {
+  const SearchCloud cloud = searchClouds(7000).front();
+  MedianHashIndex index;
+  index.build(cloud.view(), nullptr, {});
+  EXPECT_THROW(index.nearestKByRegion(
+                   5, [](const auto&, const auto&) { throw std::runtime_error("enough"); }),
+               std::runtime_error);
 }
 
 }  // namespace

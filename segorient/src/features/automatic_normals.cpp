@@ -3,13 +3,16 @@
 #include "features/automatic_normals.h"
 
 #include <algorithm>
+#include <cstdint>
 #include <iomanip>
 #include <limits>
+#include <mutex>
 #include <numeric>
 #include <sstream>
 #include <utility>
 
 #include "features/cloud_noise.h"
+#include "features/local_fit_job.h"
 #include "features/surface_sizes.h"
 
 namespace segorient {
@@ -21,6 +24,7 @@ using detail::Explained;
 using detail::kCubicNeighbors;
 using detail::kTriangulationNeighbors;
 using detail::Surfaces;
+using detail::Surroundings;
 
 // A cubic surface is the better one where it leaves so much less than a quadratic one does, in
 // standard deviations: noise alone makes one point in eight look so (F test). They are taken where
@@ -43,20 +47,41 @@ std::vector<pcl::index_t> allRows(std::size_t size) {
   return rows;
 }
 
+/// Cubic surfaces at what no quadratic one fits.
+struct EdgeCubics {
+  int k = 0;  ///< neighbours; 0 where there are no such surfaces
+  std::vector<pcl::index_t> rows;
+  std::vector<float> normals;  ///< 4 a row
+  std::size_t nearer = 0;      ///< of the rows: they are clearly nearer than quadratic ones
+
+  /// Takes them, if they fit most of the rows better.
+  void takeIfBetter(const AutomaticNormalTraits* known, float* all,
+                    AutomaticNormalReport& report) const {
+    const bool better = known != nullptr ? known->cubic_edges : 2 * nearer > rows.size();
+    if (k == 0 || !better) return;
+    for (std::size_t r = 0; r < rows.size(); ++r) {
+      std::copy_n(&normals[4 * r], 4, all + 4 * static_cast<std::size_t>(rows[r]));
+    }
+    report.traits.cubic_edges = true;
+    report.cubic = true;
+    report.edge_k = k;
+  }
+};
+
 /// The estimation of one cloud, step by step: each leaves fewer points open.
 class Estimation {
  public:
-  Estimation(const PointView& points, const Neighborhoods& table, const CloudNoise& noise,
+  /// \param normals 4 floats for each row of the table
+  Estimation(const Surroundings& surroundings, const CloudNoise& noise,
              const AutomaticNormalTraits* known, int threads, float* normals,
              const std::vector<pcl::index_t>* rows)
-      : points_(points),
-        table_(table),
+      : of_(surroundings),
         known_(known),
         noise_(noise.length),
         in_spacings_(std::max(detail::kLeastNoise, noise.in_spacings)),
         threads_(threads),
         normals_(normals),
-        rows_(rows != nullptr ? *rows : allRows(table.size())),
+        rows_(rows != nullptr ? *rows : allRows(of_.table.size())),
         open_(rows_) {
     report_.noise = static_cast<float>(noise.in_spacings);
     report_.traits.noise = noise.length;
@@ -79,14 +104,27 @@ class Estimation {
     } else {
       takeCubicsAtEdges();
     }
-    for (const pcl::index_t r : rows_) {
-      report_.undefined += isFinite(normals_ + 4 * static_cast<std::size_t>(r)) ? 0 : 1;
-    }
+    countUndefined();
+    return report_;
+  }
+
+  /// The first steps of a cloud whose few neighbours tell little, of a part of it.
+  AutomaticNormalReport runPart(EdgeCubics& cubics) {
+    takeQuadratics();
+    report_.at_edges = open_.size();
+    countUndefined();
+    cubics = cubicsAtEdges();
     return report_;
   }
 
  private:
-  int available() const { return table_.k() - 1; }
+  void countUndefined() {
+    for (const pcl::index_t r : rows_) {
+      report_.undefined += isFinite(normals_ + 4 * static_cast<std::size_t>(r)) ? 0 : 1;
+    }
+  }
+
+  int available() const { return of_.table.k() - 1; }
   float* normalOf(pcl::index_t row) const { return normals_ + 4 * static_cast<std::size_t>(row); }
 
   /// Closes the points that a condition holds for. \return how many
@@ -103,14 +141,14 @@ class Estimation {
   /// Closes the points whose residuals noise explains. \return how many
   template <typename Residual>
   std::size_t closeExplained(int freedom, const Residual& residual) {
-    const Explained explained(points_, table_, noise_, freedom);
+    const Explained explained(of_, noise_, freedom);
     return close(
         [&](std::size_t row) { return explained(row, static_cast<double>(residual(row))); });
   }
 
   void takeQuadratics() {
     for (const int k : detail::quadraticSizes(in_spacings_, available())) {
-      quadratics_.fitInto(normals_, points_, table_, k, threads_, open_);
+      quadratics_.fitInto(normals_, of_, k, threads_, open_);
       report_.surfaces.emplace_back(
           k, closeExplained(k + 1 - 6, [&](std::size_t i) { return quadratics_.residuals[i]; }));
       report_.edge_k = k;
@@ -128,28 +166,28 @@ class Estimation {
     LocalNormalOptions options;
     options.k = report_.edge_k;
     options.threads = threads_;
-    estimateNormals(points_, points_, table_, options, normals_, nullptr, &open_);
+    estimateNormals(of_.at, of_.points, of_.table, options, normals_, nullptr, &open_);
     const std::vector<pcl::index_t> rows = open_;
     report_.surfaces.back().second += close([&](std::size_t row) {
-      const double plane =
-          detail::planeResidual(points_, table_, row, options.k, normals_ + 4 * row);
+      const double plane = detail::planeResidual(of_, row, options.k, normals_ + 4 * row);
       return static_cast<double>(quadratics_.residuals[row]) < kBend * plane;
     });
     for (std::size_t r = 0; r < rows.size(); ++r)
       std::copy_n(&quadratic[4 * r], 4, normalOf(rows[r]));
   }
 
-  /// Whether cubic surfaces leave less than a share of what quadratic ones do of most rows.
+  /// Of how many rows cubic surfaces leave less than a share of what quadratic ones do.
   /// \param cubic what the cubic surface of rows[r] leaves, by r
   template <typename Residual>
-  bool areCubic(const std::vector<pcl::index_t>& rows, const Residual& cubic, double share) const {
+  std::size_t countCubic(const std::vector<pcl::index_t>& rows, const Residual& cubic,
+                         double share) const {
     std::size_t nearer = 0;
     for (std::size_t r = 0; r < rows.size(); ++r) {
       const float quadratic = quadratics_.residuals[static_cast<std::size_t>(rows[r])];
       const bool less = static_cast<double>(cubic(r)) < share * static_cast<double>(quadratic);
       nearer += less ? 1 : 0;
     }
-    return 2 * nearer > rows.size();
+    return nearer;
   }
 
   /// Whether the cloud is of a surface without noise and smooth nearly everywhere, as a formula
@@ -159,15 +197,15 @@ class Estimation {
     if (known_ != nullptr) return known_->analytic;
     const std::vector<pcl::index_t> rows = detail::sampleRows(rows_);
     const std::vector<float> cubic = detail::sampleResiduals(
-        NormalEstimator::AWAS_CUBIC, points_, table_, kCubicNeighbors, threads_, rows);
+        NormalEstimator::AWAS_CUBIC, of_.points, of_.table, kCubicNeighbors, threads_, rows);
     const auto of_row = [&](std::size_t r) { return cubic[r]; };
-    return areCubic(rows, of_row, kNextTerm);
+    return 2 * countCubic(rows, of_row, kNextTerm) > rows.size();
   }
 
   /// Cubic surfaces wherever they leave less than the quadratic ones, and where only they fit.
   void takeCubics() {
     Surfaces cubics(NormalEstimator::AWAS_CUBIC);
-    cubics.fit(points_, table_, kCubicNeighbors, threads_, rows_);
+    cubics.fit(of_, kCubicNeighbors, threads_, rows_);
     report_.analytic = true;
     const auto nearer = [&](std::size_t i) {
       return cubics.residuals[i] < quadratics_.residuals[i];
@@ -186,9 +224,9 @@ class Estimation {
     LocalNormalOptions options;
     options.k = kPlaneNeighbors;
     options.threads = threads_;
-    estimateNormals(points_, points_, table_, options, normals_, nullptr, &open_);
+    estimateNormals(of_.at, of_.points, of_.table, options, normals_, nullptr, &open_);
     report_.planes = closeExplained(kPlaneNeighbors + 1 - 3, [&](std::size_t row) {
-      return detail::planeResidual(points_, table_, row, kPlaneNeighbors, normals_ + 4 * row);
+      return detail::planeResidual(of_, row, kPlaneNeighbors, normals_ + 4 * row);
     });
   }
 
@@ -197,29 +235,32 @@ class Estimation {
     options.threads = threads_;
     options.estimator = NormalEstimator::LDT;
     options.k = report_.edge_k = kTriangulationNeighbors;
-    estimateNormals(points_, points_, table_, options, normals_, nullptr, &open_);
+    estimateNormals(of_.at, of_.points, of_.table, options, normals_, nullptr, &open_);
   }
 
-  /// Cubic surfaces, if these fit most of what is open better.
-  void takeCubicsAtEdges() {
-    const int k = cubicSize(in_spacings_, available());
-    if (k == 0) return;
+  /// Cubic surfaces at what is open.
+  EdgeCubics cubicsAtEdges() {
+    EdgeCubics out;
+    out.k = cubicSize(in_spacings_, available());
+    if (out.k == 0) return out;
     Surfaces cubics(NormalEstimator::AWAS_CUBIC);
-    quadratics_.fit(points_, table_, k, threads_, open_);
-    cubics.fit(points_, table_, k, threads_, open_);
+    quadratics_.fit(of_, out.k, threads_, open_);
+    cubics.fit(of_, out.k, threads_, open_);
     const auto cubic = [&](std::size_t o) {
       return cubics.residuals[static_cast<std::size_t>(open_[o])];
     };
-    const bool better = known_ != nullptr ? known_->cubic_edges : areCubic(open_, cubic, kBetter);
-    if (!better) return;
-    report_.traits.cubic_edges = true;
-    for (const pcl::index_t o : open_) cubics.copyNormal(static_cast<std::size_t>(o), normals_);
-    report_.cubic = true;
-    report_.edge_k = k;
+    out.nearer = countCubic(open_, cubic, kBetter);
+    out.rows = open_;
+    for (const pcl::index_t o : open_) {
+      const float* n = &cubics.normals[4 * static_cast<std::size_t>(o)];
+      out.normals.insert(out.normals.end(), n, n + 4);
+    }
+    return out;
   }
 
-  const PointView& points_;
-  const Neighborhoods& table_;
+  void takeCubicsAtEdges() { cubicsAtEdges().takeIfBetter(known_, normals_, report_); }
+
+  const Surroundings of_;
   const AutomaticNormalTraits* known_;
   double noise_;
   double in_spacings_;
@@ -237,9 +278,87 @@ CloudNoise noiseOf(const PointView& points, const Neighborhoods& neighborhoods, 
   return detail::sampleNoise(points, neighborhoods, threads);
 }
 
-int neighborsFor(const CloudNoise& noise) {
-  return detail::widestSize(std::max(detail::kLeastNoise, noise.in_spacings));
+double inSpacings(const CloudNoise& noise) {
+  return std::max(detail::kLeastNoise, noise.in_spacings);
 }
+
+int neighborsFor(const CloudNoise& noise) {
+  return detail::widestSize(inSpacings(noise));
+}
+
+/// The estimation of one cloud, part by part: there is no table of so many neighbours of all.
+class EstimationByRegion {
+ public:
+  EstimationByRegion(const PointView& points, const CloudNoise& noise,
+                     const AutomaticNormalTraits* known, float* normals,
+                     const std::vector<pcl::index_t>* rows)
+      : points_(points), noise_(noise), known_(known), normals_(normals) {
+    if (rows == nullptr) return;
+    wanted_.resize(points.size);
+    for (const pcl::index_t row : *rows) wanted_[static_cast<std::size_t>(row)] = 1;
+  }
+
+  AutomaticNormalReport run(const search::MedianHashIndex& index,
+                            std::vector<pcl::index_t>* unexplained) {
+    index.nearestKByRegion(neighborsFor(noise_) + 1,
+                           [this](const std::vector<pcl::index_t>& rows,
+                                  const Neighborhoods& table) { takeRegion(rows, table); });
+    cubics_.takeIfBetter(known_, normals_, report_);
+    if (unexplained != nullptr) {
+      *unexplained = std::move(cubics_.rows);
+      std::sort(unexplained->begin(), unexplained->end());
+    }
+    return report_;
+  }
+
+ private:
+  void takeRegion(const std::vector<pcl::index_t>& of_region, const Neighborhoods& table) {
+    std::vector<pcl::index_t> rows;
+    for (std::size_t i = 0; i < of_region.size(); ++i) {
+      if (wanted_.empty() || wanted_[static_cast<std::size_t>(of_region[i])] != 0)
+        rows.push_back(static_cast<pcl::index_t>(i));
+    }
+    if (rows.empty()) return;
+    const std::vector<float> at = detail::positionsOf(points_, of_region);
+    std::vector<float> normals(at.size());
+    const Surroundings of{{at.data(), 4, of_region.size()}, points_, table};
+    EdgeCubics cubics;
+    const AutomaticNormalReport report =
+        Estimation(of, noise_, known_, 1, normals.data(), &rows).runPart(cubics);
+    for (const pcl::index_t row : rows) {
+      const auto i = static_cast<std::size_t>(row);
+      std::copy_n(&normals[4 * i], 4, normals_ + 4 * static_cast<std::size_t>(of_region[i]));
+    }
+    for (pcl::index_t& row : cubics.rows) row = of_region[static_cast<std::size_t>(row)];
+    const std::lock_guard<std::mutex> lock(mutex_);
+    add(report);
+    cubics_.k = cubics.k;
+    cubics_.nearer += cubics.nearer;
+    cubics_.rows.insert(cubics_.rows.end(), cubics.rows.begin(), cubics.rows.end());
+    cubics_.normals.insert(cubics_.normals.end(), cubics.normals.begin(), cubics.normals.end());
+  }
+
+  void add(const AutomaticNormalReport& of_region) {
+    if (report_.surfaces.empty()) {
+      report_ = of_region;
+      return;
+    }
+    for (std::size_t s = 0; s < report_.surfaces.size(); ++s) {
+      report_.surfaces[s].second += of_region.surfaces[s].second;
+    }
+    report_.at_edges += of_region.at_edges;
+    report_.undefined += of_region.undefined;
+  }
+
+  const PointView& points_;
+  CloudNoise noise_;
+  const AutomaticNormalTraits* known_;
+  float* normals_;
+  std::vector<std::uint8_t> wanted_;  ///< empty = all
+  std::mutex mutex_;
+  AutomaticNormalReport report_;
+  EdgeCubics cubics_;
+};
 
 }  // namespace
 
@@ -259,7 +378,8 @@ AutomaticNormalReport estimateNormalsAutomatically(const PointView& points,
                                                    const std::vector<pcl::index_t>* rows,
                                                    const AutomaticNormalTraits* known) {
   const CloudNoise noise = noiseOf(points, neighborhoods, threads, known);
-  return Estimation(points, neighborhoods, noise, known, threads, normals, rows).run(unexplained);
+  const Surroundings of{points, points, neighborhoods};
+  return Estimation(of, noise, known, threads, normals, rows).run(unexplained);
 }
 
 AutomaticNormalReport estimateNormalsAutomatically(const PointView& points,
@@ -273,12 +393,18 @@ AutomaticNormalReport estimateNormalsAutomatically(const PointView& points,
   const int wanted = neighborsFor(noise);
   const bool all = static_cast<std::size_t>(neighborhoods.k()) >= points.size;
   if (all || neighborhoods.k() > wanted) {
-    return Estimation(points, neighborhoods, noise, known, threads, normals, rows).run(unexplained);
+    const Surroundings of{points, points, neighborhoods};
+    return Estimation(of, noise, known, threads, normals, rows).run(unexplained);
   }
-  // The nearest of each point, which the noise comes from, are the same.
+  // Where few neighbours tell something, whole tables of them are small, and steps that look at all
+  // points come in between.
+  if (!detail::fewTell(inSpacings(noise))) {
+    return EstimationByRegion(points, noise, known, normals, rows).run(index, unexplained);
+  }
   Neighborhoods wider;
   index.nearestKAll(wanted + 1, wider, false);
-  return Estimation(points, wider, noise, known, threads, normals, rows).run(unexplained);
+  const Surroundings of{points, points, wider};
+  return Estimation(of, noise, known, threads, normals, rows).run(unexplained);
 }
 
 std::string AutomaticNormalReport::text() const {

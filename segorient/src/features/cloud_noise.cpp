@@ -25,12 +25,12 @@ constexpr std::size_t kSamples = 4000;
 // A residual is taken for noise up to this many of its own standard deviations.
 constexpr double kTolerance = 2.5;
 
-double spacingAt(const PointView& points, const Neighborhoods& table, std::size_t row) {
-  const int count = std::min(table.count(row), 7);
+double spacingAt(const Surroundings& of, std::size_t row) {
+  const int count = std::min(of.table.count(row), 7);
   double sum = 0;
   for (int j = 1; j < count; ++j) {
-    const float* p = points[row];
-    const float* q = points[static_cast<std::size_t>(table.indices(row)[j])];
+    const float* p = of.at[row];
+    const float* q = of.points[static_cast<std::size_t>(of.table.indices(row)[j])];
     double squares = 0;
     for (int a = 0; a < 3; ++a) {
       const double d = static_cast<double>(p[a]) - static_cast<double>(q[a]);
@@ -43,20 +43,20 @@ double spacingAt(const PointView& points, const Neighborhoods& table, std::size_
 
 }  // namespace
 
-void Surfaces::fit(const PointView& points, const Neighborhoods& table, int k, int threads,
+void Surfaces::fit(const Surroundings& of, int k, int threads,
                    const std::vector<pcl::index_t>& rows) {
-  if (normals == nullptr) normals.reset(new float[4 * points.size]);
-  fitInto(normals.get(), points, table, k, threads, rows);
+  if (normals == nullptr) normals.reset(new float[4 * of.at.size]);
+  fitInto(normals.get(), of, k, threads, rows);
 }
 
-void Surfaces::fitInto(float* all, const PointView& points, const Neighborhoods& table, int k,
-                       int threads, const std::vector<pcl::index_t>& rows) {
+void Surfaces::fitInto(float* all, const Surroundings& of, int k, int threads,
+                       const std::vector<pcl::index_t>& rows) {
   LocalNormalOptions options;
   options.estimator = estimator;
   options.k = k;
   options.threads = threads;
-  if (residuals == nullptr) residuals.reset(new float[points.size]);
-  estimateNormals(points, points, table, options, all, nullptr, residuals.get(), &rows);
+  if (residuals == nullptr) residuals.reset(new float[of.at.size]);
+  estimateNormals(of.at, of.points, of.table, options, all, nullptr, residuals.get(), &rows);
 }
 
 void Surfaces::copyNormal(std::size_t row, float* all) const {
@@ -106,13 +106,13 @@ CloudNoise sampleNoise(const PointView& points, const Neighborhoods& neighborhoo
   const std::vector<pcl::index_t> rows = sampleRows(points.size);
   const std::vector<float> residuals = sampleResiduals(
       NormalEstimator::AWAS_QUADRATIC, points, neighborhoods, kNoiseNeighbors, threads, rows);
+  const Surroundings all{points, points, neighborhoods};
   std::vector<float> lengths;
   std::vector<float> ratios;
   for (std::size_t r = 0; r < rows.size(); ++r) {
     const auto row = static_cast<std::size_t>(rows[r]);
     const float length = residuals[r];
-    const auto ratio =
-        static_cast<float>(static_cast<double>(length) / spacingAt(points, neighborhoods, row));
+    const auto ratio = static_cast<float>(static_cast<double>(length) / spacingAt(all, row));
     if (!std::isfinite(ratio)) continue;
     lengths.push_back(length);
     ratios.push_back(ratio);
@@ -121,25 +121,21 @@ CloudNoise sampleNoise(const PointView& points, const Neighborhoods& neighborhoo
           static_cast<double>(median(std::move(ratios))) / kMedianShare};
 }
 
-Explained::Explained(const PointView& points, const Neighborhoods& table, double noise, int freedom)
-    : points_(points),
-      table_(table),
-      noise_(noise),
-      scatter_(1.0 + kTolerance / std::sqrt(2.0 * freedom)) {}
+Explained::Explained(const Surroundings& of, double noise, int freedom)
+    : of_(of), noise_(noise), scatter_(1.0 + kTolerance / std::sqrt(2.0 * freedom)) {}
 
 bool Explained::operator()(std::size_t row, double residual) const {
-  const double least = kLeastNoise * spacingAt(points_, table_, row);
-  return residual <= scatter_ * std::max(noise_, least);
+  if (residual <= scatter_ * noise_) return true;
+  return residual <= scatter_ * kLeastNoise * spacingAt(of_, row);
 }
 
-double planeResidual(const PointView& points, const Neighborhoods& table, std::size_t row, int k,
-                     const float* normal) {
-  const int count = std::min(table.count(row), k + 1);
-  const float* origin = points[row];
+double planeResidual(const Surroundings& of, std::size_t row, int k, const float* normal) {
+  const int count = std::min(of.table.count(row), k + 1);
+  const float* origin = of.at[row];
   double sum = 0;
   double squares = 0;
   for (int j = 0; j < count; ++j) {
-    const float* p = points[static_cast<std::size_t>(table.indices(row)[j])];
+    const float* p = of.points[static_cast<std::size_t>(of.table.indices(row)[j])];
     double offset = 0;
     for (int a = 0; a < 3; ++a) {
       offset += (static_cast<double>(p[a]) - static_cast<double>(origin[a])) *

@@ -14,6 +14,13 @@
 
 namespace segorient::detail {
 
+/// Where surfaces are fitted, and to what.
+struct Surroundings {
+  PointView at;                ///< a point for each row of the table
+  PointView points;            ///< the cloud that the table speaks of
+  const Neighborhoods& table;  ///< each row with the point itself first
+};
+
 /// Surfaces of one size at some rows; see estimateNormals().
 struct Surfaces {
   NormalEstimator estimator;
@@ -22,10 +29,9 @@ struct Surfaces {
   std::unique_ptr<float[]> residuals;  ///< standard deviations of the neighbours
 
   explicit Surfaces(NormalEstimator e = NormalEstimator::AWAS_QUADRATIC) : estimator(e) {}
-  void fit(const PointView& points, const Neighborhoods& table, int k, int threads,
-           const std::vector<pcl::index_t>& rows);
+  void fit(const Surroundings& of, int k, int threads, const std::vector<pcl::index_t>& rows);
   /// The same with the normals where the caller wants them.
-  void fitInto(float* all, const PointView& points, const Neighborhoods& table, int k, int threads,
+  void fitInto(float* all, const Surroundings& of, int k, int threads,
                const std::vector<pcl::index_t>& rows);
   /// Gives a row its normal.
   void copyNormal(std::size_t row, float* all) const;
@@ -62,20 +68,18 @@ constexpr double kLeastNoise = 0.01;
 class Explained {
  public:
   /// \param freedom points less coefficients
-  Explained(const PointView& points, const Neighborhoods& table, double noise, int freedom);
+  Explained(const Surroundings& of, double noise, int freedom);
 
   bool operator()(std::size_t row, double residual) const;
 
  private:
-  const PointView& points_;
-  const Neighborhoods& table_;
+  const Surroundings& of_;
   double noise_;
   double scatter_;
 };
 
 /// Standard deviation of the nearest neighbours, the point itself among them, from their plane;
 /// infinite where they have none.
-double planeResidual(const PointView& points, const Neighborhoods& table, std::size_t row, int k,
-                     const float* normal);
+double planeResidual(const Surroundings& of, std::size_t row, int k, const float* normal);
 
 }  // namespace segorient::detail

@@ -31,6 +31,26 @@ struct LocalFitJob {
   }
 };
 
+/// The kernels read 4 floats a point: rows laid out otherwise are copied.
+class SEGORIENT_FEATURES_EXPORT FourFloats {
+ public:
+  /// \param points must outlive this
+  explicit FourFloats(const PointView& points);
+  const float* data() const { return data_; }
+
+ private:
+  std::vector<float> copy_;
+  const float* data_;
+};
+
+/// Positions of some points, 4 floats each.
+std::vector<float> positionsOf(const PointView& points, const std::vector<pcl::index_t>& which);
+
+/// Of the rows of a table.
+/// \param queries one a row \param xyz of what the table speaks of \param k neighbours to use
+SEGORIENT_FEATURES_EXPORT LocalFitJob jobOf(const PointView& queries, const FourFloats& xyz,
+                                            const Neighborhoods& table, int k);
+
 /// estimateNormals() with what only this library needs.
 void estimateNormals(const PointView& queries, const PointView& points,
                      const Neighborhoods& neighborhoods, const LocalNormalOptions& options,

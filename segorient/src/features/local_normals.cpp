@@ -60,33 +60,46 @@ Kernel chooseKernel(bool portable_only) {
   return &portable::estimateRows;
 }
 
-/// The kernels read 4 floats a point: rows laid out otherwise are copied.
-const float* packed(const PointView& points, std::vector<float>& copy) {
-  if (points.stride == 4) return points.data;
-  copy.resize(4 * points.size);
+}  // namespace
+
+FourFloats::FourFloats(const PointView& points) : data_(points.data) {
+  if (points.stride == 4) return;
+  copy_.resize(4 * points.size);
   for (std::size_t i = 0; i < points.size; ++i) {
-    std::copy_n(points[i], 3, &copy[4 * i]);
-    copy[4 * i + 3] = 0.0F;
+    std::copy_n(points[i], 3, &copy_[4 * i]);
+    copy_[4 * i + 3] = 0.0F;
   }
-  return copy.data();
+  data_ = copy_.data();
 }
 
-}  // namespace
+std::vector<float> positionsOf(const PointView& points, const std::vector<pcl::index_t>& which) {
+  std::vector<float> out(4 * which.size());
+  for (std::size_t i = 0; i < which.size(); ++i) {
+    std::copy_n(points[static_cast<std::size_t>(which[i])], 3, &out[4 * i]);
+  }
+  return out;
+}
+
+LocalFitJob jobOf(const PointView& queries, const FourFloats& xyz, const Neighborhoods& table,
+                  int k) {
+  LocalFitJob job;
+  job.queries = queries;
+  job.xyz = xyz.data();
+  job.neighborhoods = &table;
+  job.entries = k > 0 ? std::min(table.k() - 1, k) + 1 : table.k();
+  return job;
+}
 
 void estimateNormals(const PointView& queries, const PointView& points,
                      const Neighborhoods& neighborhoods, const LocalNormalOptions& options,
                      float* normals, LocalCurvature* curvatures, float* residuals,
                      const std::vector<pcl::index_t>* rows) {
-  std::vector<float> copy;
-  LocalFitJob job;
-  job.queries = queries;
-  job.xyz = packed(points, copy);
+  const FourFloats xyz(points);
+  LocalFitJob job = jobOf(queries, xyz, neighborhoods, options.k);
   job.same_points = queries.data == points.data && queries.stride == points.stride;
-  job.neighborhoods = &neighborhoods;
   job.rows = rows ? rows->data() : nullptr;
   job.estimator = options.estimator;
   job.first_guess = options.first_guess;
-  job.entries = options.k > 0 ? std::min(neighborhoods.k() - 1, options.k) + 1 : neighborhoods.k();
   job.normals = normals;
   job.curvatures = curvatures;
   job.residuals = residuals;

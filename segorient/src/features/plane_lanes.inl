@@ -232,6 +232,8 @@ template <typename V>
 struct Flattest {
   Vector3<V> normal;
   V lambda;  ///< variance along it, of a trace of 1
+  V first;   ///< the same without the vector, which may be undefined: less exact
+  V minors;  ///< sum of the products of two variances
   V gap;     ///< (lambda1 - lambda0) (lambda2 - lambda0): how well the vector is determined
   V trace;   ///< of the scatter about its mean
   V second;  ///< of the scatter about the point, by number of neighbours
@@ -272,6 +274,8 @@ inline Flattest<V> flattestDirection(const Scatter<V>& s, V count) {
   const V r = det / (spread * p);  // 2 cos(3 phi), eigenvalues 1/3 + 2 p cos(phi)
   const V half = larger(zero, smaller(zero + 1.0F, 0.5F - 0.25F * r));
   V lambda = third - 2.0F * p * cosTwoThirdsOfArc(squareRoot(half));
+  result.first = lambda;
+  result.minors = xx * (yy + zz) + yy * zz - (xy * xy + xz * xz + yz * yz);
 
   Adjugate<V> adj = adjugate<V>(xx - lambda, xy, xz, yy - lambda, yz, zz - lambda);
   result.gap = adj.xx + adj.yy + adj.zz;

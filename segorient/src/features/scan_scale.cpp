@@ -7,9 +7,11 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
-#include <tuple>
+#include <memory>
 
 #include "common/threads.h"
+#include "features/grown_planes.h"
+#include "features/local_fit_job.h"
 
 namespace segorient::detail {
 namespace {
@@ -23,32 +25,18 @@ constexpr float kOneLine = 0.15F;
 constexpr float kFlat = 1.7F;
 // Clearly larger: two scales.
 constexpr float kClearly = 1.6F;
-// Points around whose residuals count: a sheet's worth, beyond the larger neighbourhoods.
+// Points around whose residuals count: a sheet's worth, every third of some more than the largest
+// neighbourhoods have.
 constexpr std::size_t kAround = 22;
+constexpr int kVoters = 3 * static_cast<int>(kAround);
 
-// Room for those and the point's own, in whole vectors, and an entry that is written in vain.
-using Values = std::array<float, 32>;
-static_assert(kAround + 2 <= std::tuple_size<Values>::value);
+using Rows = std::vector<pcl::index_t>;
 
-// The value that n / 2 others are less than, as sorting would find it; NaN where there is none. By
-// counting, which branches nowhere: so few are counted sooner than they are parted.
-float middleOf(Values& values, std::size_t n) {
-  if (n == 0) return kNone;
-  std::fill(values.begin() + static_cast<std::ptrdiff_t>(n), values.end(),
-            std::numeric_limits<float>::infinity());
-  std::array<std::int32_t, std::tuple_size<Values>::value> less{};
-  for (std::size_t j = 0; j < n; ++j) {
-    const float v = values[j];
-    for (std::size_t i = 0; i < values.size(); ++i) less[i] += v < values[i] ? 1 : 0;
-  }
-  const auto half = static_cast<std::int32_t>(n / 2);
-  float middle = -std::numeric_limits<float>::infinity();
-  for (std::size_t i = 0; i < n; ++i) {
-    middle = less[i] <= half ? std::max(middle, values[i]) : middle;
-  }
-  return middle;
-}
+// ns a point, see resolveThreads().
+constexpr double kVoteTime = 500.0;
+constexpr double kFitTime = 100.0;
 
+// Neighbourhoods of growing size, and their planes.
 template <std::size_t kCount>
 struct Scales {
   std::array<int, kCount> sizes;
@@ -57,47 +45,56 @@ struct Scales {
     std::array<float, kCount> noise2;  // variance across the plane; NaN for one line
     std::array<float, kCount> width2;  // variance along its shorter side; 0 for one line
   };
+  using Planes = std::array<GrownPlanes, kCount>;
 
-  // \param h unit of the offsets
-  Fits fit(const PointView& points, const Neighborhoods& nb, std::size_t i, float h) const {
-    Fits out;
-    Moments m;
-    m.addOrigin();
-    const pcl::index_t* row = nb.indices(i);
-    const int count = nb.count(i);
-    const float* p = points[i];
-    const float per_h = h > 0.F ? 1.F / h : 0.F;
-    int j = 1;
-    for (std::size_t s = 0; s < kCount; ++s) {
-      for (; j <= sizes[s] && j < count; ++j) {
-        const float* q = points[static_cast<std::size_t>(row[j])];
-        m.add((q[0] - p[0]) * per_h, (q[1] - p[1]) * per_h, (q[2] - p[2]) * per_h);
-      }
-      const Eigen::Vector3f lambda = planeVariances(m);
-      const bool wide = m.n > 3.F && lambda[1] > 0.F && lambda[1] >= kOneLine * lambda[2];
-      out.noise2[s] = wide ? lambda[0] * m.n / (m.n - 3.F) * h * h : kNone;
-      out.width2[s] = wide ? lambda[1] * h * h : 0.F;
+  // \param put takes the number of each of the job's rows and its fits
+  template <typename Put>
+  void fit(const LocalFitJob& job, std::size_t count, Planes& planes, const Put& put) const {
+    for (std::size_t begin = 0; begin < count; begin += GrownPlanes::kRows) {
+      const std::size_t end = std::min(count, begin + GrownPlanes::kRows);
+      fitGrownPlanes(job, sizes.data(), kCount, begin, end, planes.data());
+      for (std::size_t i = begin; i < end; ++i) put(i, fitsAt(planes, i - begin));
+    }
+  }
+
+  // Of some rows of a table.
+  std::vector<Fits> fitRows(const PointView& points, const Neighborhoods& nb, const Rows& rows,
+                            int threads) const {
+    std::vector<Fits> out(rows.size());
+    const FourFloats xyz(points);
+    LocalFitJob job = jobOf(points, xyz, nb, sizes.back());
+    const auto blocks =
+        static_cast<std::ptrdiff_t>((rows.size() + GrownPlanes::kRows - 1) / GrownPlanes::kRows);
+    const int t = resolveThreads(threads, rows.size(), kFitTime);
+#pragma omp parallel for num_threads(t) firstprivate(job)
+    for (std::ptrdiff_t b = 0; b < blocks; ++b) {
+      const std::size_t begin = static_cast<std::size_t>(b) * GrownPlanes::kRows;
+      const auto planes = std::make_unique<Planes>();
+      job.rows = rows.data() + begin;
+      fit(job, std::min(rows.size() - begin, GrownPlanes::kRows), *planes,
+          [&](std::size_t i, const Fits& fits) { out[begin + i] = fits; });
     }
     return out;
   }
 
-  // \param around fits of the points around, which the medians are taken of
-  // \param noise2 the variance that was found
+  static Fits fitsAt(const Planes& planes, std::size_t i) {
+    Fits out;
+    for (std::size_t s = 0; s < kCount; ++s) {
+      const GrownPlanes& p = planes[s];
+      const float n = p.n[i];
+      const bool wide =
+          n > 3.F && p.lambda[1][i] > 0.F && p.lambda[1][i] >= kOneLine * p.lambda[2][i];
+      out.noise2[s] = wide ? p.lambda[0][i] * n / (n - 3.F) : kNone;
+      out.width2[s] = wide ? p.lambda[1][i] : 0.F;
+    }
+    return out;
+  }
+
+  // \param median of a scale's variances, over the points around
   // \return the number of a scale
-  template <typename FitOf>
-  std::size_t choose(const Fits& own, std::size_t around, const FitOf& fit_of,
-                     float& noise2) const {
-    noise2 = saturation([&](std::size_t s) {
-      Values values;
-      std::size_t n = 0;
-      if (std::isfinite(own.noise2[s])) values[n++] = own.noise2[s];
-      for (std::size_t j = 0; j < around; ++j) {
-        const float v = fit_of(j, s);
-        values[n] = v;
-        n += std::isfinite(v) ? 1 : 0;
-      }
-      return middleOf(values, n);
-    });
+  template <typename Median>
+  std::size_t choose(const Fits& own, const Median& median) const {
+    const float noise2 = saturation(median);
     for (std::size_t s = 0; s < kCount; ++s) {
       const float w = own.width2[s];
       if (!(noise2 < 0.5F * w)) continue;
@@ -130,9 +127,72 @@ struct Scales {
 constexpr Scales<4> kFew{kSheetScales};
 // Half as many again each time, up to where planes are nearly free of noise.
 constexpr Scales<6> kMany{{8, 12, 18, 27, 40, 60}};
-// ns a point, see resolveThreads().
-constexpr double kVoteTime = 20000.0;
-constexpr double kFitTime = 2000.0;
+
+// A point's neighbours around whose residuals count, spread over all that a table has.
+struct Around {
+  const pcl::index_t* row;
+  std::size_t count;
+  std::size_t used = std::min(count, kAround);
+
+  Around(const Neighborhoods& nb, std::size_t i)
+      : row(nb.indices(i)), count(static_cast<std::size_t>(std::max(nb.count(i) - 1, 0))) {}
+  pcl::index_t operator()(std::size_t j) const { return row[1 + j * count / used]; }
+};
+
+// Of some points, medians over each and the points around it, found when asked for: few points ask
+// for those of the larger scales.
+template <std::size_t kCount>
+class MediansAround {
+ public:
+  using Fits = typename Scales<kCount>::Fits;
+
+  // \param fits of the points that rows speak of
+  explicit MediansAround(const Fits* fits) : fits_(fits) {}
+
+  // Begins anew with none.
+  void clear() {
+    around_.fill(kNobody);
+    found_ = 0;
+  }
+  // \param i less than GrownPlanes::kRows \param around `count` points, kAround at most
+  template <typename Around>
+  void setPoint(std::size_t i, pcl::index_t self, std::size_t count, const Around& around) {
+    around_[i] = self;
+    for (std::size_t j = 0; j < count; ++j) around_[(1 + j) * GrownPlanes::kRows + i] = around(j);
+  }
+  float operator()(std::size_t i, std::size_t scale) {
+    for (; found_ <= scale; ++found_) {
+      for (std::size_t v = 0; v < values_.size(); ++v) {
+        const pcl::index_t point = around_[v];
+        values_[v] =
+            point == kNobody ? kNone : fits_[static_cast<std::size_t>(point)].noise2[found_];
+      }
+      findMedians(values_.data(), 1 + kAround, medians_[found_].data());
+    }
+    return medians_[scale][i];
+  }
+
+ private:
+  static constexpr pcl::index_t kNobody = -1;
+  const Fits* fits_;
+  std::array<pcl::index_t, (1 + kAround) * GrownPlanes::kRows> around_;
+  std::array<float, (1 + kAround) * GrownPlanes::kRows> values_;
+  std::array<std::array<float, GrownPlanes::kRows>, kCount> medians_;
+  std::size_t found_ = 0;
+};
+
+// Fits planes of a size to some rows of a table.
+// \param rows of the table \param take see fitScanPlanes(), but of the table's row
+template <typename Take>
+void fitSome(LocalFitJob job, int size, const Rows& rows, const Take& take) {
+  job.rows = rows.data();
+  const auto planes = std::make_unique<GrownPlanes>();
+  for (std::size_t begin = 0; begin < rows.size(); begin += GrownPlanes::kRows) {
+    const std::size_t end = std::min(rows.size(), begin + GrownPlanes::kRows);
+    fitGrownPlanes(job, &size, 1, begin, end, planes.get());
+    for (std::size_t i = begin; i < end; ++i) take(rows[i], planes->at(i - begin));
+  }
+}
 
 }  // namespace
 
@@ -145,25 +205,32 @@ bool needsScanScales(const PointView& points, const Neighborhoods& nb, int small
   // Noise that leaves the largest of them no say asks for more everywhere.
   if (smallest >= kSheetNeighbors) return true;
   const std::size_t step = std::max<std::size_t>(1, points.size / kSamples);
-  const std::size_t n = (points.size + step - 1) / step;
+  // Each sample, and behind it the points around.
+  Rows rows;
+  std::vector<std::size_t> first;
+  for (std::size_t i = 0; i < points.size; i += step) {
+    first.push_back(rows.size());
+    rows.push_back(static_cast<pcl::index_t>(i));
+    const Around around(nb, i);
+    for (std::size_t j = 0; j < around.used; ++j) rows.push_back(around(j));
+  }
+  const std::size_t n = first.size();
+  first.push_back(rows.size());
+  const std::vector<Scales<4>::Fits> fits = kFew.fitRows(points, nb, rows, threads);
+  const auto medians = std::make_unique<MediansAround<4>>(fits.data());
   std::size_t asking = 0;
-#pragma omp parallel for num_threads(resolveThreads(threads, n, kVoteTime)) schedule(dynamic, 32) \
-    reduction(+ : asking)
   for (std::size_t s = 0; s < n; ++s) {
-    const std::size_t i = s * step;
-    const auto fitsOf = [&](std::size_t p) {
-      return kFew.fit(points, nb, p, meanDistance(points, nb, p, 6));
-    };
-    const Scales<4>::Fits own = fitsOf(i);
-    std::array<Scales<4>::Fits, kAround> others;
-    const auto count = static_cast<std::size_t>(std::max(nb.count(i) - 1, 0));
-    const std::size_t around = std::min(count, kAround);
-    for (std::size_t j = 0; j < around; ++j) {
-      others[j] = fitsOf(static_cast<std::size_t>(nb.indices(i)[1 + j * count / around]));
+    const std::size_t at = s % GrownPlanes::kRows;
+    if (at == 0) {
+      medians->clear();
+      for (std::size_t i = 0; i < GrownPlanes::kRows && s + i < n; ++i) {
+        const auto self = static_cast<pcl::index_t>(first[s + i]);
+        medians->setPoint(i, self, first[s + i + 1] - first[s + i] - 1,
+                          [&](std::size_t j) { return self + 1 + static_cast<pcl::index_t>(j); });
+      }
     }
-    float noise2 = 0.F;
-    const std::size_t scale = kFew.choose(
-        own, around, [&](std::size_t j, std::size_t k) { return others[j].noise2[k]; }, noise2);
+    const std::size_t scale =
+        kFew.choose(fits[first[s]], [&](std::size_t size) { return (*medians)(at, size); });
     const auto k = static_cast<float>(kFew.sizes[scale]);
     asking += k > kClearly * static_cast<float>(smallest) ? 1 : 0;
   }
@@ -179,54 +246,56 @@ bool showsScanLines(const PointView& points, const Neighborhoods& nb, int thread
   if (nb.k() <= kNearest) return false;
   const Scales<1> scale{{kNearest}};
   const std::size_t step = std::max<std::size_t>(1, points.size / kSamples);
-  const std::size_t n = (points.size + step - 1) / step;
+  Rows rows;
+  for (std::size_t i = 0; i < points.size; i += step) rows.push_back(static_cast<pcl::index_t>(i));
   std::size_t on_lines = 0;
-#pragma omp parallel for num_threads(resolveThreads(threads, n, kFitTime)) schedule(static) \
-    reduction(+ : on_lines)
-  for (std::size_t s = 0; s < n; ++s) {
-    const float h = meanDistance(points, nb, s * step, 6);
-    on_lines += std::isnan(scale.fit(points, nb, s * step, h).noise2[0]) ? 1 : 0;
+  for (const Scales<1>::Fits& fits : scale.fitRows(points, nb, rows, threads)) {
+    on_lines += std::isnan(fits.noise2[0]) ? 1 : 0;
   }
-  return static_cast<double>(on_lines) > kMoreThanChance * static_cast<double>(n);
+  return static_cast<double>(on_lines) > kMoreThanChance * static_cast<double>(rows.size());
 }
 
-std::vector<ScanPlane> fitScanPlanes(MoreNeighbors& more, const std::vector<float>& spacing,
-                                     int smallest, int threads) {
+void fitScanPlanes(MoreNeighbors& more, int smallest,
+                   const std::function<void(std::size_t i, const Plane& plane)>& take) {
   const PointView& points = more.points();
-  const Neighborhoods& nb = more.ofAll();
-  const std::size_t n = points.size;
-  FastVector<Scales<6>::Fits> fits(n);
-  const int t = resolveThreads(threads, n, kFitTime);
-#pragma omp parallel for num_threads(t) schedule(dynamic, 512)
-  for (std::size_t i = 0; i < n; ++i) fits[i] = kMany.fit(points, nb, i, spacing[i]);
-  std::vector<ScanPlane> out(n);
-#pragma omp parallel for num_threads(t) schedule(dynamic, 512)
-  for (std::size_t i = 0; i < n; ++i) {
-    const auto count = static_cast<std::size_t>(std::max(nb.count(i) - 1, 0));
-    const std::size_t around = std::min(count, kAround);
-    float noise2 = 0.F;
-    const std::size_t scale = kMany.choose(
-        fits[i], around,
-        [&](std::size_t j, std::size_t s) {
-          return fits[static_cast<std::size_t>(nb.indices(i)[1 + j * count / around])].noise2[s];
-        },
-        noise2);
-    const int k = kMany.sizes[scale];
-    if (static_cast<float>(k) <= kClearly * static_cast<float>(smallest)) continue;
-    if (!(spacing[i] > 0.F)) continue;
-    Moments m;
-    m.addOrigin();
-    const float* p = points[i];
-    for (int j = 1; j <= k && j < nb.count(i); ++j) {
-      const float* q = points[static_cast<std::size_t>(nb.indices(i)[j])];
-      m.add((q[0] - p[0]) / spacing[i], (q[1] - p[1]) / spacing[i], (q[2] - p[2]) / spacing[i]);
+  const FourFloats xyz(points);
+  FastVector<Scales<6>::Fits> fits(points.size);
+  more.index().nearestKByRegion(kVoters + 1, [&](const Rows& rows, const Neighborhoods& table) {
+    const std::vector<float> at = positionsOf(points, rows);
+    const auto planes = std::make_unique<Scales<6>::Planes>();
+    kMany.fit(jobOf({at.data(), 4, rows.size()}, xyz, table, kMany.sizes.back()), rows.size(),
+              *planes, [&](std::size_t i, const Scales<6>::Fits& found) {
+                fits[static_cast<std::size_t>(rows[i])] = found;
+              });
+  });
+  more.index().nearestKByRegion(kVoters + 1, [&](const Rows& rows, const Neighborhoods& table) {
+    std::array<Rows, kMany.sizes.size()> of_scale;
+    const auto medians = std::make_unique<MediansAround<6>>(fits.data());
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+      const std::size_t in_block = i % GrownPlanes::kRows;
+      if (in_block == 0) {
+        medians->clear();
+        for (std::size_t j = 0; j < GrownPlanes::kRows && i + j < rows.size(); ++j) {
+          const Around around(table, i + j);
+          medians->setPoint(j, rows[i + j], around.used, around);
+        }
+      }
+      const std::size_t scale =
+          kMany.choose(fits[static_cast<std::size_t>(rows[i])],
+                       [&](std::size_t size) { return (*medians)(in_block, size); });
+      of_scale[scale].push_back(static_cast<pcl::index_t>(i));
     }
-    out[i].plane = fitPlane(m);
-    if (!out[i].plane.valid) continue;
-    out[i].scale = k;
-    out[i].noise = std::sqrt(noise2) / spacing[i];
-  }
-  return out;
+    const std::vector<float> at = positionsOf(points, rows);
+    for (std::size_t s = 0; s < of_scale.size(); ++s) {
+      const int k = kMany.sizes[s];
+      if (static_cast<float>(k) <= kClearly * static_cast<float>(smallest)) continue;
+      fitSome(jobOf({at.data(), 4, rows.size()}, xyz, table, k), k, of_scale[s],
+              [&](pcl::index_t i, const Plane& plane) {
+                const auto row = static_cast<std::size_t>(rows[static_cast<std::size_t>(i)]);
+                if (plane.valid) take(row, plane);
+              });
+    }
+  });
 }
 
 }  // namespace segorient::detail

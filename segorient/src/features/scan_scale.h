@@ -5,7 +5,8 @@
 #include <segorient/common/neighborhoods.h>
 #include <segorient/common/point_view.h>
 
-#include <vector>
+#include <cstddef>
+#include <functional>
 
 #include "features/more_neighbors.h"
 #include "features/sheet_fit.h"
@@ -28,12 +29,6 @@ bool needsScanScales(const PointView& points, const Neighborhoods& neighborhoods
 /// \param neighborhoods 18 of each point at least
 bool showsScanLines(const PointView& points, const Neighborhoods& neighborhoods, int threads);
 
-struct ScanPlane {
-  Plane plane;        ///< offsets in spacings of the point
-  int scale = 0;      ///< neighbours; 0 where `smallest` will do and there is no plane
-  float noise = 0.F;  ///< standard deviation, in spacings of the point
-};
-
 /// Planes at the scale that the noise around each point asks for.
 ///
 /// Noise saturates as neighbourhoods grow, what curvature and edges do goes on growing: of the
@@ -41,9 +36,11 @@ struct ScanPlane {
 /// flat is the noise. The scale is the smallest at which that noise turns a plane's normal by less
 /// than 3.5 degrees, and at which the neighbours spread in two directions.
 /// \param more the points, and their neighbours
-/// \param spacing one a point: mean distance to the 6 nearest
-/// \return one a point
-std::vector<ScanPlane> fitScanPlanes(MoreNeighbors& more, const std::vector<float>& spacing,
-                                     int smallest, int threads);
+/// \param smallest neighbourhood that the cloud's noise allows
+/// \param take called from several threads for each point whose scale is clearly larger and that
+/// has
+///        a plane there
+void fitScanPlanes(MoreNeighbors& more, int smallest,
+                   const std::function<void(std::size_t i, const Plane& plane)>& take);
 
 }  // namespace segorient::detail

@@ -113,11 +113,6 @@ bool findSpectrum(const Moments& m, Spectrum& s) {
   return true;
 }
 
-// Below that, the width is rounding.
-bool spansTwo(const Eigen::Vector3f& lambda) {
-  return lambda[1] > 1e-6F * lambda[2];
-}
-
 // The longest row of the adjugate of c - x: all of them are multiples of the eigenvector.
 Eigen::Vector3d eigenvector(const Covariance& c, double x) {
   const Eigen::Vector3d r0(c.xx - x, c.xy, c.xz);
@@ -157,14 +152,6 @@ Plane fitPlane(const Moments& m) {
   }
   plane.valid = spansTwo(plane.lambda) && plane.normal.allFinite();
   return plane;
-}
-
-Eigen::Vector3f planeVariances(const Moments& m) {
-  Spectrum s;
-  if (!findSpectrum(m, s) || !(s.trace > 0.0) || !std::isfinite(s.trace))
-    return Eigen::Vector3f::Zero();
-  const Eigen::Vector3f lambda = s.variances();
-  return spansTwo(lambda) ? lambda : Eigen::Vector3f::Zero();
 }
 
 float meanDistance(const PointView& points, std::size_t i, const pcl::index_t* others, int n) {

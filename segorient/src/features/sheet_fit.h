@@ -48,11 +48,11 @@ struct Plane {
     return sum > 0.F ? lambda[0] / sum : 0.F;
   }
 };
+/// Whether variances are those of more than a line: below that, the width is rounding.
+inline bool spansTwo(const Eigen::Vector3f& lambda) {
+  return lambda[1] > 1e-6F * lambda[2];
+}
 SEGORIENT_FEATURES_EXPORT Plane fitPlane(const Moments& moments);
-
-/// Its variances alone, ascending; 0 for fewer than 3 points or a line. Where the two smaller ones
-/// meet they are known to a thousandth only.
-Eigen::Vector3f planeVariances(const Moments& moments);
 
 /// The neighbours of one point: offsets from it in units of its spacing, as separate arrays; unused
 /// entries are 0 with weight 0.

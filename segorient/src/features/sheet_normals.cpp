@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 #include <utility>
 
@@ -131,6 +132,13 @@ PointFit fitPoint(const Offsets& o, int smallest, const NoiseLevel& noise,
   return fit;
 }
 
+PointFit inSpacings(Plane plane, float spacing) {
+  if (!(spacing > 0.F)) return {};
+  plane.lambda /= spacing * spacing;
+  plane.mean /= spacing;
+  return {plane, plane.variation(), {}};
+}
+
 // How far the neighbours' mean lies to one side, in units of their extent: large at borders and
 // holes.
 float asymmetry(const Plane& plane) {
@@ -231,7 +239,6 @@ SheetNormals estimateSheetNormals(const PointView& points, const Neighborhoods& 
   const int threads = resolveThreads(options.threads, n, 2000.0);
 #pragma omp parallel for num_threads(threads) schedule(dynamic, 1024)
   for (std::size_t i = 0; i < n; ++i) out.spacing[i] = detail::meanDistance(points, nb, i, 6);
-  std::vector<detail::ScanPlane> planes;
   out.traits.scan_scales =
       options.known
           ? options.known->scan_scales
@@ -239,19 +246,21 @@ SheetNormals estimateSheetNormals(const PointView& points, const Neighborhoods& 
                 (options.scan_scales ||
                  (options.scan_lines && detail::showsScanLines(points, nb, options.threads))) &&
                 detail::needsScanScales(points, nb, out.scale, options.threads);
+  std::vector<std::uint8_t> done;
   if (out.traits.scan_scales) {
+    done.resize(n);
     detail::MoreNeighbors own(points, options.threads);
-    planes = detail::fitScanPlanes(more != nullptr ? *more : own, out.spacing, out.scale,
-                                   options.threads);
+    detail::fitScanPlanes(more != nullptr ? *more : own, out.scale,
+                          [&](std::size_t i, const Plane& plane) {
+                            store(inSpacings(plane, out.spacing[i]), i, out, lopsided);
+                            done[i] = 1;
+                          });
   }
 #pragma omp parallel for num_threads(threads) schedule(dynamic, 1024)
   for (std::size_t i = 0; i < n; ++i) {
-    if (!planes.empty() && planes[i].scale > 0) {
-      store({planes[i].plane, planes[i].plane.variation(), {}}, i, out, lopsided);
-    } else {
-      const Offsets o = gatherOffsets(points, nb, i, out.spacing[i]);
-      store(fitPoint(o, smallest, noise, options), i, out, lopsided);
-    }
+    if (!done.empty() && done[i] != 0) continue;
+    const Offsets o = gatherOffsets(points, nb, i, out.spacing[i]);
+    store(fitPoint(o, smallest, noise, options), i, out, lopsided);
   }
   out.residual = options.known ? options.known->residual : medianResidual(out);
   out.traits.residual = out.residual;

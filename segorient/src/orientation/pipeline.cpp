@@ -11,7 +11,6 @@
 
 #include "common/peak_memory.h"
 #include "features/automatic_normals.h"
-#include "features/more_neighbors.h"
 #include "features/sheet_normals.h"
 #include "orientation/former_settings.h"
 #include "orientation/pipeline_stages.h"
@@ -150,18 +149,16 @@ std::size_t expectedMemory(std::size_t points, const PipelineOptions& options) {
   // The table of neighbours, with distances where the paper's methods want them, and all else, as
   // measured on clouds of one to ten million points.
   const std::size_t entry = automatic ? sizeof(pcl::index_t) : sizeof(pcl::index_t) + sizeof(float);
-  constexpr std::size_t kElse = 165;
-  // Noisy clouds have more neighbours of their own for a while.
-  const bool wider =
-      options.k <= 0 && (automatic || options.normals.estimator == NormalEstimator::AUTO);
-  const int most = automatic ? detail::MoreNeighbors::kCount : kMostAutomaticNeighbors;
-  const std::size_t wide = wider ? sizeof(pcl::index_t) * static_cast<std::size_t>(most + 1) : 0;
+  constexpr std::size_t kElse = 180;
+  // Noise beyond a spacing takes smoothed positions, and their neighbours, as well.
+  const std::size_t smoothed =
+      automatic && options.orientation.automatic.denoise ? entry * (k + 1) + 4 * sizeof(float) : 0;
   // Who saw what is checked in the sensor's view.
   const OrientationHints* hints = options.orientation.hints.get();
   const bool seen = automatic && hints != nullptr &&
                     (hints->has_viewpoint || hints->has_direction || !hints->viewpoints.empty());
   constexpr std::size_t kOfSensors = 100;
-  return points * (entry * (k + 1) + wide + kElse + (seen ? kOfSensors : 0));
+  return points * (entry * (k + 1) + smoothed + kElse + (seen ? kOfSensors : 0));
 }
 
 OrientedCloud selectRows(const OrientedCloud& cloud, const std::vector<pcl::index_t>& rows) {

@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026, the segorient authors
 
+#include <omp.h>
+
 #include <algorithm>
 #include <atomic>
 #include <cmath>
 #include <limits>
 #include <memory>
+#include <vector>
 
 #include "common/threads.h"
 #include "search/index_impl.h"
@@ -111,7 +114,7 @@ void MedianHashIndex::Impl::nearestOfRegion(std::size_t region, GroupTask& task,
   std::vector<float> unwanted(task.distances == nullptr ? task.k : 0);
   for (std::size_t i = 0; i < task.failed_count; ++i) {
     const std::size_t point = task.failed[i];
-    const std::size_t row = view.row[point];
+    const std::size_t row = task.rowOf(point);
     float* distances = out.mutableSqrDistances(row);
     searchSelf(point, task.k, task.epsilon, out.mutableIndices(row),
                distances != nullptr ? distances : unwanted.data());
@@ -140,24 +143,61 @@ void MedianHashIndex::nearestKAll(int k, Neighborhoods& out, bool with_distances
   }
 }
 
-void MedianHashIndex::Impl::nearestOfAll(std::size_t wanted, float epsilon,
-                                         Neighborhoods& out) const {
+void MedianHashIndex::Impl::nearestOfRegions(GroupTask task, const RegionSearch& search) const {
+  const std::size_t wanted = task.k;
   const std::size_t shared = std::min(wanted, kMostNeighborsShared);
-  GroupTask task{};
-  task.k = static_cast<std::uint32_t>(wanted);
-  task.epsilon = epsilon > 0.0F ? epsilon : 0.0F;
   // The relative deviation of the k-th squared distance falls with the root of k.
   task.margin = 1.0F + kMargin / std::sqrt(static_cast<float>(wanted));
-  task.indices = out.mutableIndices(0);
-  task.distances = out.mutableSqrDistances(0);
-  task.row_length = static_cast<std::size_t>(out.k());
   // A group has up to 31 points with up to some 3 k + 104 candidates each, in two halves.
   const std::size_t block = 2048 + 16 * shared;
   const std::size_t half = block + Layout::kPadding + 16 * (3 * shared + 112);
   forAllRegions(layout, resolveThreads(options.threads, layout.size() * wanted, kNeighborTime),
-                task, block, 2 * wholeLines(half), [&](std::size_t region, GroupTask& of_thread) {
-                  nearestOfRegion(region, of_thread, out);
-                });
+                task, block, 2 * wholeLines(half), search);
+}
+
+void MedianHashIndex::Impl::nearestOfAll(std::size_t wanted, float epsilon,
+                                         Neighborhoods& out) const {
+  GroupTask task{};
+  task.k = static_cast<std::uint32_t>(wanted);
+  task.epsilon = epsilon > 0.0F ? epsilon : 0.0F;
+  task.indices = out.mutableIndices(0);
+  task.distances = out.mutableSqrDistances(0);
+  task.row_length = static_cast<std::size_t>(out.k());
+  task.row = LayoutView(layout).row;
+  nearestOfRegions(task, [&](std::size_t region, GroupTask& of_thread) {
+    nearestOfRegion(region, of_thread, out);
+  });
+}
+
+void MedianHashIndex::nearestKByRegion(int k, const RegionTaker& take) const {
+  const Impl& self = *impl_;
+  const std::size_t wanted = std::min(static_cast<std::size_t>(std::max(k, 0)), size());
+  if (wanted == 0) return;
+  struct Room {
+    Neighborhoods table;
+    std::vector<std::uint32_t> ascending;
+    std::vector<pcl::index_t> rows;
+  };
+  GroupTask task{};
+  task.k = static_cast<std::uint32_t>(wanted);
+  task.row_length = wanted;
+  const LayoutView view(self.layout);
+  std::vector<Room> rooms(static_cast<std::size_t>(resolveThreads(self.options.threads)));
+  self.nearestOfRegions(task, [&](std::size_t region, GroupTask& of_thread) {
+    Room& room = rooms[static_cast<std::size_t>(omp_get_thread_num())];
+    const Region& r = view.regions[region];
+    const std::size_t n = r.end - r.begin;
+    room.table.resetFull(n, static_cast<int>(wanted), static_cast<int>(wanted), false);
+    room.rows.assign(view.row + r.begin, view.row + r.end);
+    for (std::size_t i = room.ascending.size(); i < n; ++i) {
+      room.ascending.push_back(static_cast<std::uint32_t>(i));
+    }
+    of_thread.indices = room.table.mutableIndices(0);
+    of_thread.row = room.ascending.data();
+    of_thread.first = r.begin;
+    self.nearestOfRegion(region, of_thread, room.table);
+    take(room.rows, room.table);
+  });
 }
 
 // Points that no group could search for are searched for one by one.

@@ -9,6 +9,7 @@
 
 #include <atomic>
 #include <cstdint>
+#include <functional>
 #include <limits>
 #include <mutex>
 #include <vector>
@@ -43,6 +44,8 @@ struct MedianHashIndex::Impl {
   int searchRadius(const float* q, double radius, std::vector<pcl::index_t>& indices,
                    std::vector<float>& sqr_distances, unsigned int max_nn, bool sorted) const;
   /// \param wanted neighbours, above 0 and no more than there are points
+  using RegionSearch = std::function<void(std::size_t region, GroupTask& task_of_thread)>;
+  void nearestOfRegions(GroupTask task, const RegionSearch& search) const;
   void nearestOfAll(std::size_t wanted, float epsilon, Neighborhoods& out) const;
   void nearestOfRegion(std::size_t region, GroupTask& task, Neighborhoods& out) const;
   void withinOfRegion(std::size_t region, double radius, GroupTask& task,

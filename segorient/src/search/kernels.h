@@ -173,6 +173,8 @@ struct GroupTask {
   pcl::index_t* indices;   ///< output, k entries a row
   float* distances;        ///< output, or null
   std::size_t row_length;  ///< entries from one row of the output to the next
+  const std::uint32_t* row;  ///< of the output for each point, ...
+  std::size_t first;         ///< ... from this one of the layout on
   // radius
   float limit;          ///< squared radius
   unsigned int max_nn;  ///< as k, but 0 = all
@@ -186,6 +188,8 @@ struct GroupTask {
   std::uint32_t* neighbors;  ///< room for the number of regions
   std::uint32_t* failed;     ///< output: points without a result, to be searched for one by one
   std::size_t failed_count;
+
+  std::size_t rowOf(std::size_t point) const { return row[point - first]; }
 };
 
 struct Kernels {

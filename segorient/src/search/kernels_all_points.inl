@@ -23,7 +23,7 @@ inline void writeNearest(const LayoutView& view, Group& group, RegionState& stat
   for (std::size_t m = 0; m < group.found_count; ++m) {
     const Group::Member& member = group.found[m];
     state.most = largest(state.most, member.distance[task.k - 1]);
-    const std::size_t at = view.row[member.point] * task.row_length;
+    const std::size_t at = task.rowOf(member.point) * task.row_length;
     copyRow(member.id, member.distance, view.id[member.point], task.k, task.indices + at,
             task.distances == nullptr ? nullptr : task.distances + at);
   }
@@ -67,7 +67,7 @@ inline bool nearestWithin(const LayoutView& view, float reach, Group& group, Reg
 SEGORIENT_APART void nearestOfGroup(const LayoutView& view, std::uint32_t begin, std::uint32_t end,
                                     RegionState& state, GroupTask& task) {
   for (std::uint32_t i = begin; i < end; ++i) {
-    prefetchRow(task, view.row[i] * task.row_length, task.k);
+    prefetchRow(task, task.rowOf(i) * task.row_length, task.k);
   }
   Group group;
   startGroup(view, begin, end, group);

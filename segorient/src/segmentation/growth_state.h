@@ -180,7 +180,8 @@ std::size_t settleEdges(const SegmentationOptions& options, GrowthState& state);
 /// \return how many segments became part of another one
 std::size_t uniteSmooth(const SegmentationOptions& options, GrowthState& state);
 
-/// Segments by descending size, with their members and reference normals.
+/// Segments by descending size, with their reference normals; members are not listed yet, see
+/// collectMembers().
 /// \param labels those of the state, or a copy of them if it goes on being used; signs likewise
 Segmentation rank(const GrowthState& state, std::vector<std::int32_t> labels,
                   std::vector<std::int8_t> signs);

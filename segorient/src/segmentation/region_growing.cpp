@@ -6,6 +6,7 @@
 
 #include "segmentation/clean_up.h"
 #include "segmentation/growth_state.h"
+#include "segmentation/segmentation_rows.h"
 
 namespace segorient {
 
@@ -31,6 +32,7 @@ Segmentation segmentByNormals(const PointView& points, const NormalView& normals
     result = faces == nullptr ? segmentation::finish(points, state, std::move(state.labels),
                                                      std::move(state.signs))
                               : segmentation::finish(points, state, state.labels, state.signs);
+    segmentation::collectMembers(result);
     for (const Segment& segment : result.segments) {
       counts.regular += segment.kind == SegmentKind::REGULAR;
       counts.connected += segment.kind == SegmentKind::CONNECTED;
@@ -41,6 +43,7 @@ Segmentation segmentByNormals(const PointView& points, const NormalView& normals
       *faces = counts.united > 0 ? segmentation::finish(points, state, std::move(state.labels),
                                                         std::move(state.signs))
                                  : result;
+      if (counts.united > 0) segmentation::collectMembers(*faces);
     }
   }
   if (report != nullptr) *report = counts;

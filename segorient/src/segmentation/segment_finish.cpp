@@ -4,10 +4,10 @@
 
 #include <array>
 #include <utility>
+#include <vector>
 
 #include "segmentation/growth_state.h"
 #include "segmentation/segment_order.h"
-#include "segmentation/segmentation_rows.h"
 
 namespace segorient::segmentation {
 namespace {
@@ -55,14 +55,16 @@ void setShape(const Moments& m, Segment& segment) {
 // Point by point, not segment by segment: in whatever order the points are, each is read once.
 void measure(const PointView& points, const GrowthState& state, Segmentation& result) {
   std::vector<Moments> moments(result.segments.size());
-  for (std::size_t s = 0; s < moments.size(); ++s) {
-    const float* origin = points[static_cast<std::size_t>(*result.begin(s))];
-    for (std::size_t c = 0; c < 3; ++c) moments[s].origin[c] = static_cast<double>(origin[c]);
-  }
+  std::vector<bool> begun(moments.size(), false);
   const double scale = 1.0 / static_cast<double>(state.scale);
   for (std::size_t p = 0; p < result.labels.size(); ++p) {
     if (result.labels[p] < 0) continue;
-    Moments& m = moments[static_cast<std::size_t>(result.labels[p])];
+    const auto s = static_cast<std::size_t>(result.labels[p]);
+    Moments& m = moments[s];
+    for (std::size_t c = 0; c < 3 && !begun[s]; ++c) {
+      m.origin[c] = static_cast<double>(points[p][c]);
+    }
+    begun[s] = true;
     const double side = static_cast<double>(state.nodes[p].spacing) * scale;
     m.area += side * side;
     m.add(points[p]);
@@ -99,7 +101,6 @@ Segmentation rank(const GrowthState& state, std::vector<std::int32_t> labels,
   }
   result.labels = std::move(labels);
   result.signs = std::move(signs);
-  collectMembers(result);
   return result;
 }
 

@@ -7,6 +7,7 @@
 
 #include "segmentation/clean_up.h"
 #include "segmentation/growth_state.h"
+#include "segmentation/segmentation_rows.h"
 
 namespace segorient {
 namespace {
@@ -51,17 +52,18 @@ Segmentation segmentSheets(const PointView& points, const Neighborhoods& neighbo
     passes.extractEdges();
   }
   segmentation::setKinds(growth, state);
-  if (finished == nullptr) {
-    return segmentation::rank(state, std::move(state.labels), std::move(state.signs));
-  }
   Segmentation out = segmentation::rank(state, state.labels, state.signs);
-  // What goes over to a segment from now on follows no segment's sign any more.
-  state.support = 0;
-  segmentation::setCurvature(field.curvature, state);
-  segmentation::cleanUp(finished->options, state);
-  if (finished->options.unite_smooth) segmentation::uniteSmooth(finished->options, state);
-  finished->segmentation =
-      segmentation::finish(points, state, std::move(state.labels), std::move(state.signs));
+  if (finished != nullptr) {
+    // What goes over to a segment from now on follows no segment's sign any more.
+    state.support = 0;
+    segmentation::setCurvature(field.curvature, state);
+    segmentation::cleanUp(finished->options, state);
+    if (finished->options.unite_smooth) segmentation::uniteSmooth(finished->options, state);
+    finished->segmentation =
+        segmentation::finish(points, state, std::move(state.labels), std::move(state.signs));
+  }
+  state = {};
+  segmentation::collectMembers(out);
   return out;
 }
 

@@ -28,7 +28,7 @@ struct SheetSegmentationOptions {
 /// Segments as a user wants to see them, and how.
 struct FinishedSegments {
   SegmentationOptions options;  ///< of the clean-up; what they say about growing is not used
-  Segmentation segmentation;    ///< the result
+  Segmentation segmentation;    ///< the result, members not listed: see collectMembers()
 };
 
 /// Segments that do not mix the two sides of a wall: growing and clean-up as in section 2.3 of the

@@ -12,7 +12,6 @@
 #include "common/dot.h"
 #include "common/threads.h"
 #include "segmentation/segment_order.h"
-#include "segmentation/segmentation_rows.h"
 
 namespace segorient::detail {
 namespace {
@@ -89,24 +88,26 @@ class Follower {
   std::vector<Face> faces_;
 };
 
-// Members, sizes and the order of labels anew; segments without points go.
+// Sizes and the order of labels anew; segments without points go.
 void rankAgain(Segmentation& segmentation) {
-  segmentation::collectMembers(segmentation);
-  std::vector<std::uint32_t> sizes;
-  for (const Segment& segment : segmentation.segments) sizes.push_back(segment.size);
+  std::vector<std::uint32_t> sizes(segmentation.segments.size(), 0);
+  for (const std::int32_t label : segmentation.labels) {
+    if (label >= 0) ++sizes[static_cast<std::size_t>(label)];
+  }
   std::size_t count = 0;
   const std::vector<std::int32_t> ranks =
       segmentation::rankLabels(segmentation.labels, sizes, count);
   std::vector<Segment> segments(count);
   for (std::size_t s = 0; s < ranks.size(); ++s) {
     if (ranks[s] < 0) continue;
-    segments[static_cast<std::size_t>(ranks[s])] = segmentation.segments[s];
+    Segment& segment = segments[static_cast<std::size_t>(ranks[s])];
+    segment = segmentation.segments[s];
+    segment.size = sizes[s];
   }
   segmentation.segments = std::move(segments);
   for (std::int32_t& label : segmentation.labels) {
     if (label >= 0) label = ranks[static_cast<std::size_t>(label)];
   }
-  segmentation::collectMembers(segmentation);
 }
 
 }  // namespace

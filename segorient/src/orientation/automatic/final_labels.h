@@ -21,7 +21,8 @@ void labelTheRest(const Neighborhoods& neighborhoods, const std::vector<float>& 
 /// The face of a segment is, where the point is, the mean normal of those neighbours that are in
 /// it. Where the own one is within 20 degrees the point stays, and also where no other one is
 /// nearer by half.
-/// Does not depend on the order of points or threads. Labels are ordered by size again.
+/// Does not depend on the order of points or threads. Labels are ordered by size again; members
+/// are not listed, see collectMembers().
 /// \param normals final ones, oriented, 4 floats a point
 void followFinalNormals(const Neighborhoods& neighborhoods, const std::vector<float>& normals,
                         int threads, Segmentation& segmentation);

@@ -43,10 +43,9 @@ enum class Fit : std::uint8_t { EXPLAINED, UNEXPLAINED, ONE_SIDED, ON_EDGE };
 
 class FinalNormals {
  public:
-  FinalNormals(PreparedCloud& cloud, MoreNeighbors& more, const Segmentation& segments, int threads,
-               const FinalTraits* known, const AutoNormals& oriented)
-      : cloud_(cloud),
-        more_(more),
+  FinalNormals(const PreparedCloud& cloud, MoreNeighbors& more, const Segmentation& segments,
+               int threads, const FinalTraits* known, const AutoNormals& oriented)
+      : more_(more),
         points_(cloud.points()),
         table_(cloud.neighborhoods()),
         segments_(segments),
@@ -112,16 +111,12 @@ class FinalNormals {
     const AutomaticNormalTraits* known = known_ != nullptr ? &known_->surfaces : nullptr;
     const bool wider =
         !only_known && automaticNeighbors(points_, table_, threads_, known) > table_.k() - 1;
-    // The nearest of each point, which the noise comes from, are the same.
-    const Neighborhoods& table = wider && more_.hasAll() ? more_.ofAll() : table_;
-    const bool search = wider && !more_.hasAll();
     const AutomaticNormalReport report =
-        search ? estimateNormalsAutomatically(points_, cloud_.index(), table, threads_,
-                                              fitted_.data(), &unexplained, &rows, known)
-               : estimateNormalsAutomatically(points_, table, threads_, fitted_.data(),
-                                              &unexplained, &rows, known);
+        wider ? estimateNormalsAutomatically(points_, more_.index(), table_, threads_,
+                                             fitted_.data(), &unexplained, &rows, known)
+              : estimateNormalsAutomatically(points_, table_, threads_, fitted_.data(),
+                                             &unexplained, &rows, known);
     traits_.surfaces = report.traits;
-    if (search) cloud_.dropIndex();
     noise_ = report.noise;
     most_ = report.surfaces.empty() ? kFewest : report.surfaces.front().first;
     fits_.assign(points_.size, Fit::EXPLAINED);
@@ -226,7 +221,6 @@ class FinalNormals {
     for (std::size_t a = 0; a < 3; ++a) result[a] = sum[a] / length;
   }
 
-  PreparedCloud& cloud_;
   MoreNeighbors& more_;
   PointView points_;
   const Neighborhoods& table_;
@@ -247,9 +241,9 @@ class FinalNormals {
 
 }  // namespace
 
-FinalTraits fitFinalNormals(PreparedCloud& cloud, MoreNeighbors& more, const Segmentation& segments,
-                            bool only_known, int threads, const FinalTraits* known,
-                            AutoNormals& oriented) {
+FinalTraits fitFinalNormals(const PreparedCloud& cloud, MoreNeighbors& more,
+                            const Segmentation& segments, bool only_known, int threads,
+                            const FinalTraits* known, AutoNormals& oriented) {
   FinalNormals final_normals(cloud, more, segments, threads, known, oriented);
   std::vector<float> normals = final_normals.run(only_known);
   if (!normals.empty()) {

@@ -20,15 +20,15 @@ namespace segorient::detail {
 /// bends. The filtered normal stays where neighbours are of another wall, at what cannot be fitted
 /// beside sharp edges, and on scans whose noise only many neighbours show (see runAutoStages()).
 ///
-/// \param cloud whose neighbours are known; more are sought where the noise asks for them, unless
+/// \param cloud whose neighbours are known
+/// \param more of the same points, which are sought where the noise asks for them, unless
 ///        `only_known`
-/// \param more of the same points, asked only if they have been found
 /// \param segments by the filtered normals
 /// \param known of the cloud that this one is part of; null = measured
 /// \param oriented normals are replaced; the residuals stay
 /// \return as measured, or as told
-FinalTraits fitFinalNormals(PreparedCloud& cloud, MoreNeighbors& more, const Segmentation& segments,
-                            bool only_known, int threads, const FinalTraits* known,
-                            AutoNormals& oriented);
+FinalTraits fitFinalNormals(const PreparedCloud& cloud, MoreNeighbors& more,
+                            const Segmentation& segments, bool only_known, int threads,
+                            const FinalTraits* known, AutoNormals& oriented);
 
 }  // namespace segorient::detail

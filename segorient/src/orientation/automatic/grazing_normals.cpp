@@ -24,17 +24,17 @@ constexpr double kQueryTime = 4000.0;
 
 Plane planeAround(const MoreNeighbors& more, std::size_t i) {
   const PointView& points = more.points();
-  MoreNeighbors::Room room;
-  const MoreNeighbors::Row row = more.row(i, kAround + 1, room);
-  if (row.count < 3) return {};
+  std::array<pcl::index_t, kAround + 1> row;
+  const auto count = static_cast<std::size_t>(more.nearest(i, kAround + 1, row.data()));
+  if (count < 3) return {};
   const float* p = points[i];
-  const float* farthest = points[static_cast<std::size_t>(row.indices[row.count - 1])];
+  const float* farthest = points[static_cast<std::size_t>(row[count - 1])];
   const std::array<float, 3> reach{farthest[0] - p[0], farthest[1] - p[1], farthest[2] - p[2]};
   const float radius = std::sqrt(dot(reach.data(), reach.data()));
   if (!(radius > 0.F)) return {};
   Moments m;
-  for (int j = 0; j < row.count; ++j) {
-    const float* q = points[static_cast<std::size_t>(row.indices[j])];
+  for (std::size_t j = 0; j < count; ++j) {
+    const float* q = points[static_cast<std::size_t>(row[j])];
     m.add((q[0] - p[0]) / radius, (q[1] - p[1]) / radius, (q[2] - p[2]) / radius);
   }
   return fitPlane(m);
@@ -53,7 +53,7 @@ void replaceGrazingNormals(MoreNeighbors& more, const std::vector<float>& toward
     }
   }
   if (grazing.empty()) return;
-  more.prepareRows();
+  more.index();
   const int t = resolveThreads(threads, grazing.size(), kQueryTime);
 #pragma omp parallel for num_threads(t) schedule(dynamic, 64)
   for (std::size_t g = 0; g < grazing.size(); ++g) {

@@ -7,20 +7,24 @@
 #include <cmath>
 #include <cstddef>
 #include <limits>
+#include <memory>
 
 #include "common/dot.h"
 #include "common/threads.h"
+#include "features/grown_planes.h"
+#include "features/local_fit_job.h"
 #include "features/sheet_fit.h"
 
 namespace segorient::detail {
 namespace {
 
-// Neighbours whose normals are compared, and those of planes; the largest one only where the one
-// before contradicts the normal by more than 6 degrees.
-constexpr int kNearest = 8;
-constexpr int kNear = 16;
-constexpr int kWide = 32;
-constexpr int kWidest = 60;
+// Neighbours of planes: one ring and a few, two, and as many as all stages share, ...
+constexpr std::array<int, 3> kSizes{8, 16, 32};
+enum PlaneOf : std::size_t { NEAREST, NEAR, WIDE };
+// ... the largest one only where the one before contradicts the normal by more than 6 degrees.
+constexpr int kWidest = MoreNeighbors::kMost;
+// Neighbours whose normals are compared.
+constexpr int kNear = kSizes[NEAR];
 constexpr float kAgree = 0.995F;
 // Of the variances across a plane and along its shorter side: a third of the plane's weight. 30
 // points on two faces of an edge have .1 and more.
@@ -71,31 +75,13 @@ float scatterOf(float mean_length) {
   return 2.F * std::max(0.F, 1.F - mean_length);
 }
 
-// Sums up the planes of one point's neighbours, each of them a few more.
-class GrowingPlane {
- public:
-  GrowingPlane(const PointView& points, std::size_t i, float scale)
-      : points_(points), p_(points[i]), scale_(scale) {}
-
-  void add(pcl::index_t neighbor) {
-    const float* q = points_[static_cast<std::size_t>(neighbor)];
-    moments_.add((q[0] - p_[0]) * scale_, (q[1] - p_[1]) * scale_, (q[2] - p_[2]) * scale_);
-  }
-  Plane plane() const { return fitPlane(moments_); }
-
- private:
-  const PointView& points_;
-  const float* p_;
-  float scale_;
-  Moments moments_;
-};
-
 class Leaner {
  public:
   Leaner(MoreNeighbors& more, const Neighborhoods& nb, const std::vector<float>& toward,
          const std::vector<std::uint8_t>& sure, int threads, std::vector<float>& normals)
       : more_(more),
         points_(more.points()),
+        xyz_(points_),
         nb_(nb),
         toward_(toward),
         sure_(sure),
@@ -103,13 +89,17 @@ class Leaner {
         normals_(normals) {}
 
   void run() {
-    more_.prepareRows();
+    more_.index();
     leaned_ = normals_;
     tolerance_.assign(points_.size, 0.F);
     int t = resolveThreads(threads_, points_.size, kFitTime);
-#pragma omp parallel for num_threads(t) schedule(dynamic, 512)
-    for (std::size_t i = 0; i < points_.size; ++i) {
-      if (isKnown(i)) isSure(i) ? leanSure(i) : leanOne(i);
+#pragma omp parallel num_threads(t)
+    {
+      const auto room = std::make_unique<Room>();
+#pragma omp for schedule(dynamic, 4)
+      for (std::size_t begin = 0; begin < points_.size; begin += GrownPlanes::kRows) {
+        leanBlock(begin, std::min(points_.size, begin + GrownPlanes::kRows), *room);
+      }
     }
     t = resolveThreads(threads_, points_.size, kMeanTime);
 #pragma omp parallel for num_threads(t) schedule(dynamic, 1024)
@@ -142,68 +132,121 @@ class Leaner {
     std::copy_n(&leaned_[4 * i], 3, &normals_[4 * i]);
   }
 
+  // What is known of one point in the first round.
+  struct Lean {
+    std::size_t i = 0;
+    Vector mean;      // of the normal and the planes
+    float few = 0.F;  // variances across planes
+    float variance = 0.F;
+    float agreement = 1.F;
+    float around = 1.F;  // length of the mean of the normals around
+  };
+  // Of one thread, for a block of points.
+  struct Room {
+    std::vector<pcl::index_t> rows;
+    std::vector<Lean> leans;
+    std::vector<std::size_t> asking;  // leans that the widest plane is needed for
+    Neighborhoods wider;
+    std::vector<float> asking_at;
+    std::array<GrownPlanes, kSizes.size()> planes;
+  };
+
   // With the planes around, in the first round.
-  void leanOne(std::size_t i) {
-    const pcl::index_t* row = nb_.indices(i);
-    const int end = std::min(nb_.count(i), kWide + 1);
-    const float h = meanDistance(points_, nb_, i, 6);
-    if (!(h > 0.F)) return;
+  void leanBlock(std::size_t begin, std::size_t end, Room& room) {
+    room.rows.clear();
+    for (std::size_t i = begin; i < end; ++i) {
+      if (!isKnown(i)) continue;
+      if (isSure(i)) {
+        leanSure(i);
+      } else {
+        room.rows.push_back(static_cast<pcl::index_t>(i));
+      }
+    }
+    LocalFitJob job = jobOf(points_, xyz_, nb_, kSizes[WIDE]);
+    job.rows = room.rows.data();
+    fitGrownPlanes(job, kSizes.data(), kSizes.size(), 0, room.rows.size(), room.planes.data());
+    room.leans.clear();
+    room.asking.clear();
+    for (std::size_t r = 0; r < room.rows.size(); ++r) {
+      room.leans.push_back(startLean(static_cast<std::size_t>(room.rows[r]), room.planes, r));
+      if (room.leans[r].agreement < kAgree) room.asking.push_back(r);
+    }
+    addWidest(room);
+    for (Lean& of_point : room.leans) finishLean(of_point);
+  }
+
+  Lean startLean(std::size_t i, const std::array<GrownPlanes, kSizes.size()>& planes,
+                 std::size_t r) const {
     const float* n = &normals_[4 * i];
-    GrowingPlane sum(points_, i, 1.F / h);
-    float nearest = std::numeric_limits<float>::infinity();
-    float few = nearest;
+    Lean out;
+    out.i = i;
+    out.mean.add(n, 1.F);
+    const pcl::index_t* row = nb_.indices(i);
+    const int end = std::min(nb_.count(i), kNear + 1);
     Vector around;
     float used = 0.F;
     for (int j = 0; j < end; ++j) {
-      sum.add(row[j]);
-      if (j == kNearest) nearest = varianceOf(sum.plane());
-      if (j == kNear) few = varianceOf(sum.plane());
       const float* other = &normals_[4 * static_cast<std::size_t>(row[j])];
-      if (j > kNear || !std::isfinite(other[0])) continue;
+      if (!std::isfinite(other[0])) continue;
       around.add(other, 1.F);
       used += 1.F;
     }
-    Vector mean{n[0], n[1], n[2]};
-    const Plane wide = sum.plane();
-    float variance = std::min({nearest, few, varianceOf(wide)});
-    float agreement = 1.F;
+    if (used > 0.F) out.around = around.length() / used;
+    const Plane wide = planes[WIDE].at(r);
+    out.few = varianceOf(planes[NEAR].at(r));
+    out.variance = std::min({varianceOf(planes[NEAREST].at(r)), out.few, varianceOf(wide)});
     if (wide.valid) {
-      agreement = std::min(1.F, std::fabs(dot(wide.normal.data(), n)));
-      addPlane(wide, i, few, mean);
-      if (agreement < kAgree) {
-        const Plane widest = planeAround(i, 1.F / h);
-        variance = std::min(variance, varianceOf(widest));
-        addPlane(widest, i, few, mean);
-      }
+      out.agreement = std::min(1.F, std::fabs(dot(wide.normal.data(), n)));
+      addPlane(wide, out);
     }
-    tolerance_[i] = h * h * (kOffset * kOffset + (std::isfinite(variance) ? variance : 0.F));
-    if (!scaleToUnit(mean)) return;
-    const float square = kLeast * kLeast + scatterOf(agreement) +
-                         0.25F * scatterOf(used > 0.F ? around.length() / used : 1.F);
-    lean(toward(i), square, mean);
-    if (scaleToUnit(mean)) store(mean, &leaned_[4 * i]);
+    return out;
+  }
+
+  void addWidest(Room& room) const {
+    const std::size_t count = room.asking.size();
+    room.wider.reset(count, kWidest + 1, false);
+    room.asking_at.resize(4 * count);
+    for (std::size_t a = 0; a < count; ++a) {
+      const std::size_t i = room.leans[room.asking[a]].i;
+      std::copy_n(points_[i], 3, &room.asking_at[4 * a]);
+      room.wider.setCount(a, more_.nearest(i, kWidest + 1, room.wider.mutableIndices(a)));
+    }
+    GrownPlanes& planes = room.planes[WIDE];
+    fitGrownPlanes(jobOf({room.asking_at.data(), 4, count}, xyz_, room.wider, kWidest), &kWidest, 1,
+                   0, count, &planes);
+    for (std::size_t a = 0; a < count; ++a) {
+      const Plane widest = planes.at(a);
+      Lean& of_point = room.leans[room.asking[a]];
+      of_point.variance = std::min(of_point.variance, varianceOf(widest));
+      addPlane(widest, of_point);
+    }
+  }
+
+  void finishLean(Lean& of_point) {
+    const std::size_t i = of_point.i;
+    const float h = meanDistance(points_, nb_, i, 6);
+    if (!(h > 0.F)) return;
+    tolerance_[i] =
+        h * h * kOffset * kOffset + (std::isfinite(of_point.variance) ? of_point.variance : 0.F);
+    if (!scaleToUnit(of_point.mean)) return;
+    const float square =
+        kLeast * kLeast + scatterOf(of_point.agreement) + 0.25F * scatterOf(of_point.around);
+    lean(toward(i), square, of_point.mean);
+    if (scaleToUnit(of_point.mean)) store(of_point.mean, &leaned_[4 * i]);
   }
 
   static float varianceOf(const Plane& plane) {
     return plane.valid ? std::max(0.F, plane.lambda[0]) : std::numeric_limits<float>::infinity();
   }
 
-  Plane planeAround(std::size_t i, float scale) const {
-    MoreNeighbors::Room room;
-    const MoreNeighbors::Row row = more_.row(i, kWidest + 1, room);
-    GrowingPlane sum(points_, i, scale);
-    for (int j = 0; j < row.count; ++j) sum.add(row.indices[j]);
-    return sum.plane();
-  }
-
   // Flat planes that leave no more than few neighbours do count as much as the normal itself.
-  void addPlane(const Plane& plane, std::size_t i, float few, Vector& mean) const {
+  void addPlane(const Plane& plane, Lean& to) const {
     if (!plane.valid || !(plane.lambda[1] > 0.F)) return;
     const float across = plane.lambda[0];
-    const float same = across > kSameNoise * few ? kSameNoise * few / across : 1.F;
+    const float same = across > kSameNoise * to.few ? kSameNoise * to.few / across : 1.F;
     const float weight = same / (1.F + across / (kFlat * plane.lambda[1]));
     const float* p = plane.normal.data();
-    mean.add(p, dot(p, toward(i)) < 0.F ? -weight : weight);
+    to.mean.add(p, dot(p, toward(to.i)) < 0.F ? -weight : weight);
   }
 
   // What the neighbours say that the point lies in the plane of, in the second round: twice.
@@ -246,6 +289,7 @@ class Leaner {
 
   MoreNeighbors& more_;
   const PointView& points_;
+  const FourFloats xyz_;
   const Neighborhoods& nb_;
   const std::vector<float>& toward_;
   const std::vector<std::uint8_t>& sure_;

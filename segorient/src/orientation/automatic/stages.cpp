@@ -57,6 +57,7 @@ void findNeighbors(PreparedCloud& cloud, const PipelineOptions& options, const S
 // Turns the segments as most of their points are.
 void turnSegments(const AutoNormals& oriented, int threads, AutoStages& out) {
   Segmentation& segmentation = out.segmentation;
+  segmentation::collectMembers(segmentation);
   out.segments.resize(segmentation.segments.size());
   const int workers = resolveThreads(threads, segmentation.members.size(), 20.0);
 #pragma omp parallel for schedule(dynamic, 16) num_threads(workers)

@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the segorient authors
+//
+// Planes of growing neighbourhoods for one instruction set; see lanes.inl.
+
+#include "features/lanes.inl"
+
+#include "features/plane_lanes.inl"
+
+inline void add(const Twice3& d, Scatter<Twice>& s) {
+  s.sum = sum(s.sum, d);
+  s.xx = s.xx + d.x * d.x;
+  s.xy = s.xy + d.x * d.y;
+  s.xz = s.xz + d.x * d.z;
+  s.yy = s.yy + d.y * d.y;
+  s.yz = s.yz + d.y * d.z;
+  s.zz = s.zz + d.z * d.z;
+}
+
+/// The first `used` of two registers full.
+inline void storeFirst(float* to, const Twice& a, std::size_t used) {
+  if (used == kBatchRows) {
+    store(to, a);
+    return;
+  }
+  float all_of_them[kBatchRows];
+  store(all_of_them, a);
+  for (std::size_t l = 0; l < used; ++l) to[l] = all_of_them[l];
+}
+
+/// \param n of each point, itself counted
+inline void storePlanes(const Scatter<Twice>& s, const Twice& n, std::size_t at, std::size_t used,
+                        GrownPlanes& out) {
+  const Flattest<Twice> found = flattestDirection(s, n);
+  const Twice zero{};
+  const TwiceMask has_normal = dot(found.normal, found.normal) > 0.5F;
+  // Where all variances are equal, what was found is not a number: the other operand remains.
+  const Twice third = zero + 1.0F / 3.0F;
+  const Twice least = larger(zero, smaller(select(has_normal, found.lambda, found.first), third));
+  // The product of the other two, and their sum, are exact where their difference may not be.
+  const Twice rest = 1.0F - least;
+  const Twice product = larger(zero, found.minors - least * rest);
+  const Twice root = squareRoot(larger(zero, rest * rest - 4.0F * product));
+  const Twice most = 0.5F * (rest + root);
+  const Twice nan = zero / zero;
+  const Twice variance = select(found.trace > 0.0F, found.trace / n, nan);
+  storeFirst(&out.lambda[0][at], least * variance, used);
+  storeFirst(&out.lambda[1][at], product / most * variance, used);
+  storeFirst(&out.lambda[2][at], most * variance, used);
+  storeFirst(&out.normal[0][at], select(has_normal, found.normal.x, nan), used);
+  storeFirst(&out.normal[1][at], select(has_normal, found.normal.y, nan), used);
+  storeFirst(&out.normal[2][at], select(has_normal, found.normal.z, nan), used);
+  storeFirst(&out.mean[0][at], s.sum.x / n, used);
+  storeFirst(&out.mean[1][at], s.sum.y / n, used);
+  storeFirst(&out.mean[2][at], s.sum.z / n, used);
+  storeFirst(&out.n[at], n, used);
+}
+
+void fitGrown(const LocalFitJob& job, const int* sizes, std::size_t count, std::size_t begin,
+              std::size_t end, GrownPlanes* planes) {
+  Batch batch(static_cast<std::size_t>(job.entries));
+  for (std::size_t i = begin; i < end; i += kBatchRows) {
+    loadBatch(job, i, end, batch);
+    const std::size_t used = end - i < kBatchRows ? end - i : kBatchRows;
+    const Twice counts = batch.allCounts();
+    Scatter<Twice> scatter{};
+    int j = batch.first;
+    for (std::size_t s = 0; s < count; ++s) {
+      for (; j <= sizes[s] && j < batch.count; ++j) add(batch.offsets(j), scatter);
+      const Twice n = smaller(counts, Twice{} + static_cast<float>(sizes[s] + 1));
+      storePlanes(scatter, n, i - begin, used, planes[s]);
+    }
+  }
+}
+
+/// See findMedians().
+void mediansOf(const float* values, std::size_t count, float* medians) {
+  for (std::size_t i = 0; i < GrownPlanes::kRows; i += kWidth) {
+    const float* column = values + i;
+    const auto at = [&](std::size_t j)
+                        SEGORIENT_INLINED { return load(column + j * GrownPlanes::kRows); };
+    Mask present{};
+    for (std::size_t j = 0; j < count; ++j) present -= at(j) == at(j);
+    // What is missing is less than nothing, and nothing is less than it.
+    const Mask half = present / 2;
+    Lanes median = all(-std::numeric_limits<float>::infinity());
+    for (std::size_t j = 0; j < count; ++j) {
+      const Lanes v = at(j);
+      Mask less{};
+      for (std::size_t other = 0; other < count; ++other) less -= at(other) < v;
+      median = select((v == v) & (less <= half), larger(v, median), median);
+    }
+    store(medians + i, select(present > 0, median, all(std::numeric_limits<float>::quiet_NaN())));
+  }
+}

@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the segorient authors
+#include "features/grown_planes.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <vector>
+
+#include "common/compiler.h"
+#include "common/instruction_set.h"
+#include "common/vectors.h"
+
+namespace segorient::detail {
+
+namespace portable {
+namespace {
+#define SEGORIENT_LANES 4
+#include "features/grown_lanes.inl"
+#undef SEGORIENT_LANES
+}  // namespace
+}  // namespace portable
+
+#if SEGORIENT_X86
+SEGORIENT_TARGET_BEGIN("avx2")
+namespace avx2 {
+namespace {
+#define SEGORIENT_LANES 8
+#include "features/grown_lanes.inl"
+#undef SEGORIENT_LANES
+}  // namespace
+}  // namespace avx2
+SEGORIENT_TARGET_END
+SEGORIENT_TARGET_BEGIN("avx512f,avx512vl")
+namespace avx512 {
+namespace {
+#define SEGORIENT_LANES 16
+#include "features/grown_lanes.inl"
+#undef SEGORIENT_LANES
+}  // namespace
+}  // namespace avx512
+SEGORIENT_TARGET_END
+#endif
+
+Plane GrownPlanes::at(std::size_t i) const {
+  Plane plane;
+  plane.normal = {normal[0][i], normal[1][i], normal[2][i]};
+  plane.lambda = {lambda[0][i], lambda[1][i], lambda[2][i]};
+  plane.mean = {mean[0][i], mean[1][i], mean[2][i]};
+  plane.valid = n[i] >= 3.F && spansTwo(plane.lambda) && plane.normal.allFinite();
+  return plane;
+}
+
+namespace {
+
+struct Kernels {
+  decltype(&portable::fitGrown) fit_grown;
+  decltype(&portable::mediansOf) medians_of;
+};
+
+Kernels chooseKernels() {
+#if SEGORIENT_X86
+  if (instructionSet() >= InstructionSet::Avx512) return {&avx512::fitGrown, &avx512::mediansOf};
+  if (instructionSet() >= InstructionSet::Avx2) return {&avx2::fitGrown, &avx2::mediansOf};
+#endif
+  return {&portable::fitGrown, &portable::mediansOf};
+}
+
+}  // namespace
+
+void fitGrownPlanes(const LocalFitJob& job, const int* sizes, std::size_t count, std::size_t begin,
+                    std::size_t end, GrownPlanes* planes) {
+  chooseKernels().fit_grown(job, sizes, count, begin, end, planes);
+}
+
+void findMedians(const float* values, std::size_t count, float* medians) {
+  chooseKernels().medians_of(values, count, medians);
+}
+
+}  // namespace segorient::detail

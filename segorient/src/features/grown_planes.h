@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the segorient authors
+#pragma once
+
+#include <segorient/common/export.h>
+
+#include <array>
+#include <cstddef>
+#include <vector>
+
+#include "features/local_fit_job.h"
+#include "features/sheet_fit.h"
+
+namespace segorient::detail {
+
+/// Least-squares planes of the nearest neighbours of some points, themselves counted, for one
+/// number of neighbours. Values of one kind lie side by side.
+struct GrownPlanes {
+  static constexpr std::size_t kRows = 256;  ///< most points at once
+  using Values = std::array<float, kRows>;
+
+  std::array<Values, 3> normal;  ///< NaN where there is no one direction of least variance
+  std::array<Values, 3> lambda;  ///< variances, ascending: the larger two to a thousandth where
+                                 ///< they meet; NaN where all points are one
+  std::array<Values, 3> mean;  ///< of the offsets from the point
+  Values n;                    ///< points
+
+  SEGORIENT_FEATURES_EXPORT Plane at(std::size_t i) const;
+};
+
+/// Fits planes to neighbourhoods that grow, each of some sizes, for rows [begin, end) of a job.
+/// \param job its normals, curvatures and residuals are not touched; entries: largest of sizes + 1
+/// \param sizes neighbours beside the point itself, ascending
+/// \param end at most begin + GrownPlanes::kRows
+/// \param planes one a size; row begin + i at [i]
+SEGORIENT_FEATURES_EXPORT void fitGrownPlanes(const LocalFitJob& job, const int* sizes,
+                                              std::size_t count, std::size_t begin, std::size_t end,
+                                              GrownPlanes* planes);
+
+/// Medians of several values of each of GrownPlanes::kRows points: of an even number the larger of
+/// the two in the middle.
+/// \param values the j-th of point i at [j * kRows + i]; NaN where there is none
+/// \param medians one a point; NaN where there is no value
+void findMedians(const float* values, std::size_t count, float* medians);
+
+}  // namespace segorient::detail
