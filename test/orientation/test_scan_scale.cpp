@@ -67,7 +67,9 @@ TEST(ScanScale, LinesOfAScannerShowButNoChance) {
 TEST(ScanScale, FewPointsAndLines) {
   std::vector<float> line;
   for (int i = 0; i < 40; ++i) line.insert(line.end(), {static_cast<float>(i), 0.F, 0.F, 0.F});
-  const auto fail = [](std::size_t, const detail::Plane&) { FAIL() << "a line has no plane"; };
+  const auto fail = [](std::size_t, const detail::GrownPlanes&, std::size_t) {
+    FAIL() << "a line has no plane";
+  };
   detail::MoreNeighbors more(viewOf(line), 0);
   detail::fitScanPlanes(more, 8, fail);
   detail::MoreNeighbors none({nullptr, 4, 0}, 0);

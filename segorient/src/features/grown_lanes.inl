@@ -28,12 +28,28 @@ inline void storeFirst(float* to, const Twice& a, std::size_t used) {
   for (std::size_t l = 0; l < used; ++l) to[l] = all_of_them[l];
 }
 
-/// \param n of each point, itself counted
-inline void storePlanes(const Scatter<Twice>& s, const Twice& n, std::size_t at, std::size_t used,
-                        GrownPlanes& out) {
+/// Brings offsets whose squares would over- or underflow to lengths around 1.
+/// \return the units: lengths that are 1 now
+inline Twice rescaleExtremes(Batch& batch) {
+  const Twice3 farthest = batch.offsets(batch.count - 1);
+  const Twice square = dot(farthest, farthest);
+  Twice units = Twice{} + 1.0F;
+  if (batch.first >= batch.count || !any((square < 1e-30F) | (square > 1e30F))) return units;
+  float of_lane[kBatchRows];
+  for (std::size_t l = 0; l < kBatchRows; ++l) {
+    rescalePoint(batch, l);
+    of_lane[l] = static_cast<float>(batch.unit[l]);
+  }
+  return loadTwice(of_lane);
+}
+
+/// \param n of each point, itself counted \param unit of the offsets
+inline void storePlanes(const Scatter<Twice>& s, const Twice& n, const Twice& unit, std::size_t at,
+                        std::size_t used, GrownPlanes& out) {
   const Flattest<Twice> found = flattestDirection(s, n);
   const Twice zero{};
-  const TwiceMask has_normal = dot(found.normal, found.normal) > 0.5F;
+  // Float leaves errors of 1e-4 rad then.
+  const TwiceMask has_normal = (found.gap > 1e-3F) & (dot(found.normal, found.normal) > 0.5F);
   // Where all variances are equal, what was found is not a number: the other operand remains.
   const Twice third = zero + 1.0F / 3.0F;
   const Twice least = larger(zero, smaller(select(has_normal, found.lambda, found.first), third));
@@ -54,6 +70,7 @@ inline void storePlanes(const Scatter<Twice>& s, const Twice& n, std::size_t at,
   storeFirst(&out.mean[1][at], s.sum.y / n, used);
   storeFirst(&out.mean[2][at], s.sum.z / n, used);
   storeFirst(&out.n[at], n, used);
+  storeFirst(&out.unit[at], unit, used);
 }
 
 void fitGrown(const LocalFitJob& job, const int* sizes, std::size_t count, std::size_t begin,
@@ -63,12 +80,13 @@ void fitGrown(const LocalFitJob& job, const int* sizes, std::size_t count, std::
     loadBatch(job, i, end, batch);
     const std::size_t used = end - i < kBatchRows ? end - i : kBatchRows;
     const Twice counts = batch.allCounts();
+    const Twice unit = rescaleExtremes(batch);
     Scatter<Twice> scatter{};
     int j = batch.first;
     for (std::size_t s = 0; s < count; ++s) {
       for (; j <= sizes[s] && j < batch.count; ++j) add(batch.offsets(j), scatter);
       const Twice n = smaller(counts, Twice{} + static_cast<float>(sizes[s] + 1));
-      storePlanes(scatter, n, i - begin, used, planes[s]);
+      storePlanes(scatter, n, unit, i - begin, used, planes[s]);
     }
   }
 }

@@ -43,11 +43,12 @@ namespace {
 SEGORIENT_TARGET_END
 #endif
 
-Plane GrownPlanes::at(std::size_t i) const {
+Plane GrownPlanes::at(std::size_t i, float length) const {
+  const float scale = unit[i] / length;
   Plane plane;
   plane.normal = {normal[0][i], normal[1][i], normal[2][i]};
-  plane.lambda = {lambda[0][i], lambda[1][i], lambda[2][i]};
-  plane.mean = {mean[0][i], mean[1][i], mean[2][i]};
+  plane.lambda = Eigen::Vector3f(lambda[0][i], lambda[1][i], lambda[2][i]) * (scale * scale);
+  plane.mean = Eigen::Vector3f(mean[0][i], mean[1][i], mean[2][i]) * scale;
   plane.valid = n[i] >= 3.F && spansTwo(plane.lambda) && plane.normal.allFinite();
   return plane;
 }

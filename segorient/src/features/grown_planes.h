@@ -19,13 +19,16 @@ struct GrownPlanes {
   static constexpr std::size_t kRows = 256;  ///< most points at once
   using Values = std::array<float, kRows>;
 
-  std::array<Values, 3> normal;  ///< NaN where there is no one direction of least variance
+  std::array<Values, 3> normal;  ///< NaN where variances are too alike to tell
   std::array<Values, 3> lambda;  ///< variances, ascending: the larger two to a thousandth where
                                  ///< they meet; NaN where all points are one
-  std::array<Values, 3> mean;  ///< of the offsets from the point
-  Values n;                    ///< points
+  std::array<Values, 3> mean;    ///< of the offsets from the point
+  Values n;                      ///< points
+  Values unit;                   ///< of lengths; 1 unless squares would over- or underflow
 
-  SEGORIENT_FEATURES_EXPORT Plane at(std::size_t i) const;
+  bool hasNormal(std::size_t i) const { return normal[0][i] == normal[0][i]; }
+  /// \param length what lengths are to be measured in
+  SEGORIENT_FEATURES_EXPORT Plane at(std::size_t i, float length = 1.F) const;
 };
 
 /// Fits planes to neighbourhoods that grow, each of some sizes, for rows [begin, end) of a job.

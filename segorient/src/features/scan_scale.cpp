@@ -84,8 +84,9 @@ struct Scales {
       const float n = p.n[i];
       const bool wide =
           n > 3.F && p.lambda[1][i] > 0.F && p.lambda[1][i] >= kOneLine * p.lambda[2][i];
-      out.noise2[s] = wide ? p.lambda[0][i] * n / (n - 3.F) : kNone;
-      out.width2[s] = wide ? p.lambda[1][i] : 0.F;
+      const float unit2 = p.unit[i] * p.unit[i];
+      out.noise2[s] = wide ? p.lambda[0][i] * n / (n - 3.F) * unit2 : kNone;
+      out.width2[s] = wide ? p.lambda[1][i] * unit2 : 0.F;
     }
     return out;
   }
@@ -190,7 +191,7 @@ void fitSome(LocalFitJob job, int size, const Rows& rows, const Take& take) {
   for (std::size_t begin = 0; begin < rows.size(); begin += GrownPlanes::kRows) {
     const std::size_t end = std::min(rows.size(), begin + GrownPlanes::kRows);
     fitGrownPlanes(job, &size, 1, begin, end, planes.get());
-    for (std::size_t i = begin; i < end; ++i) take(rows[i], planes->at(i - begin));
+    for (std::size_t i = begin; i < end; ++i) take(rows[i], *planes, i - begin);
   }
 }
 
@@ -255,8 +256,7 @@ bool showsScanLines(const PointView& points, const Neighborhoods& nb, int thread
   return static_cast<double>(on_lines) > kMoreThanChance * static_cast<double>(rows.size());
 }
 
-void fitScanPlanes(MoreNeighbors& more, int smallest,
-                   const std::function<void(std::size_t i, const Plane& plane)>& take) {
+void fitScanPlanes(MoreNeighbors& more, int smallest, const ScanPlaneTaker& take) {
   const PointView& points = more.points();
   const FourFloats xyz(points);
   FastVector<Scales<6>::Fits> fits(points.size);
@@ -290,9 +290,9 @@ void fitScanPlanes(MoreNeighbors& more, int smallest,
       const int k = kMany.sizes[s];
       if (static_cast<float>(k) <= kClearly * static_cast<float>(smallest)) continue;
       fitSome(jobOf({at.data(), 4, rows.size()}, xyz, table, k), k, of_scale[s],
-              [&](pcl::index_t i, const Plane& plane) {
+              [&](pcl::index_t i, const GrownPlanes& planes, std::size_t in_block) {
                 const auto row = static_cast<std::size_t>(rows[static_cast<std::size_t>(i)]);
-                if (plane.valid) take(row, plane);
+                if (planes.at(in_block).valid) take(row, planes, in_block);
               });
     }
   });

@@ -8,8 +8,8 @@
 #include <cstddef>
 #include <functional>
 
+#include "features/grown_planes.h"
 #include "features/more_neighbors.h"
-#include "features/sheet_fit.h"
 
 namespace segorient::detail {
 
@@ -29,6 +29,9 @@ bool needsScanScales(const PointView& points, const Neighborhoods& neighborhoods
 /// \param neighborhoods 18 of each point at least
 bool showsScanLines(const PointView& points, const Neighborhoods& neighborhoods, int threads);
 
+/// Takes point i's plane, at [r] of some.
+using ScanPlaneTaker = std::function<void(std::size_t i, const GrownPlanes& planes, std::size_t r)>;
+
 /// Planes at the scale that the noise around each point asks for.
 ///
 /// Noise saturates as neighbourhoods grow, what curvature and edges do goes on growing: of the
@@ -40,7 +43,6 @@ bool showsScanLines(const PointView& points, const Neighborhoods& neighborhoods,
 /// \param take called from several threads for each point whose scale is clearly larger and that
 /// has
 ///        a plane there
-void fitScanPlanes(MoreNeighbors& more, int smallest,
-                   const std::function<void(std::size_t i, const Plane& plane)>& take);
+void fitScanPlanes(MoreNeighbors& more, int smallest, const ScanPlaneTaker& take);
 
 }  // namespace segorient::detail

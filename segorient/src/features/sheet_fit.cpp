@@ -195,40 +195,6 @@ Offsets gatherOffsets(const PointView& points, const Neighborhoods& nb, std::siz
   return o;
 }
 
-AdaptivePlane fitAdaptive(const Offsets& o, int smallest) {
-  // Of the share of variance that the larger neighbourhood leaves. Noise makes that of 18 of 32
-  // neighbours so small for one point in 400, of 12 of 18 for 1 in 50 (beta distribution).
-  constexpr float kClearlyFlatter = 0.6F;
-  constexpr float kFlat = 1e-4F;  // a hundredth of a spacing, squared: nothing is left to gain
-  constexpr int kLargest = static_cast<int>(kSheetScales.size()) - 1;
-  // The scale of 18 neighbours: the two rings around a point of an even grid.
-  constexpr int kCurvature = 2;
-  std::array<Moments, kSheetScales.size()> moments;
-  Moments m;
-  m.addOrigin();
-  std::size_t j = 0;
-  for (std::size_t s = 0; s < kSheetScales.size(); ++s) {
-    for (; j < static_cast<std::size_t>(std::min(kSheetScales[s], o.n)); ++j)
-      m.add(o.x[j], o.y[j], o.z[j]);
-    moments[s] = m;
-  }
-  AdaptivePlane out;
-  out.plane = fitPlane(moments[kLargest]);
-  out.curvature = out.plane.variation();
-  if (out.plane.valid && out.plane.lambda[0] < kFlat) return out;
-  for (int s = kLargest - 1; s >= smallest; --s) {
-    const Plane p = fitPlane(moments[static_cast<std::size_t>(s)]);
-    if (!p.valid) continue;
-    if (s == kCurvature) out.curvature = p.variation();
-    const Plane& best = out.plane;
-    if (!best.valid ||
-        p.lambda[0] * best.lambda[1] < kClearlyFlatter * best.lambda[0] * p.lambda[1]) {
-      out.plane = p;
-    }
-  }
-  return out;
-}
-
 Plane fitDominant(const Offsets& o, const Plane& start, float tolerance) {
   Eigen::Vector3f normal = bestSupported(o, start.normal, tolerance);
   Plane plane;

@@ -80,15 +80,6 @@ SEGORIENT_FEATURES_EXPORT float meanDistance(const PointView& points,
                                              const Neighborhoods& neighborhoods, std::size_t i,
                                              int k);
 
-struct AdaptivePlane {
-  Plane plane;
-  float curvature = 0.F;  ///< variation over 18 neighbours, or 32 where noise hides smaller ones
-};
-
-/// Over neighbourhood sizes from number `smallest` of {8, 12, 18, 32} on: from the largest down,
-/// a smaller one where it is clearly flatter.
-AdaptivePlane fitAdaptive(const Offsets& offsets, int smallest);
-
 /// The plane through the point that most of its neighbours lie on, within `tolerance` spacings;
 /// invalid where none is clearly a plane.
 Plane fitDominant(const Offsets& offsets, const Plane& start, float tolerance);

@@ -3,13 +3,18 @@
 #include "features/sheet_normals.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <memory>
+#include <optional>
 #include <utility>
 
 #include "common/median.h"
 #include "common/threads.h"
+#include "features/grown_planes.h"
+#include "features/local_fit_job.h"
 #include "features/more_neighbors.h"
 #include "features/scan_scale.h"
 #include "features/sheet_fit.h"
@@ -19,7 +24,11 @@ namespace segorient {
 namespace {
 
 using detail::fitPlane;
+using detail::FourFloats;
 using detail::gatherOffsets;
+using detail::GrownPlanes;
+using detail::jobOf;
+using detail::LocalFitJob;
 using detail::Moments;
 using detail::Offsets;
 using detail::Plane;
@@ -97,7 +106,7 @@ constexpr float kFewTellNothing = 0.13F;
 // Noise hides what small neighbourhoods could tell: the first of 8, 12, 18 and 32 that it leaves.
 // In a small neighbourhood a plane tilts by about noise / (2 radius), and these keep that below 15
 // degrees.
-int smallestScale(float noise) {
+std::size_t smallestScale(float noise) {
   if (noise >= 0.31F) return 3;
   if (noise >= 0.24F) return 2;
   return noise >= kFewTellNothing ? 1 : 0;
@@ -107,36 +116,99 @@ struct PointFit {
   Plane plane;
   float curvature = 0.F;
   WallSplit split;
+  bool all_on_it = false;  ///< none of the neighbours is off the plane
 };
 
-PointFit fitPoint(const Offsets& o, int smallest, const NoiseLevel& noise,
+// A hundredth of a spacing, squared: smaller neighbourhoods have nothing to gain, and of 33 points
+// none is as far off the plane as two walls are apart.
+constexpr float kFlat = 1e-4F;
+
+using SheetPlanes = std::array<GrownPlanes, kSheetScales.size()>;
+
+/// One point and its neighbours; lengths in spacings.
+class Neighborhood {
+ public:
+  // \param planes of its sizes, the point's at [r]
+  Neighborhood(const PointView& points, const Neighborhoods& nb, std::size_t i, float spacing,
+               const SheetPlanes& planes, std::size_t r)
+      : points_(points), nb_(nb), i_(i), spacing_(spacing), planes_(planes), r_(r) {}
+
+  const Offsets& offsets() {
+    if (!offsets_) offsets_ = gatherOffsets(points_, nb_, i_, spacing_);
+    return *offsets_;
+  }
+
+  Plane planeOf(std::size_t scale) {
+    if (!planes_[scale].hasNormal(r_)) return planeInDouble(kSheetScales[scale]);
+    return spacing_ > 0.F ? planes_[scale].at(r_, spacing_) : Plane{};
+  }
+
+ private:
+  Plane planeInDouble(int k) {
+    const Offsets& o = offsets();
+    Moments m;
+    m.addOrigin();
+    for (std::size_t j = 0; j < static_cast<std::size_t>(std::min(k, o.n)); ++j)
+      m.add(o.x[j], o.y[j], o.z[j]);
+    return fitPlane(m);
+  }
+
+  const PointView& points_;
+  const Neighborhoods& nb_;
+  std::size_t i_;
+  float spacing_;
+  const SheetPlanes& planes_;
+  std::size_t r_;
+  std::optional<Offsets> offsets_;
+};
+
+// Over neighbourhoods from number `smallest` of kSheetScales on: from the largest down, a smaller
+// one where it is clearly flatter. The curvature is the variation over 18 neighbours, or 32 where
+// noise hides smaller ones.
+PointFit fitAdaptive(Neighborhood& of, std::size_t smallest) {
+  // Of the share of variance that the larger neighbourhood leaves. Noise makes that of 18 of 32
+  // neighbours so small for one point in 400, of 12 of 18 for 1 in 50 (beta distribution).
+  constexpr float kClearlyFlatter = 0.6F;
+  constexpr std::size_t kLargest = kSheetScales.size() - 1;
+  // The scale of 18 neighbours: the two rings around a point of an even grid.
+  constexpr std::size_t kCurvature = 2;
+  PointFit out;
+  out.plane = of.planeOf(kLargest);
+  out.curvature = out.plane.variation();
+  out.all_on_it = out.plane.valid && out.plane.lambda[0] < kFlat;
+  if (out.all_on_it) return out;
+  for (std::size_t s = kLargest; s-- > smallest;) {
+    const Plane p = of.planeOf(s);
+    if (!p.valid) continue;
+    if (s == kCurvature) out.curvature = p.variation();
+    const Plane& best = out.plane;
+    if (!best.valid ||
+        p.lambda[0] * best.lambda[1] < kClearlyFlatter * best.lambda[0] * p.lambda[1]) {
+      out.plane = p;
+    }
+  }
+  return out;
+}
+
+PointFit fitPoint(Neighborhood& of, std::size_t smallest, const NoiseLevel& noise,
                   const SheetNormalOptions& options) {
   // A fit this much worse than the noise spans an edge, a wall or strong curvature. Beyond a third
   // of a spacing, planes through single triples of points are no longer worth comparing.
   constexpr float kMostNoise = 0.33F;
-  PointFit fit;
-  const detail::AdaptivePlane adaptive = detail::fitAdaptive(o, smallest);
-  fit.plane = adaptive.plane;
-  fit.curvature = adaptive.curvature;
-  if (!fit.plane.valid) return fit;
+  PointFit fit = fitAdaptive(of, smallest);
+  if (!fit.plane.valid || fit.all_on_it) return fit;
   if (options.dominant_plane && noise.fine < kMostNoise &&
       std::sqrt(fit.plane.lambda[0]) > 0.03F + 2.F * noise.fine) {
-    const Plane dominant = detail::fitDominant(o, fit.plane, 0.1F + 2.F * noise.fine);
+    const Plane dominant = detail::fitDominant(of.offsets(), fit.plane, 0.1F + 2.F * noise.fine);
     if (dominant.valid) fit.plane = dominant;
   }
   if (options.split_walls) {
-    const OwnWall own = fitOwnWall(o, fit.plane, noise.thin ? kThinWallsApart : kWallsApart);
+    const OwnWall own =
+        fitOwnWall(of.offsets(), fit.plane, noise.thin ? kThinWallsApart : kWallsApart);
     fit.plane = own.plane;
     fit.split = own.split;
   }
   return fit;
-}
-
-PointFit inSpacings(Plane plane, float spacing) {
-  if (!(spacing > 0.F)) return {};
-  plane.lambda /= spacing * spacing;
-  plane.mean /= spacing;
-  return {plane, plane.variation(), {}};
 }
 
 // How far the neighbours' mean lies to one side, in units of their extent: large at borders and
@@ -232,8 +304,8 @@ SheetNormals estimateSheetNormals(const PointView& points, const Neighborhoods& 
       options.known ? options.known->noise : measureNoise(points, nb, options.threads);
   out.traits.noise = noise;
   out.noise = noise.fine;
-  const int smallest = smallestScale(noise.fine);
-  out.scale = kSheetScales[static_cast<std::size_t>(smallest)];
+  const std::size_t smallest = smallestScale(noise.fine);
+  out.scale = kSheetScales[smallest];
 
   std::vector<float> lopsided(n, std::numeric_limits<float>::infinity());
   const int threads = resolveThreads(options.threads, n, 2000.0);
@@ -251,16 +323,34 @@ SheetNormals estimateSheetNormals(const PointView& points, const Neighborhoods& 
     done.resize(n);
     detail::MoreNeighbors own(points, options.threads);
     detail::fitScanPlanes(more != nullptr ? *more : own, out.scale,
-                          [&](std::size_t i, const Plane& plane) {
-                            store(inSpacings(plane, out.spacing[i]), i, out, lopsided);
+                          [&](std::size_t i, const GrownPlanes& planes, std::size_t r) {
+                            const Plane p = planes.at(r, out.spacing[i]);
+                            store({p, p.variation(), {}, false}, i, out, lopsided);
                             done[i] = 1;
                           });
   }
-#pragma omp parallel for num_threads(threads) schedule(dynamic, 1024)
-  for (std::size_t i = 0; i < n; ++i) {
-    if (!done.empty() && done[i] != 0) continue;
-    const Offsets o = gatherOffsets(points, nb, i, out.spacing[i]);
-    store(fitPoint(o, smallest, noise, options), i, out, lopsided);
+  const FourFloats xyz(points);
+  LocalFitJob all = jobOf(points, xyz, nb, kSheetNeighbors);
+  all.same_points = true;
+#pragma omp parallel num_threads(threads)
+  {
+    LocalFitJob job = all;
+    std::vector<pcl::index_t> rows;
+    const auto planes = std::make_unique<SheetPlanes>();
+#pragma omp for schedule(dynamic, 4)
+    for (std::size_t begin = 0; begin < n; begin += GrownPlanes::kRows) {
+      rows.clear();
+      for (std::size_t i = begin; i < std::min(n, begin + GrownPlanes::kRows); ++i) {
+        if (done.empty() || done[i] == 0) rows.push_back(static_cast<pcl::index_t>(i));
+      }
+      job.rows = rows.data();
+      fitGrownPlanes(job, kSheetScales.data(), kSheetScales.size(), 0, rows.size(), planes->data());
+      for (std::size_t r = 0; r < rows.size(); ++r) {
+        const auto i = static_cast<std::size_t>(rows[r]);
+        Neighborhood of(points, nb, i, out.spacing[i], *planes, r);
+        store(fitPoint(of, smallest, noise, options), i, out, lopsided);
+      }
+    }
   }
   out.residual = options.known ? options.known->residual : medianResidual(out);
   out.traits.residual = out.residual;
