@@ -74,7 +74,12 @@ struct SheetNormals {
 
 namespace detail {
 class MoreNeighbors;
-}
+
+/// From here on, noise hides what the smallest neighbourhoods could tell. A plane leaves .13 of
+/// eight neighbours and the point with noise of s = .17, which tilts it by sqrt(2) s / (3 * .75),
+/// .75 being their extent along an axis: by 6 degrees, and by 15 in 2.5 standard deviations.
+constexpr float kFewTellNothing = 0.13F;
+}  // namespace detail
 
 /// Estimates sheet normals.
 ///

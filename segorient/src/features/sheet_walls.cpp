@@ -75,4 +75,18 @@ Plane fitWithin(const Offsets& o, const Eigen::Vector3f& normal, const WallSplit
   return fitPlane(m);
 }
 
+OwnWall fitOwnWall(const Offsets& o, const Plane& start, float most_apart) {
+  OwnWall own{start, {}};
+  for (int round = 0; round < 2; ++round) {
+    own.split = splitWalls(o, own.plane.normal, most_apart);
+    if (!own.split.found) break;
+    Plane refined = fitWithin(o, own.plane.normal, own.split);
+    if (!refined.valid) break;
+    // What is above stays above.
+    if (refined.normal.dot(own.plane.normal) < 0.F) refined.normal = -refined.normal;
+    own.plane = refined;
+  }
+  return own;
+}
+
 }  // namespace segorient::detail

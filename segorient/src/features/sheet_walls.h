@@ -20,4 +20,19 @@ struct WallSplit {
 WallSplit splitWalls(const Offsets& offsets, const Eigen::Vector3f& normal, float most_apart);
 Plane fitWithin(const Offsets& offsets, const Eigen::Vector3f& normal, const WallSplit& split);
 
+/// Walls farther apart than that are told apart by their offset alone, and what else looks like two
+/// classes at such a distance (clutter, a narrow bore) need not be walls.
+constexpr float kWallsApart = 1.25F;
+/// In thin clouds, where noise takes a point as far from its own wall: of walls farther apart, 32
+/// neighbours hardly reach the other one.
+constexpr float kThinWallsApart = 2.F;
+
+/// The point's own wall.
+struct OwnWall {
+  Plane plane;
+  WallSplit split;
+};
+/// From a plane over all neighbours, the one over those of the point's own wall.
+OwnWall fitOwnWall(const Offsets& offsets, const Plane& start, float most_apart);
+
 }  // namespace segorient::detail

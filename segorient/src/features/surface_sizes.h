@@ -16,6 +16,10 @@ constexpr int kTriangulationNeighbors = 10;
 /// The fewest that leave as much freedom (3) as quadratic surfaces of kNoiseNeighbors do.
 constexpr int kCubicNeighbors = 12;
 
+/// Near edges, where a plane fits a few neighbours as well as noise lets it, they are all on one
+/// side.
+constexpr int kPlaneNeighbors = 6;
+
 /// Whether noise leaves nothing to gain by more than the fewest neighbours.
 bool isClean(double noise);
 

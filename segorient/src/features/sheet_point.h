@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the segorient authors
+#pragma once
+
+#include <segorient/common/neighborhoods.h>
+#include <segorient/common/point_view.h>
+
+#include <array>
+#include <cstddef>
+#include <optional>
+
+#include "features/grown_planes.h"
+#include "features/sheet_fit.h"
+#include "features/sheet_normals.h"
+#include "features/sheet_walls.h"
+
+namespace segorient::detail {
+
+/// The plane of a point's sheet; lengths in spacings.
+struct PointFit {
+  Plane plane;
+  float curvature = 0.F;
+  WallSplit split;
+  bool all_on_it = false;  ///< none of the neighbours is off the plane
+};
+
+/// Of the sizes of kSheetScales.
+using SheetPlanes = std::array<GrownPlanes, kSheetScales.size()>;
+
+/// One point and its neighbours; lengths in spacings.
+class Neighborhood {
+ public:
+  /// \param planes the point's at [r]
+  Neighborhood(const PointView& points, const Neighborhoods& nb, std::size_t i, float spacing,
+               const SheetPlanes& planes, std::size_t r)
+      : points_(points), nb_(nb), i_(i), spacing_(spacing), planes_(planes), r_(r) {}
+
+  const Offsets& offsets();
+  Plane planeOf(std::size_t scale);
+
+ private:
+  Plane planeInDouble(int k);
+
+  const PointView& points_;
+  const Neighborhoods& nb_;
+  std::size_t i_;
+  float spacing_;
+  const SheetPlanes& planes_;
+  std::size_t r_;
+  std::optional<Offsets> offsets_;
+};
+
+/// See estimateSheetNormals().
+/// \param smallest number of the smallest of kSheetScales that noise leaves
+PointFit fitPoint(Neighborhood& of, std::size_t smallest, const NoiseLevel& noise,
+                  const SheetNormalOptions& options);
+
+}  // namespace segorient::detail

@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the segorient authors
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "features/automatic_normals.h"
+#include "features/cloud_noise.h"
+
+namespace segorient::detail {
+
+/// Cubic surfaces at what no quadratic one fits.
+struct EdgeCubics {
+  int k = 0;  ///< neighbours; 0 where there are no such surfaces
+  std::vector<pcl::index_t> rows;
+  std::vector<float> normals;  ///< 4 a row
+  std::size_t nearer = 0;      ///< of the rows: they are clearly nearer than quadratic ones
+
+  /// Takes them, if they fit most of the rows better.
+  /// \param all 4 floats a point
+  void takeIfBetter(const AutomaticNormalTraits* known, float* all,
+                    AutomaticNormalReport& report) const;
+};
+
+/// Normals without a choice to make, see estimateNormalsAutomatically(), step by step: each leaves
+/// fewer points open.
+class SurfaceEstimation {
+ public:
+  /// \param normals 4 floats for each row of the table
+  /// \param rows of the table; null = all
+  SurfaceEstimation(const Surroundings& surroundings, const CloudNoise& noise,
+                    const AutomaticNormalTraits* known, int threads, float* normals,
+                    const std::vector<pcl::index_t>* rows);
+
+  AutomaticNormalReport run(std::vector<pcl::index_t>* unexplained);
+  /// The first steps of a cloud whose few neighbours tell little, of a part of it.
+  AutomaticNormalReport runPart(EdgeCubics& cubics);
+
+ private:
+  int available() const { return of_.table.k() - 1; }
+  float* normalOf(pcl::index_t row) const { return normals_ + 4 * static_cast<std::size_t>(row); }
+
+  template <typename Condition>
+  std::size_t close(const Condition& condition);
+  template <typename Residual>
+  std::size_t closeExplained(int freedom, const Residual& residual);
+  template <typename Residual>
+  std::size_t countCubic(const std::vector<pcl::index_t>& rows, const Residual& cubic,
+                         double share) const;
+  void takeQuadratics();
+  void keepEdges();
+  bool isAnalytic();
+  void takeCubics();
+  void takePlanes();
+  void triangulate();
+  EdgeCubics cubicsAtEdges();
+  void countUndefined();
+
+  const Surroundings of_;
+  const AutomaticNormalTraits* known_;
+  double noise_;
+  double in_spacings_;
+  int threads_;
+  float* normals_;
+  AutomaticNormalReport report_;
+  std::vector<pcl::index_t> rows_;
+  std::vector<pcl::index_t> open_;
+  Surfaces quadratics_;
+};
+
+}  // namespace segorient::detail
