@@ -317,6 +317,50 @@ TEST(NoiseField, MendsOnlyNormalsThatAreFarOff) {
   }
 }
 
+// A sheet whose field falls the other way in its middle. Where only that middle can be looked at,
+// nothing there shows that to turn it would tear the sheet.
+TEST(NoiseField, APartOfTheCloudTearsNoSheetThatTheWholeKeeps) {
+  constexpr int kSide = 40;
+  std::vector<float> xyz;
+  detail::NoiseField field;
+  detail::AutoNormals whole;
+  std::vector<std::size_t> middle;
+  for (int i = 0; i < kSide * kSide; ++i) {
+    const auto x = static_cast<float>(i % kSide);
+    const auto y = static_cast<float>(i / kSide);
+    xyz.insert(xyz.end(), {x, y, 0.F, 0.F});
+    const bool inner = std::hypot(x - 20.F, y - 20.F) < 10.F;
+    field.dipoles.insert(field.dipoles.end(), {0.F, 0.F, inner ? -1.F : 1.F, 1.F});
+    whole.normals.insert(whole.normals.end(), {0.F, 0.F, 1.F, 0.F});
+    if (std::hypot(x - 20.F, y - 20.F) < 7.F) middle.push_back(static_cast<std::size_t>(i));
+  }
+  field.places = xyz;
+  field.radius = 1.5F;
+  field.factor = 1.F;
+  field.consistent = true;
+  whole.confidences.assign(field.places.size() / 4, 1.F);
+  std::vector<float> part_xyz;
+  detail::AutoNormals part;
+  for (const std::size_t i : middle) {
+    part_xyz.insert(part_xyz.end(), &xyz[4 * i], &xyz[4 * i] + 4);
+    part.normals.insert(part.normals.end(), {0.F, 0.F, 1.F, 0.F});
+    part.confidences.push_back(1.F);
+  }
+  const auto turned = [](const detail::AutoNormals& found) {
+    std::size_t count = 0;
+    for (std::size_t i = 2; i < found.normals.size(); i += 4) count += found.normals[i] < 0.F;
+    return count;
+  };
+  detail::AutoNormals alone = part;
+  detail::takeNoiseField(viewOf(part_xyz), neighborsOf(part_xyz, 8), field, 1, alone);
+  EXPECT_EQ(turned(alone), middle.size());
+  detail::findWhatSheetsKeep(viewOf(xyz), neighborsOf(xyz, 8), whole.normals, 1, field);
+  detail::takeNoiseField(viewOf(part_xyz), neighborsOf(part_xyz, 8), field, 1, part);
+  EXPECT_EQ(turned(part), 0U);
+  detail::takeNoiseField(viewOf(xyz), neighborsOf(xyz, 8), field, 1, whole);
+  EXPECT_EQ(turned(whole), 0U);
+}
+
 std::ptrdiff_t countSure(const Noisy& cloud) {
   const OrientedCloud found = orientCloud(viewOf(cloud.xyz), nullptr, PipelineOptions{});
   return std::count_if(found.confidences.begin(), found.confidences.end(),

@@ -172,6 +172,32 @@ TEST(Tiles, NormalsInNoiseAreThoseOfTheWhole) {
   EXPECT_GT(same, 11900U);
 }
 
+// Two and a half turns, six spacings apart, in noise of .7: the field of all points wants the
+// inmost turn the other way, which would tear the sheet where only some tiles see it.
+TEST(Tiles, ARollInNoiseStaysOneSheet) {
+  const ScratchDirectory scratch;
+  std::mt19937 random(1);
+  std::uniform_real_distribution<double> uniform(0.0, 1.0);
+  std::normal_distribution<double> gauss;
+  constexpr std::size_t kPoints = 12000;
+  const double spacing = std::sqrt(12.0 / kPoints);
+  const double growth = 6.0 * spacing / (2.0 * M_PI);
+  const auto radius = [&](double turn) { return 0.35 + growth * turn; };
+  std::vector<double> xyz;
+  while (xyz.size() < 3 * kPoints) {
+    const double t = 5.0 * M_PI * uniform(random);
+    if (uniform(random) * radius(5.0 * M_PI) > radius(t)) continue;  // even over the sheet
+    const double p[3] = {radius(t) * std::cos(t), radius(t) * std::sin(t), 1.5 * uniform(random)};
+    for (const double x : p) xyz.push_back(x + 0.7 * spacing * gauss(random));
+  }
+  const std::string in = writeDoubles(scratch.file("in.ply"), xyz);
+  const std::string whole = scratch.file("whole.ply");
+  const std::string tiled = scratch.file("tiled.ply");
+  expectRuns({"orient", in, whole, "-q"});
+  expectRuns({"orient", in, tiled, "-q", "--memory", "1G", "--tile-points", "3000"});
+  EXPECT_GE(sameSides(whole, tiled), kPoints - kPoints / 1000);
+}
+
 TEST(Tiles, WhatDoesNotGoWithTilesIsWrongUsage) {
   const ScratchDirectory scratch;
   const std::string out = scratch.file("out.ply");

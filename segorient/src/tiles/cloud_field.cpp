@@ -42,6 +42,7 @@ void takeNoise(const PointView& points, const Neighborhoods& neighborhoods, floa
   for (const FieldCell& cell : field.cells) {
     for (const float x : cell.vector) noise.dipoles.push_back(x / (unit * unit));
     noise.dipoles.push_back(cell.value / (unit * unit));
+    noise.keeps.push_back(cell.keeps != 0 ? 1 : 0);
   }
   noise.radius = field.radius / unit;
   noise.averaged_below = field.averaged_below;
@@ -64,7 +65,8 @@ void takeSigns(const PointView& points, float unit, const CloudField& field, int
 
 }  // namespace
 
-CloudField findNoise(const PointView& places, const std::vector<float>& normals, int threads) {
+CloudField findNoise(const PointView& places, const std::vector<float>& normals, bool consistent,
+                     int threads) {
   PreparedCloud cloud(places, nullptr, threads);
   cloud.findNeighbors(kRing, false);
   std::vector<float> of_points;
@@ -72,8 +74,9 @@ CloudField findNoise(const PointView& places, const std::vector<float>& normals,
     const float* n = &normals[4 * cloud.rowOf(i)];
     of_points.insert(of_points.end(), n, n + 4);
   }
-  const NoiseField noise =
-      findNoiseField(cloud.points(), cloud.neighborhoods(), of_points, threads);
+  NoiseField noise = findNoiseField(cloud.points(), cloud.neighborhoods(), of_points, threads);
+  noise.consistent = consistent;
+  findWhatSheetsKeep(cloud.points(), cloud.neighborhoods(), of_points, threads, noise);
   CloudField out;
   if (noise.empty()) return out;
   const float unit = cloud.unit();
@@ -82,6 +85,7 @@ CloudField findNoise(const PointView& places, const std::vector<float>& normals,
   addCells(noise.places, unit, noise.dipoles, unit * unit, out);
   for (std::size_t c = 0; c < out.cells.size(); ++c) {
     out.cells[c].value = unit * unit * noise.dipoles[4 * c + 3];
+    if (!noise.keeps.empty()) out.cells[c].keeps = noise.keeps[c];
   }
   return out;
 }

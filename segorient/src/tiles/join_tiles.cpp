@@ -142,8 +142,8 @@ CloudField TileJoiner::Impl::findField(const AutoOrientation& orientation, const
     for (const float n : p.normal) of_rows.push_back(sign * n);
     of_rows.push_back(0.F);
   }
-  CloudField out =
-      detail::findNoise({places.data(), 3, field_points.size()}, of_rows, options.threads);
+  CloudField out = detail::findNoise({places.data(), 3, field_points.size()}, of_rows,
+                                     options.traits.consistent != 0, options.threads);
   // Means of several points do not tell directions.
   if (options.patch_points == 1)
     out.averaged_below = options.traits.noisy != 0 ? 1.F : detail::kAcross;

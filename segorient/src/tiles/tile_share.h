@@ -32,6 +32,8 @@ struct TileTraits {
   std::uint8_t cubic_edges = 0;  ///< whether cubic surfaces fit edges better
   std::uint8_t level_thin = 0;   ///< `thin` of the level
   std::uint8_t noisy = 0;        ///< whether borders tell too little of which way sheets go on
+  std::uint8_t consistent = 0;   ///< see NoiseField
+  std::uint8_t unused[3] = {};   ///< no hidden bytes: traits are stored as they are
   float surface_noise = 0.F;     ///< standard deviation, in the points' unit
   float surface_ratio = 0.F;     ///< the same, in spacings
 
@@ -146,6 +148,7 @@ struct FieldCell {
   float position[3] = {0.F, 0.F, 0.F};
   float vector[3] = {0.F, 0.F, 0.F};  ///< in noise the normal times the area, else the normal
   float value = 0.F;                  ///< in noise the area, else the sign that points take
+  std::uint32_t keeps = 0;            ///< in noise: see NoiseField
 };
 
 /// What the field of all points tells where borders do not know: an even subset of the whole cloud.

@@ -89,7 +89,62 @@ bool hidesTwoSides(const PointView& points, const Neighborhoods& table,
   return squares > 0.0 && count * fourths / (squares * squares) - 3.0 < kTwoSides;
 }
 
+// What the field says of points.
+struct FieldSides {
+  std::vector<float> falls;           ///< 4 floats a point: how it falls
+  std::vector<std::uint8_t> against;  ///< whether it falls the other way than the normal
+
+  FieldSides(const PointView& points, const NoiseField& field, const std::vector<float>& normals,
+             int threads)
+      : against(points.size, 0) {
+    const PointView places{field.places.data(), 4, field.places.size() / 4};
+    falls = steepestDescents(points, {places, field.dipoles}, field.radius, threads);
+    for (std::size_t i = 0; i < points.size; ++i) {
+      against[i] = dot(&normals[4 * i], &falls[4 * i]) < 0.F ? 1 : 0;
+    }
+  }
+};
+
+// The nearest cell of each point.
+std::vector<std::uint32_t> cellsOf(const PointView& points, const NoiseField& field, int threads) {
+  EvenCells cells;
+  cells.places = field.places;
+  assignCells(points, threads, cells);
+  return std::move(cells.cell_of);
+}
+
+// Of the points that the field is against, those that are to be turned.
+std::vector<std::uint8_t> pointsToTurn(const PointView& points, const Neighborhoods& neighborhoods,
+                                       const NoiseField& field, const std::vector<float>& normals,
+                                       const std::vector<std::uint8_t>& against, int threads) {
+  std::vector<std::uint8_t> turned = against;
+  if (!field.consistent) return turned;
+  if (field.keeps.empty()) {
+    keepSheetsWhole(neighborhoods, normals, turned);
+    return turned;
+  }
+  const std::vector<std::uint32_t> cells = cellsOf(points, field, threads);
+  for (std::size_t i = 0; i < turned.size(); ++i) {
+    if (field.keeps[cells[i]] != 0) turned[i] = 0;
+  }
+  return turned;
+}
+
 }  // namespace
+
+void findWhatSheetsKeep(const PointView& points, const Neighborhoods& neighborhoods,
+                        const std::vector<float>& normals, int threads, NoiseField& field) {
+  if (field.empty() || !field.consistent) return;
+  const std::vector<std::uint8_t> against = FieldSides(points, field, normals, threads).against;
+  std::vector<std::uint8_t> turned = against;
+  keepSheetsWhole(neighborhoods, normals, turned);
+  const std::vector<std::uint32_t> cells = cellsOf(points, field, threads);
+  std::vector<int> balance(field.places.size() / 4, 0);
+  for (std::size_t i = 0; i < against.size(); ++i) {
+    if (against[i] != 0) balance[cells[i]] += turned[i] != 0 ? -1 : 1;
+  }
+  for (const int b : balance) field.keeps.push_back(b > 0 ? 1 : 0);
+}
 
 NoiseField findNoiseField(const PointView& points, const Neighborhoods& neighborhoods,
                           const std::vector<float>& normals, int threads) {
@@ -136,24 +191,18 @@ void takeNoiseField(const PointView& points, const Neighborhoods& neighborhoods,
   // in 1,000 was wrong.
   constexpr float kSteep = 1.25F;
   if (field.empty()) return;
-  const PointView places{field.places.data(), 4, field.places.size() / 4};
-  const std::vector<float> falls =
-      steepestDescents(points, {places, field.dipoles}, field.radius, threads);
-  std::vector<std::uint8_t> against(points.size, 0);
-  for (std::size_t i = 0; i < points.size; ++i) {
-    against[i] = dot(&found.normals[4 * i], &falls[4 * i]) < 0.F ? 1 : 0;
-  }
-  std::vector<std::uint8_t> turned = against;
-  if (field.consistent) keepSheetsWhole(neighborhoods, found.normals, turned);
+  const FieldSides sides(points, field, found.normals, threads);
+  const std::vector<std::uint8_t> turned =
+      pointsToTurn(points, neighborhoods, field, found.normals, sides.against, threads);
   for (std::size_t i = 0; i < points.size; ++i) {
     float* n = &found.normals[4 * i];
     float& confidence = found.confidences[i];
-    const float* g = &falls[4 * i];
+    const float* g = &sides.falls[4 * i];
     const float length = std::sqrt(dot(g, g));
     if (isFinite(n) && length > 0.F && std::isfinite(length)) {
       const float sign = turned[i] != 0 ? -1.F : 1.F;
       const bool averaged =
-          turned[i] == against[i] && sign * dot(n, g) < field.averaged_below * length;
+          turned[i] == sides.against[i] && sign * dot(n, g) < field.averaged_below * length;
       float sum[3];
       for (std::size_t a = 0; a < 3; ++a) {
         sum[a] = sign * n[a] + (averaged ? g[a] / length : 0.F);

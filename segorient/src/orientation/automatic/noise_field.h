@@ -6,6 +6,7 @@
 #include <segorient/common/neighborhoods.h>
 #include <segorient/common/point_view.h>
 
+#include <cstdint>
 #include <vector>
 
 #include "orientation/automatic/orient_points.h"
@@ -28,6 +29,9 @@ struct NoiseField {
   /// Cosine below which normals are averaged with the field's direction: all of them, unless it is
   /// coarser than what the points themselves tell; with 0 it tells only their sides.
   float averaged_below = 1.F;
+  /// Where only parts of the cloud can be looked at: one a cell, whether to turn its points would
+  /// tear a sheet. Else empty.
+  std::vector<std::uint8_t> keeps;
 
   bool empty() const { return places.empty(); }
 };
@@ -43,6 +47,13 @@ SEGORIENT_ORIENTATION_EXPORT NoiseField findNoiseField(const PointView& points,
                                                        const Neighborhoods& neighborhoods,
                                                        const std::vector<float>& normals,
                                                        int threads);
+
+/// Finds NoiseField::keeps, for parts of the cloud that see only parts of what would be turned.
+/// \param points those of the field \param normals those that it was found with
+SEGORIENT_ORIENTATION_EXPORT void findWhatSheetsKeep(const PointView& points,
+                                                     const Neighborhoods& neighborhoods,
+                                                     const std::vector<float>& normals, int threads,
+                                                     NoiseField& field);
 
 /// Each point's normal is averaged with the direction of the field where the point was measured,
 /// and turned over where that falls the other way. Where only the field says so, it tears no sheet:

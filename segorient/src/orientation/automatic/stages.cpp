@@ -121,6 +121,7 @@ AutoStages runAutoStages(PreparedCloud& cloud, const PipelineOptions& options,
       NoiseField field =
           findNoiseField(cloud.points(), cloud.neighborhoods(), oriented.normals, options.threads);
       if (!noisy) field.averaged_below = kAcross;
+      out.consistent = field.consistent;
       takeNoiseField(cloud.points(), cloud.neighborhoods(), field, options.threads, oriented);
     } else if (oriented.orientation.toward.empty()) {
       takeCellSigns(points,

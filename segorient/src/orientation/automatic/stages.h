@@ -28,6 +28,7 @@ struct AutoStages {
   float spacing = 0.F;              ///< median
   float noise = 0.F;                ///< see NoiseLevel::fine
   bool denoised = false;            ///< whether positions were smoothed first
+  bool consistent = false;          ///< see NoiseField
   float level = 0.F;                ///< see AutoNormals::level
   std::vector<ScaleEnergy> scales;  ///< see PipelineReport
   SheetTraits sheets;               ///< of the cloud, as measured or as told
