@@ -33,7 +33,6 @@ constexpr int kVoters = 3 * static_cast<int>(kAround);
 using Rows = std::vector<pcl::index_t>;
 
 // ns a point, see resolveThreads().
-constexpr double kVoteTime = 500.0;
 constexpr double kFitTime = 100.0;
 
 // Neighbourhoods of growing size, and their planes.

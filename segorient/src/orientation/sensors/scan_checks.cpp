@@ -70,21 +70,24 @@ struct Scan::Row {
 
 Scan::Scan(const PointView& points, const std::vector<std::uint32_t>& rows,
            const std::array<float, 3>& sensor, const Neighborhoods* neighborhoods, int threads)
-    : xyz_(4 * rows.size(), 0.F), threads_(threads) {
-  Box box;
-  for (std::size_t i = 0; i < rows.size(); ++i) {
-    std::copy_n(points[rows[i]], 3, &xyz_[4 * i]);
-    box.add(&xyz_[4 * i]);
+    : view_(points), threads_(threads) {
+  const bool all = rows.size() == points.size;
+  if (!all) {
+    xyz_.assign(4 * rows.size(), 0.F);
+    for (std::size_t i = 0; i < rows.size(); ++i) std::copy_n(points[rows[i]], 3, &xyz_[4 * i]);
+    view_ = {xyz_.data(), 4, rows.size()};
   }
+  Box box;
+  for (std::size_t i = 0; i < view_.size; ++i) box.add(view_[i]);
   if (!rows.empty()) extent_ = box.diagonal();
-  seen_ = seeFrom(sensor, view());
-  if (neighborhoods != nullptr && rows.size() == points.size && neighborhoods->k() > kPlane) {
+  seen_ = seeFrom(sensor, view_, threads);
+  if (all && neighborhoods != nullptr && neighborhoods->k() > kPlane) {
     near_ = neighborhoods;
     return;
   }
   search::MedianHashIndex::Options options;
   options.threads = threads;
-  index_.build(view(), nullptr, options);
+  index_.build(view_, nullptr, options);
 }
 
 void Scan::nearest(std::size_t i, int entries, Row& out) const {
@@ -95,14 +98,14 @@ void Scan::nearest(std::size_t i, int entries, Row& out) const {
   }
   std::array<float, kPlane + 1> squares;
   out.indices = out.room.data();
-  out.count = index_.nearestK(view()[i], entries, out.room.data(), squares.data(), 0.F);
+  out.count = index_.nearestK(view_[i], entries, out.room.data(), squares.data(), 0.F);
 }
 
 float Scan::spacingOf(std::size_t i) const {
   if (!spacing_.empty()) return spacing_[i];
   Row row;
   nearest(i, kSpacing + 1, row);
-  return meanDistance(view(), i, row.indices + 1, row.count - 1);
+  return meanDistance(view_, i, row.indices + 1, row.count - 1);
 }
 
 std::size_t Scan::stride() const {
@@ -137,7 +140,7 @@ bool Scan::isHidden(std::size_t i, const search::MedianHashIndex& directions) co
   constexpr float kLeast = 0.15F;  // a surface that is seen at less rises by many spacings
   Row row;
   nearest(i, kPlane + 1, row);
-  const Plane plane = planeOf(view(), i, row.indices, row.count);
+  const Plane plane = planeOf(view_, i, row.indices, row.count);
   const float incidence =
       plane.valid ? std::fabs(dot(plane.normal.data(), &seen_.direction[4 * i])) : 1.F;
   // Four spacings before it, along the surface, and a thirtieth of its distance, or of the extent
@@ -184,10 +187,10 @@ Scan::Density Scan::density() const {
   Row row;
   for (std::size_t i = 0; i < size(); i += step) {
     nearest(i, kPlane + 1, row);
-    const Plane plane = planeOf(view(), i, row.indices, row.count);
+    const Plane plane = planeOf(view_, i, row.indices, row.count);
     const Eigen::Vector3f& l = plane.lambda;
     const float spacing =
-        meanDistance(view(), i, row.indices + 1, std::min(row.count - 1, kSpacing));
+        meanDistance(view_, i, row.indices + 1, std::min(row.count - 1, kSpacing));
     if (!plane.valid || !(l[0] < kFlat * l[1]) || !(l[1] > kWide * l[2])) continue;
     if (!(seen_.distance[i] > 0.F) || !(spacing > 0.F)) continue;
     const float* u = &seen_.direction[4 * i];

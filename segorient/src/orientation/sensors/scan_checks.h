@@ -19,9 +19,9 @@ namespace segorient::detail {
 /// Points that one sensor is said to have seen. Neighbours are those among themselves.
 class Scan {
  public:
-  /// \param rows of the points
-  /// \param neighborhoods of the points, which must outlive this if all of them are the sensor's;
-  ///        null = none are known
+  /// \param points must outlive this if all of them are the sensor's, as must their neighborhoods
+  /// \param rows of the points, ascending
+  /// \param neighborhoods of the points; null = none are known
   Scan(const PointView& points, const std::vector<std::uint32_t>& rows,
        const std::array<float, 3>& sensor, const Neighborhoods* neighborhoods, int threads);
   Scan(const Scan&) = delete;
@@ -49,12 +49,12 @@ class Scan {
  private:
   struct Row;
 
-  PointView view() const { return {xyz_.data(), 4, xyz_.size() / 4}; }
   void nearest(std::size_t i, int entries, Row& out) const;
   float spacingOf(std::size_t i) const;
   bool isHidden(std::size_t i, const search::MedianHashIndex& directions) const;
 
-  std::vector<float> xyz_;  ///< 4 floats
+  std::vector<float> xyz_;  ///< 4 floats; empty where all points are the sensor's
+  PointView view_;
   SeenFrom seen_;
   float extent_ = 0.F;  ///< diagonal of its box
   search::MedianHashIndex index_;

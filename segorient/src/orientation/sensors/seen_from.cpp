@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "common/threads.h"
+
 namespace segorient::detail {
 
 search::MedianHashIndex SeenFrom::index(int threads) const {
@@ -15,10 +17,13 @@ search::MedianHashIndex SeenFrom::index(int threads) const {
   return out;
 }
 
-SeenFrom seeFrom(const std::array<float, 3>& place, const PointView& points) {
+SeenFrom seeFrom(const std::array<float, 3>& place, const PointView& points, int threads) {
+  constexpr double kPointTime = 20.0;  // ns, see resolveThreads()
   SeenFrom out;
   out.direction.assign(4 * points.size, 0.F);
   out.distance.assign(points.size, 0.F);
+  const int t = resolveThreads(threads, points.size, kPointTime);
+#pragma omp parallel for schedule(static) num_threads(t)
   for (std::size_t i = 0; i < points.size; ++i) {
     double v[3];
     double square = 0.0;

@@ -22,6 +22,7 @@ struct SeenFrom {
   search::MedianHashIndex index(int threads) const;
 };
 
-SeenFrom seeFrom(const std::array<float, 3>& place, const PointView& points);
+/// \param threads see resolveThreads()
+SeenFrom seeFrom(const std::array<float, 3>& place, const PointView& points, int threads);
 
 }  // namespace segorient::detail

@@ -104,13 +104,13 @@ class ShadowSearch {
 
   // Of the least ball around the middle that holds the points.
   bool isOutside(const Place& place, const Place& middle) const {
-    const SeenFrom seen = seeFrom(middle, view());
-    const SeenFrom it = seeFrom(middle, {place.data(), 3, 1});
+    const SeenFrom seen = seeFrom(middle, view(), threads_);
+    const SeenFrom it = seeFrom(middle, {place.data(), 3, 1}, 1);
     return it.distance[0] > *std::max_element(seen.distance.begin(), seen.distance.end());
   }
 
   Shadows lookFrom(const Place& place, float least_open) {
-    seen_ = seeFrom(place, view());
+    seen_ = seeFrom(place, view(), threads_);
     directions_ = seen_.index(threads_);
     Shadows out;
     out.open = openShare();
