@@ -146,7 +146,8 @@ constexpr float kWide = 0.2F;  // some three spacings
 TEST(FieldSolver, FindsTheOutsideFromNothing) {
   const Samples s = sphere(2000, 1);
   const FieldSolver solver(s.view(), s.table, s.areas, kWide, 1);
-  const std::vector<float> found = solver.solve(std::vector<float>(4 * s.areas.size(), 0.F), 0.1F);
+  const std::vector<float> found = solver.solve(std::vector<float>(4 * s.areas.size(), 0.F),
+                                                std::vector<float>(s.areas.size(), 0.1F));
   for (std::size_t i = 0; i < s.areas.size(); ++i) {
     EXPECT_GT(at(s.view(), i).dot(Eigen::Map<const Eigen::Vector3f>(&found[4 * i]).cast<double>()),
               0.9);
@@ -170,9 +171,33 @@ TEST(FieldSolver, PatchThatContradictsTheRestGivesWay) {
   };
   for (int before = wrong(), round = 0; before > 0; before = wrong()) {
     ASSERT_LT(++round, 5);
-    normals = solver.solve(normals, 2 * solver.fit(normals).spread);
+    const std::vector<float> weights(s.areas.size(), 2 * solver.fit(normals).spread);
+    normals = solver.solve(normals, weights);
     ASSERT_LT(wrong(), before);
   }
+}
+
+// How many normals of a sphere point inward after a solution, of those of a cap that do before.
+int wrongOfCap(const Samples& s, float weight_of_cap) {
+  std::vector<float> normals = s.normals;
+  std::vector<float> weights(s.areas.size(), 1.F);
+  for (std::size_t i = 0; i < s.areas.size(); ++i) {
+    if (s.places[4 * i] < 0.93F) continue;
+    for (std::size_t a = 0; a < 3; ++a) normals[4 * i + a] = -normals[4 * i + a];
+    weights[i] = weight_of_cap;
+  }
+  normals = FieldSolver(s.view(), s.table, s.areas, kWide, 1).solve(normals, weights);
+  int count = 0;
+  for (std::size_t i = 0; i < s.areas.size(); ++i) {
+    count += dot(&normals[4 * i], &s.normals[4 * i]) > 0.F ? 0 : 1;
+  }
+  return count;
+}
+
+TEST(FieldSolver, EvidenceOfLittleWeightGivesWay) {
+  const Samples s = sphere(2000, 6);
+  EXPECT_GT(wrongOfCap(s, 1.F), 5);
+  EXPECT_EQ(wrongOfCap(s, 0.01F), 0);
 }
 
 TEST(FieldSolver, FitIsBestForTheTruthWhateverTheAreas) {

@@ -41,6 +41,31 @@ float medianSpacing(const PointView& points, const Neighborhoods& table) {
   return median(std::move(values));
 }
 
+// Of each cell, how much the signs of its normals are to be believed. One that is right with
+// (1 + c) / 2 is c times itself in the mean, with the square of which it counts.
+// \param wanted mean, by area
+std::vector<float> trustOf(const EvenCells& cells, const std::vector<float>& confidences,
+                           float wanted) {
+  std::vector<float> sums(cells.size(), 0.F);
+  std::vector<float> counts(cells.size(), 0.F);
+  for (std::size_t i = 0; i < confidences.size(); ++i) {
+    sums[cells.cell_of[i]] += confidences[i];
+    counts[cells.cell_of[i]] += 1.F;
+  }
+  double area = 0.0;
+  double trust = 0.0;
+  for (std::size_t c = 0; c < sums.size(); ++c) {
+    const float mean = counts[c] > 0.F ? sums[c] / counts[c] : 1.F;
+    sums[c] = mean * mean;
+    area += static_cast<double>(cells.areas[c]);
+    trust += static_cast<double>(cells.areas[c] * sums[c]);
+  }
+  if (!(trust > 0.0)) return std::vector<float>(cells.size(), wanted);
+  const double factor = static_cast<double>(wanted) * area / trust;
+  for (float& v : sums) v = static_cast<float>(factor * static_cast<double>(v));
+  return sums;
+}
+
 // How far a point is off the mean of its neighbours on the same side, along its normal; NaN where
 // there are few.
 float offsetOf(const PointView& points, const Neighborhoods& table,
@@ -147,8 +172,9 @@ void findWhatSheetsKeep(const PointView& points, const Neighborhoods& neighborho
 }
 
 NoiseField findNoiseField(const PointView& points, const Neighborhoods& neighborhoods,
-                          const std::vector<float>& normals, int threads) {
-  // Spread: noise of a spacing alone makes so much, and with less no patch was wrong.
+                          const std::vector<float>& normals, int threads,
+                          const std::vector<float>& confidences) {
+  // Spread: noise of a spacing alone makes so much.
   constexpr float kSure = 0.03F;
   // The mean of w is a fifth of its root mean square there, as it is by chance of 25 pieces with
   // random signs: the surface is open, for all that w tells. Folds and rolls have three quarters.
@@ -166,10 +192,12 @@ NoiseField findNoiseField(const PointView& points, const Neighborhoods& neighbor
                            threads);
   const FieldFit own = solver.fit(subset.normals);
   std::vector<float> found = subset.normals;
-  if (own.spread > kSure && own.spread < kSaysNothing && own.factor > 0.F) {
-    for (int round = 0; round < kRounds; ++round) {
-      found = solver.solve(found, kEvidence * own.spread);
-    }
+  out.consistent = opposedPairs(points, neighborhoods, normals, threads).facing < kSuspicious;
+  if (own.spread < kSaysNothing && own.factor > 0.F) {
+    // Signs that do not contradict each other are all as good, whatever votes were against them.
+    const std::vector<float> trust = trustOf(
+        subset, out.consistent ? std::vector<float>{} : confidences, kEvidence * own.spread);
+    for (int round = 0; round < kRounds; ++round) found = solver.solve(found, trust);
   }
   out.factor = solver.fit(found).factor;
   out.dipoles = solver.dipolesOf(found);
@@ -178,7 +206,6 @@ NoiseField findNoiseField(const PointView& points, const Neighborhoods& neighbor
   // open, or a wall whose two sides came out as one sheet, and which of them cannot be told.
   out.most = kSure / std::max(kSure, own.spread);
   if (hidesTwoSides(points, neighborhoods, normals, threads)) out.most = 0.F;
-  out.consistent = opposedPairs(points, neighborhoods, normals, threads).facing < kSuspicious;
   out.places = std::move(subset.places);
   return out;
 }

@@ -43,10 +43,12 @@ struct NoiseField {
 /// \param points positions as measured, finite, near ones side by side
 /// \param neighborhoods of them, six at least
 /// \param normals 4 floats a point, oriented
+/// \param confidences of their signs; empty = all alike
 SEGORIENT_ORIENTATION_EXPORT NoiseField findNoiseField(const PointView& points,
                                                        const Neighborhoods& neighborhoods,
                                                        const std::vector<float>& normals,
-                                                       int threads);
+                                                       int threads,
+                                                       const std::vector<float>& confidences = {});
 
 /// Finds NoiseField::keeps, for parts of the cloud that see only parts of what would be turned.
 /// \param points those of the field \param normals those that it was found with

@@ -118,8 +118,8 @@ AutoStages runAutoStages(PreparedCloud& cloud, const PipelineOptions& options,
   } else if (settings.winding_normals && hints.nothing()) {
     const bool noisy = out.noise >= kFieldNoise;
     if (noisy || oriented.level > 0.F) {
-      NoiseField field =
-          findNoiseField(cloud.points(), cloud.neighborhoods(), oriented.normals, options.threads);
+      NoiseField field = findNoiseField(cloud.points(), cloud.neighborhoods(), oriented.normals,
+                                        options.threads, oriented.confidences);
       if (!noisy) field.averaged_below = kAcross;
       out.consistent = field.consistent;
       takeNoiseField(cloud.points(), cloud.neighborhoods(), field, options.threads, oriented);

@@ -100,19 +100,22 @@ std::vector<float> FieldSolver::growthOf(const std::vector<float>& lack) const {
   return windingPulls(points_, {points_, at}, radius_, threads_);
 }
 
-// Sum of squares by area, of one or more floats a point.
-double FieldSolver::squaresOf(const std::vector<float>& values) const {
+// Sum of squares by area, and weight, of one or more floats a point.
+double FieldSolver::squaresOf(const std::vector<float>& values,
+                              const std::vector<float>* weights) const {
   const std::size_t each = values.size() / areas_.size();
   double sum = 0.0;
   for (std::size_t i = 0; i < values.size(); ++i) {
     const auto v = static_cast<double>(values[i]);
-    sum += static_cast<double>(areas_[i / each]) * v * v;
+    const float weight = weights != nullptr ? (*weights)[i / each] : 1.F;
+    sum += static_cast<double>(areas_[i / each] * weight) * v * v;
   }
   return sum;
 }
 
 // By conjugate gradients, for what is added to the evidence.
-std::vector<float> FieldSolver::solve(const std::vector<float>& evidence, float weight) const {
+std::vector<float> FieldSolver::solve(const std::vector<float>& evidence,
+                                      const std::vector<float>& weights) const {
   constexpr int kSteps = 5;  // 3 and 8 give nearly the same
   const std::vector<float> winding = windingOf(evidence);
   const float factor = fitOf(winding).factor;
@@ -124,13 +127,13 @@ std::vector<float> FieldSolver::solve(const std::vector<float>& evidence, float 
   double squares = squaresOf(gradient);
   for (int step = 0; step < kSteps && squares > 0.0; ++step) {
     const std::vector<float> change = meansOf(windingOf(way));
-    const double bend = squaresOf(change) + static_cast<double>(weight) * squaresOf(way);
+    const double bend = squaresOf(change) + squaresOf(way, &weights);
     const auto length = static_cast<float>(squares / bend);
     if (!std::isfinite(length)) break;
     add(way, length, added);
     add(change, -length, lack);
     gradient = growthOf(lack);
-    add(added, -weight, gradient);
+    for (std::size_t i = 0; i < added.size(); ++i) gradient[i] -= weights[i / 4] * added[i];
     const double now = squaresOf(gradient);
     const auto kept = static_cast<float>(now / squares);
     for (std::size_t i = 0; i < way.size(); ++i) way[i] = gradient[i] + kept * way[i];

@@ -22,7 +22,7 @@ struct FieldFit {
 ///
 /// Dipoles m, in units of area, minimise one convex sum over points with areas a:
 ///
-///     sum a (S w - 1/2)^2 + weight * sum a |m - f n|^2
+///     sum a (S w - 1/2)^2 + sum a weight |m - f n|^2
 ///
 /// with w the winding number of the dipoles, S a mean over a point and its neighbours, as noise
 /// takes points to both sides of the surface, n normals that are evidence and f their factor.
@@ -37,8 +37,10 @@ class FieldSolver {
   FieldSolver(const PointView& points, const Neighborhoods& neighborhoods,
               const std::vector<float>& areas, float radius, int threads);
 
+  /// \param weights of the evidence, one a point
   /// \return directions in which the field of the solution falls; unit
-  std::vector<float> solve(const std::vector<float>& evidence, float weight) const;
+  std::vector<float> solve(const std::vector<float>& evidence,
+                           const std::vector<float>& weights) const;
 
   FieldFit fit(const std::vector<float>& normals) const;
 
@@ -51,7 +53,8 @@ class FieldSolver {
   std::vector<float> meansOf(std::vector<float> values) const;
   std::vector<float> sharesOf(std::vector<float> values) const;
   FieldFit fitOf(const std::vector<float>& winding) const;
-  double squaresOf(const std::vector<float>& values) const;
+  double squaresOf(const std::vector<float>& values,
+                   const std::vector<float>* weights = nullptr) const;
 
   PointView points_;
   const Neighborhoods& neighborhoods_;
