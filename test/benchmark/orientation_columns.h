@@ -80,8 +80,6 @@ inline std::vector<Column> withoutSteps() {
       without("clean-up", [](PipelineOptions& o) { o.orientation.automatic.clean_up = false; }),
       without("contraction",
               [](PipelineOptions& o) { o.orientation.automatic.contract_certain = false; }),
-      without("cluster flips",
-              [](PipelineOptions& o) { o.orientation.automatic.flip_clusters = false; }),
       without("loose parts",
               [](PipelineOptions& o) { o.orientation.automatic.turn_loose_parts = false; }),
       without("winding number",

@@ -70,8 +70,10 @@ TEST(Settings, OfVersionOneThatDoNothingTodayAreNamed) {
   PipelineOptions options;
   options.automatic.wind_components = false;
   EXPECT_EQ(settingsWithoutEffect(options), Names{});
+  options.automatic.flip_clusters = false;
   options.automatic.infer_viewpoint = true;
-  EXPECT_EQ(settingsWithoutEffect(options), Names{"automatic.infer_viewpoint"});
+  EXPECT_EQ(settingsWithoutEffect(options),
+            (Names{"automatic.flip_clusters", "automatic.infer_viewpoint"}));
 }
 SEGORIENT_DEPRECATED_END
 

@@ -37,7 +37,6 @@ PipelineOptions withFormerSettings(const PipelineOptions& options) {
   take(options.sheets.require_support, now.require_support);
   take(options.sheets.clean_up, now.clean_up);
   take(options.automatic.contract_certain, now.contract_certain);
-  take(options.automatic.flip_clusters, now.flip_clusters);
   take(options.automatic.wind_components, now.wind_components);
   take(options.automatic.turn_loose_parts, now.turn_loose_parts);
   take(options.denoise, now.denoise);

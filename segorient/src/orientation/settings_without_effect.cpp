@@ -46,7 +46,6 @@ std::vector<std::string> changed(const AutomaticOptions& s) {
   out.add("require_support", s.require_support, standard.require_support);
   out.add("clean_up", s.clean_up, standard.clean_up);
   out.add("contract_certain", s.contract_certain, standard.contract_certain);
-  out.add("flip_clusters", s.flip_clusters, standard.flip_clusters);
   out.add("wind_components", s.wind_components, standard.wind_components);
   out.add("turn_loose_parts", s.turn_loose_parts, standard.turn_loose_parts);
   out.add("coarse_levels", s.coarse_levels, standard.coarse_levels);
@@ -128,6 +127,7 @@ SEGORIENT_DEPRECATED_BEGIN
 // Of version 1.0, and without a place today.
 std::vector<std::string> formerSettings(const PipelineOptions& options) {
   Changed out("");
+  out.add("automatic.flip_clusters", options.automatic.flip_clusters.has_value(), false);
   out.add("automatic.infer_viewpoint", options.automatic.infer_viewpoint.has_value(), false);
   return out.names();
 }

@@ -62,7 +62,6 @@ struct AutomaticOptions {
 
   // Their signs.
   bool contract_certain = true;  ///< join unanimous borders first; otherwise all at once
-  bool flip_clusters = true;     ///< single clusters are turned over while that agrees better
   bool wind_components = true;   ///< in and out by the winding number; otherwise by convention
   bool turn_loose_parts = true;  ///< what borders hardly tell, the winding number does; needs
                                  ///< wind_components

@@ -34,7 +34,7 @@ struct FormerSheetOptions {
 };
 struct FormerAutomaticOptions {
   std::optional<bool> contract_certain;
-  std::optional<bool> flip_clusters;
+  std::optional<bool> flip_clusters;  ///< has no effect: none are turned over any more
   std::optional<bool> wind_components;
   std::optional<bool> turn_loose_parts;
   std::optional<bool> infer_viewpoint;  ///< has no effect: nothing is inferred any more

@@ -112,9 +112,7 @@ void followSensors(SheetSigns& sheets) {
   sheets.facing = facingOf(sheets.field, sheets.points.size, sheets.sensors);
   weighOnePlace(sheets, facingBySegment(sheets.facing, sheets.segmentation));
   const std::vector<Ballot> ballots = facingBySegment(sheets.facing, sheets.segmentation);
-  const std::vector<bool> decided =
-      turnToSensors(ballots, sheets.votes, sheets.segmentation, sheets.clusterOf(),
-                    sheets.component_of, sheets.signs);
+  const std::vector<bool> decided = turnToSensors(ballots, sheets.votes, sheets.signs);
   std::vector<Ballot> seen(sheets.windings.size());
   for (std::size_t s = 0; s < sheets.signs.size(); ++s) {
     if (decided[s]) seen[at(sheets.component_of[s])].add(ballots[s], sheets.signs[s]);

@@ -2,8 +2,6 @@
 // Copyright (c) 2026, the segorient authors
 #include "orientation/automatic/segment_clusters.h"
 
-#include <numeric>
-
 #include "common/at.h"
 
 namespace segorient::detail {
@@ -38,7 +36,6 @@ SegmentClusters::SegmentClusters(const Segmentation& segmentation,
     of_[s] = graph.find(static_cast<std::int32_t>(s), sign);
     inside_[s] = static_cast<std::int8_t>(sign);
   }
-  edges_ = graph.edges();
   graph.contract({ClusterGraph::Rule{}});
   sign_.assign(n, 1);
   root_.assign(n, -1);
@@ -46,41 +43,6 @@ SegmentClusters::SegmentClusters(const Segmentation& segmentation,
     int sign = 1;
     root_[at(of_[s])] = graph.find(of_[s], sign);
     sign_[at(of_[s])] = static_cast<std::int8_t>(sign);
-  }
-  if (rules.flip) flip();
-}
-
-// Greedy contraction leaves single clusters that all their borders together would rather see turned
-// over.
-void SegmentClusters::flip() {
-  const std::size_t n = size();
-  std::vector<std::uint32_t> offset(n + 1, 0);
-  for (const auto& e : edges_) {
-    ++offset[at(e.a) + 1];
-    ++offset[at(e.b) + 1];
-  }
-  std::partial_sum(offset.begin(), offset.end(), offset.begin());
-  std::vector<std::uint32_t> incident(offset.back());
-  std::vector<std::uint32_t> next(offset.begin(), offset.end() - 1);
-  for (std::uint32_t e = 0; e < edges_.size(); ++e) {
-    incident[next[at(edges_[e].a)]++] = e;
-    incident[next[at(edges_[e].b)]++] = e;
-  }
-  constexpr int kRounds = 50;  // each flip lowers the energy; a few rounds are the rule
-  for (int round = 0; round < kRounds; ++round) {
-    bool moved = false;
-    for (std::size_t c = 0; c < n; ++c) {
-      float against = 0.F;
-      for (std::uint32_t k = offset[c]; k < offset[c + 1]; ++k) {
-        const auto& e = edges_[incident[k]];
-        against -= e.weight * static_cast<float>(sign_[at(e.a)] * sign_[at(e.b)]);
-      }
-      if (against > 1e-3F) {
-        sign_[c] = static_cast<std::int8_t>(-sign_[c]);
-        moved = true;
-      }
-    }
-    if (!moved) break;
   }
 }
 

@@ -19,7 +19,6 @@ class SegmentClusters {
  public:
   struct Rules {
     bool contract_certain = true;
-    bool flip = true;
     std::size_t points = 0;  ///< of the whole cloud
   };
   SegmentClusters(const Segmentation& segmentation, const std::vector<BorderVote>& votes,
@@ -37,9 +36,6 @@ class SegmentClusters {
   }
 
  private:
-  void flip();
-
-  std::vector<ClusterGraph::Edge> edges_;  // signs relative to the clusters
   std::vector<std::int32_t> of_;
   std::vector<std::int8_t> inside_;  // sign of each segment within its cluster
   std::vector<std::int8_t> sign_;    // by cluster

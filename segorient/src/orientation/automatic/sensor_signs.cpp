@@ -18,27 +18,6 @@ float cosineTo(const float* normal, const float* toward) {
   return normal[0] * toward[0] + normal[1] * toward[1] + normal[2] * toward[2];
 }
 
-// With most of what is decided of it.
-void turnWithMost(const std::vector<std::int32_t>& part_of, const Segmentation& segmentation,
-                  const std::vector<std::int8_t>& before, std::vector<bool>& decided,
-                  std::vector<std::int8_t>& signs) {
-  std::vector<double> kept(part_of.size(), 0.0);
-  for (std::size_t s = 0; s < signs.size(); ++s) {
-    if (!decided[s]) continue;
-    kept[static_cast<std::size_t>(part_of[s])] +=
-        static_cast<double>(before[s] * signs[s]) *
-        static_cast<double>(segmentation.segments[s].size);
-  }
-  for (std::size_t s = 0; s < signs.size(); ++s) {
-    const double balance = kept[static_cast<std::size_t>(part_of[s])];
-    if (decided[s] || balance == 0.0) continue;
-    signs[s] = static_cast<std::int8_t>(balance < 0.0 ? -before[s] : before[s]);
-  }
-  for (std::size_t s = 0; s < signs.size(); ++s) {
-    if (kept[static_cast<std::size_t>(part_of[s])] != 0.0) decided[s] = true;
-  }
-}
-
 }  // namespace
 
 bool isClear(float facing) {
@@ -78,11 +57,7 @@ std::vector<Ballot> facingBySegment(const std::vector<float>& facing,
 
 std::vector<bool> turnToSensors(const std::vector<Ballot>& ballots,
                                 const std::vector<BorderVote>& votes,
-                                const Segmentation& segmentation,
-                                const std::vector<std::int32_t>& cluster_of,
-                                const std::vector<std::int32_t>& component_of,
                                 std::vector<std::int8_t>& signs) {
-  const std::vector<std::int8_t> before = signs;
   std::vector<bool> by_sensors(signs.size(), false);
   // Along its rim a segment has points that belong to the next one and were seen from elsewhere:
   // what few points say must be more than what its borders could.
@@ -96,7 +71,8 @@ std::vector<bool> turnToSensors(const std::vector<Ballot>& ballots,
     by_sensors[s] = true;
     signs[s] = ballots[s].balance < 0.F ? std::int8_t{-1} : std::int8_t{1};
   }
-  // Ring by ring: each undecided segment as its borders to decided ones say together.
+  // Ring by ring to the end of each component: each undecided segment as its borders to decided
+  // ones say together.
   std::vector<bool> decided = by_sensors;
   for (bool grown = true; grown;) {
     std::map<std::int32_t, float> support;
@@ -117,8 +93,6 @@ std::vector<bool> turnToSensors(const std::vector<Ballot>& ballots,
       grown = true;
     }
   }
-  turnWithMost(cluster_of, segmentation, before, decided, signs);
-  turnWithMost(component_of, segmentation, before, decided, signs);
   return by_sensors;
 }
 

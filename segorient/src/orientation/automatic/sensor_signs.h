@@ -30,14 +30,9 @@ std::vector<Ballot> facingBySegment(const std::vector<float>& facing,
 
 /// The signs of segments of which sensors saw enough, and then of those that borders tie to them.
 /// \param signs of the segments, as the surface has them; changed
-/// \param cluster_of, component_of by segment: what has no border to a decided one is turned with
-///        most of its cluster, or of its component
 /// \return which segments sensors decided
 std::vector<bool> turnToSensors(const std::vector<Ballot>& ballots,
                                 const std::vector<BorderVote>& votes,
-                                const Segmentation& segmentation,
-                                const std::vector<std::int32_t>& cluster_of,
-                                const std::vector<std::int32_t>& component_of,
                                 std::vector<std::int8_t>& signs);
 
 /// Whether that many standard errors leave no doubt, so that the point need not ask its surface.

@@ -24,8 +24,7 @@ constexpr double kStep = 0.02;             // of the extent
 constexpr double kFineStep = 0.005;
 constexpr int kEvaluations = 50;
 constexpr int kFineRounds = 2;
-constexpr int kRelocations = 3;   // at most, for each number of stations
-constexpr float kClearly = 0.9F;  // of the cost: a mirror image differs by chance, too
+constexpr int kRelocations = 3;  // at most, for each number of stations
 constexpr int kAlternatives = 200;
 constexpr std::size_t kMostRelocated = 6;  // more stations than that find places by their number
 // Of the constant's cost: stations that gain less than this are not there.
@@ -49,24 +48,6 @@ class Sum {
   void refine(double step) {
     for (std::size_t j = 0; j < positions_.size(); ++j) refineOne(j, step);
     look();
-  }
-
-  // Tries each station on the other side of the floor or wall that is nearest to it, where what
-  // lies in that plane has the same density: walls and floors beyond have not.
-  void unmirror(double step) {
-    for (std::size_t j = 0; j < positions_.size(); ++j) {
-      for (std::size_t axis = 0; axis < 3; ++axis) {
-        const float before = cost();
-        const Position old = positions_[j];
-        if (!mirror(axis, positions_[j])) continue;
-        look();
-        refineOne(j, step);
-        look();
-        if (cost() < kClearly * before) continue;
-        positions_[j] = old;
-        look();
-      }
-    }
   }
 
   void refineOne(std::size_t j, double step) {
@@ -153,30 +134,6 @@ class Sum {
   }
 
  private:
-  // In the plane of the nearest piece that is across the axis. \return false if there is none
-  bool mirror(std::size_t axis, Position& position) const {
-    constexpr float kAcross = 0.95F;
-    const std::vector<float>& normal =
-        axis == 0 ? patches_.nx : (axis == 1 ? patches_.ny : patches_.nz);
-    const std::vector<float>& center =
-        axis == 0 ? patches_.x : (axis == 1 ? patches_.y : patches_.z);
-    double least = -1.0;
-    double plane = 0.0;
-    for (std::size_t i = 0; i < patches_.size(); ++i) {
-      if (std::fabs(normal[i]) < kAcross) continue;
-      const double dx = static_cast<double>(patches_.x[i]) - position[0];
-      const double dy = static_cast<double>(patches_.y[i]) - position[1];
-      const double dz = static_cast<double>(patches_.z[i]) - position[2];
-      const double squared = dx * dx + dy * dy + dz * dz;
-      if (least >= 0.0 && squared >= least) continue;
-      least = squared;
-      plane = static_cast<double>(center[i]);
-    }
-    if (least < 0.0) return false;
-    position[axis] = 2.0 * plane - position[axis];
-    return true;
-  }
-
   void look() {
     for (std::size_t j = 0; j < positions_.size(); ++j) {
       seen_[j].resize(patches_.size());
@@ -252,7 +209,6 @@ Stations searchStations(const DensityPatches& patches, const Occupancy& occupanc
   }
   const DensityPatches fine = patches.thinned(kFinePieces);
   Sum found(fine, occupancy, axis, out.positions);
-  found.unmirror(kStep * diagonal);
   for (int round = 0; round < kFineRounds; ++round) found.refine(kFineStep * diagonal);
   out.positions = found.positions();
   out.cost = found.cost();
