@@ -7,6 +7,7 @@
 #include <limits>
 #include <utility>
 
+#include "common/every_nth.h"
 #include "common/median.h"
 #include "features/local_fit_job.h"
 #include "features/local_normals.h"
@@ -90,8 +91,9 @@ std::vector<float> sampleResiduals(NormalEstimator estimator, const PointView& p
 
 std::vector<pcl::index_t> sampleRows(std::size_t size) {
   std::vector<pcl::index_t> rows;
-  const std::size_t step = std::max<std::size_t>(1, size / kSamples);
-  for (std::size_t i = 0; i < size; i += step) rows.push_back(static_cast<pcl::index_t>(i));
+  for (const std::size_t i : detail::EveryNth(size, kSamples)) {
+    rows.push_back(static_cast<pcl::index_t>(i));
+  }
   return rows;
 }
 

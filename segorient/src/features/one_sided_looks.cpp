@@ -7,6 +7,7 @@
 #include <cmath>
 #include <utility>
 
+#include "common/every_nth.h"
 #include "common/threads.h"
 
 namespace segorient::detail {
@@ -83,8 +84,7 @@ Looks layPatches(const RecomputationScene& scene, std::vector<LookState>& state)
     looks.points.push_back(point);
     looks.patches.back().end = looks.points.size();
   }
-  const std::size_t step = std::max<std::size_t>(1, middles.size() / kSampledPatches);
-  for (std::size_t m = 0; m < middles.size(); m += step) {
+  for (const std::size_t m : EveryNth(middles.size(), kSampledPatches)) {
     const auto at = std::lower_bound(
         looks.patches.begin(), looks.patches.end(), middles[m],
         [](const Patch& patch, std::size_t middle) { return patch.middle < middle; });

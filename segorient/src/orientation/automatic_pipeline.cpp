@@ -81,11 +81,6 @@ PointHints findHints(const PointView& points, const PipelineOptions& options, Pr
   return known;
 }
 
-// Whether places are given: those that are found would be found again.
-bool saysPlaces(const OrientationHints& hints) {
-  return hints.has_viewpoint || !hints.viewpoints.empty();
-}
-
 }  // namespace
 
 void runAutomatic(const PointView& points, const PipelineOptions& given, StageClock& clock,

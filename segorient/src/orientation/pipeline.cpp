@@ -14,6 +14,7 @@
 #include "features/sheet_normals.h"
 #include "orientation/former_settings.h"
 #include "orientation/pipeline_stages.h"
+#include "orientation/sensors/sensor_hints.h"
 #include "orientation/stage_clock.h"
 #include "segmentation/segmentation_rows.h"
 
@@ -155,8 +156,8 @@ std::size_t expectedMemory(std::size_t points, const PipelineOptions& options) {
       automatic && options.orientation.automatic.denoise ? entry * (k + 1) + 4 * sizeof(float) : 0;
   // Who saw what is checked in the sensor's view.
   const OrientationHints* hints = options.orientation.hints.get();
-  const bool seen = automatic && hints != nullptr &&
-                    (hints->has_viewpoint || hints->has_direction || !hints->viewpoints.empty());
+  const bool seen =
+      automatic && hints != nullptr && (detail::saysPlaces(*hints) || hints->has_direction);
   constexpr std::size_t kOfSensors = 100;
   return points * (entry * (k + 1) + smoothed + kElse + (seen ? kOfSensors : 0));
 }

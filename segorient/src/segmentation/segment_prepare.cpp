@@ -5,6 +5,7 @@
 #include <cstring>
 #include <limits>
 
+#include "common/every_nth.h"
 #include "common/threads.h"
 #include "common/unit_vector.h"
 #include "segmentation/growth_state.h"
@@ -153,10 +154,8 @@ void packNodes(const PointView& points, const NormalView& normals, const Scaling
 // up.
 float typicalOffset(const GrowthState& state) {
   constexpr float kDeviationPerMedian = 1.4826F;
-  const std::size_t n = state.nodes.size();
-  const std::size_t step = std::max<std::size_t>(1, n / kNoiseSamples);
   std::vector<float> offsets;
-  for (std::size_t i = 0; i < n; i += step) {
+  for (const std::size_t i : detail::EveryNth(state.nodes.size(), kNoiseSamples)) {
     const Node& p = state.nodes[i];
     const pcl::index_t* row = state.neighborhoods->indices(i);
     const int count = std::min(state.neighborhoods->count(i), kRing + 1);
@@ -181,10 +180,9 @@ float typicalOffset(const GrowthState& state) {
 bool isScattered(const Neighborhoods& hood) {
   constexpr std::size_t kSamples = 1024;
   constexpr std::size_t kFar = 4096;  // points whose labels alone fill half a first-level cache
-  const std::size_t step = std::max<std::size_t>(1, hood.size() / kSamples);
   std::size_t seen = 0;
   std::size_t far = 0;
-  for (std::size_t i = 0; i < hood.size(); i += step) {
+  for (const std::size_t i : detail::EveryNth(hood.size(), kSamples)) {
     if (hood.count(i) < 2) continue;
     const auto nearest = static_cast<std::size_t>(hood.indices(i)[1]);
     ++seen;

@@ -11,23 +11,29 @@
 #include "common/threads.h"
 #include "features/sheet_fit.h"
 #include "orientation/automatic/blue_noise.h"
+#include "search/index_of.h"
 
 namespace segorient::detail {
 namespace {
 
 constexpr int kSix = 6;     // neighbours of the spacing
 constexpr int kAround = 9;  // the cell itself and eight neighbours
-// Area per square of the mean distance to the six nearest of a blue-noise subset, see SignJudge.
+// Area per square of the mean distance to the six nearest of a blue-noise subset (measured; .866 of
+// a hexagonal grid).
 constexpr float kAreaPerSquare = 0.92F;
 
-void findAround(int threads, search::MedianHashIndex& index, EvenCells& cells) {
-  search::MedianHashIndex::Options options;
-  options.threads = threads;
-  index.build(cells.points(), nullptr, options);
+search::MedianHashIndex findAround(int threads, EvenCells& cells) {
+  search::MedianHashIndex index = search::indexOf(cells.points(), threads);
   index.nearestKAll(kAround, cells.around, false);
+  return index;
 }
 
 }  // namespace
+
+float cellArea(const PointView& cells, const Neighborhoods& around, std::size_t cell) {
+  const float h = meanDistance(cells, around, cell, kSix);
+  return kAreaPerSquare * h * h;
+}
 
 EvenCells gatherCells(const PointView& points, const std::vector<float>& normals, float radius,
                       int threads) {
@@ -54,19 +60,13 @@ EvenCells gatherCells(const PointView& points, const std::vector<float>& normals
       m[a] = length > 0.F ? m[a] / length : 0.F;
     }
   }
-  search::MedianHashIndex index;
-  findAround(threads, index, out);
-  out.areas.resize(n);
-  for (std::size_t c = 0; c < n; ++c) {
-    const float h = meanDistance(out.points(), out.around, c, kSix);
-    out.areas[c] = kAreaPerSquare * h * h;
-  }
+  findAround(threads, out);
+  for (std::size_t c = 0; c < n; ++c) out.areas.push_back(cellArea(out.points(), out.around, c));
   return out;
 }
 
 void assignCells(const PointView& points, int threads, EvenCells& cells) {
-  search::MedianHashIndex index;
-  findAround(threads, index, cells);
+  const search::MedianHashIndex index = findAround(threads, cells);
   cells.cell_of.assign(points.size, 0);
 #pragma omp parallel for schedule(static) num_threads(resolveThreads(threads, points.size, 1.0))
   for (std::size_t i = 0; i < points.size; ++i) {

@@ -29,6 +29,9 @@ struct EvenCells {
 EvenCells gatherCells(const PointView& points, const std::vector<float>& normals, float radius,
                       int threads);
 
+/// From the distances to the six nearest. \param around of the cells
+float cellArea(const PointView& cells, const Neighborhoods& around, std::size_t cell);
+
 /// Finds what is around each of some cells, and the nearest cell of each point.
 SEGORIENT_ORIENTATION_EXPORT void assignCells(const PointView& points, int threads,
                                               EvenCells& cells);

@@ -10,6 +10,7 @@
 #include <cstddef>
 
 #include "common/dot.h"
+#include "common/every_nth.h"
 #include "common/threads.h"
 #include "segmentation/sheet_segmentation.h"
 
@@ -51,19 +52,18 @@ Eigen::Matrix3d rarityOf(const std::vector<Eigen::Vector3d>& normals) {
 
 float thicknessScatter(const PointView& points, const Neighborhoods& neighborhoods,
                        const std::vector<float>& around, int threads) {
-  const std::size_t stride = std::max<std::size_t>(1, points.size / kSamples);
-  const std::size_t rows = (points.size + stride - 1) / stride;
-  std::vector<float> values(rows, -1.F);
-#pragma omp parallel for num_threads(resolveThreads(threads, rows, 3000.0)) schedule(static)
-  for (std::size_t r = 0; r < rows; ++r) {
-    const float* mean = &around[4 * r * stride];
-    if (mean[3] >= kFlat) values[r] = thickness(points, neighborhoods, r * stride, mean);
+  const EveryNth rows(points.size, kSamples);
+  std::vector<float> values(rows.size(), -1.F);
+#pragma omp parallel for num_threads(resolveThreads(threads, rows.size(), 3000.0)) schedule(static)
+  for (std::size_t r = 0; r < rows.size(); ++r) {
+    const float* mean = &around[4 * rows[r]];
+    if (mean[3] >= kFlat) values[r] = thickness(points, neighborhoods, rows[r], mean);
   }
   std::vector<Eigen::Vector3d> normals;
   std::vector<double> found;
-  for (std::size_t r = 0; r < rows; ++r) {
+  for (std::size_t r = 0; r < rows.size(); ++r) {
     if (values[r] < 0.F) continue;
-    const float* n = &around[4 * r * stride];
+    const float* n = &around[4 * rows[r]];
     normals.push_back(Eigen::Vector3f(n[0], n[1], n[2]).cast<double>());
     found.push_back(static_cast<double>(values[r]));
   }

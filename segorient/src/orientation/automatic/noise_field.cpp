@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "common/dot.h"
+#include "common/every_nth.h"
 #include "common/median.h"
 #include "common/threads.h"
 #include "features/sheet_fit.h"
@@ -33,9 +34,8 @@ constexpr float kFinal = 1.5F;
 
 float medianSpacing(const PointView& points, const Neighborhoods& table) {
   constexpr std::size_t kRows = 20000;  // a median of so many is known to a hundredth
-  const std::size_t stride = std::max<std::size_t>(1, points.size / kRows);
   std::vector<float> values;
-  for (std::size_t i = 0; i < points.size; i += stride) {
+  for (const std::size_t i : EveryNth(points.size, kRows)) {
     values.push_back(meanDistance(points, table, i, kSix));
   }
   return median(std::move(values));
@@ -94,12 +94,12 @@ bool hidesTwoSides(const PointView& points, const Neighborhoods& table,
   // of so many rows is known to less than a tenth.
   constexpr double kTwoSides = -0.25;
   constexpr std::size_t kRows = 4000;
-  const std::size_t stride = std::max<std::size_t>(1, points.size / kRows);
-  std::vector<float> offsets((points.size + stride - 1) / stride);
+  const EveryNth rows(points.size, kRows);
+  std::vector<float> offsets(rows.size());
 #pragma omp parallel for num_threads(resolveThreads(threads, offsets.size(), 300.0)) \
     schedule(static)
   for (std::size_t r = 0; r < offsets.size(); ++r) {
-    offsets[r] = offsetOf(points, table, normals, r * stride);
+    offsets[r] = offsetOf(points, table, normals, rows[r]);
   }
   double count = 0.0;
   double squares = 0.0;
@@ -200,7 +200,7 @@ NoiseField findNoiseField(const PointView& points, const Neighborhoods& neighbor
     for (int round = 0; round < kRounds; ++round) found = solver.solve(found, trust);
   }
   out.factor = solver.fit(found).factor;
-  out.dipoles = solver.dipolesOf(found);
+  out.dipoles = dipolesOf(found, subset.areas);
   out.radius = kFinal * spacing;
   // The signs as they came contradict the field by more than noise explains: the surface may be
   // open, or a wall whose two sides came out as one sheet, and which of them cannot be told.

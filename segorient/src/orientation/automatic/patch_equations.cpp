@@ -6,6 +6,7 @@
 #include <cmath>
 #include <utility>
 
+#include "common/every_nth.h"
 #include "common/threads.h"
 #include "orientation/winding/dipole_fields.h"
 
@@ -36,8 +37,7 @@ constexpr float kGood = 0.04F;
 
 PatchEquations::PatchEquations(const EvenCells& cells, float radius, int threads)
     : cells_(cells), patches_(growPatches(cells)) {
-  const std::size_t stride = std::max<std::size_t>(1, cells.size() / kPlaces);
-  for (std::size_t c = 0; c < cells.size(); c += stride) {
+  for (const std::size_t c : EveryNth(cells.size(), kPlaces)) {
     places_.push_back(static_cast<std::uint32_t>(c));
     patch_at_.push_back(patches_.of[c]);
   }
@@ -54,13 +54,7 @@ void PatchEquations::findFields(float radius, int threads) {
   for (const std::uint32_t c : places_) {
     at.insert(at.end(), &cells_.places[4 * std::size_t{c}], &cells_.places[4 * std::size_t{c}] + 4);
   }
-  std::vector<float> dipoles(4 * cells_.size());
-  for (std::size_t c = 0; c < cells_.size(); ++c) {
-    for (std::size_t a = 0; a < 3; ++a) {
-      dipoles[4 * c + a] = cells_.areas[c] * cells_.normals[4 * c + a];
-    }
-    dipoles[4 * c + 3] = cells_.areas[c];
-  }
+  const std::vector<float> dipoles = dipolesOf(cells_.normals, cells_.areas);
   const PointView places{at.data(), 4, places_.size()};
   fields_.resize(areas_.size(), static_cast<Eigen::Index>(size()));
 #pragma omp parallel for num_threads(resolveThreads(threads, size(), 2.0)) schedule(dynamic)

@@ -8,10 +8,14 @@
 #include <cmath>
 #include <cstddef>
 
+#include "common/every_nth.h"
 #include "common/median.h"
 #include "common/threads.h"
 #include "orientation/automatic/blue_noise.h"
+#include "orientation/automatic/even_cells.h"
+#include "orientation/winding/dipole_fields.h"
 #include "orientation/winding/winding_number.h"
+#include "search/index_of.h"
 
 namespace segorient::detail {
 namespace {
@@ -21,13 +25,6 @@ constexpr std::size_t kPairRows = 20000;  // one pair in 10,000 is then some ten
 constexpr std::size_t kSamples = 2000;    // a share of the surface is known to about .01 then
 // In distances to the sixth neighbour. A cell holds the layers of scans that are a spacing apart.
 constexpr float kCell = 1.5F;
-// Area per square of the mean distance to the six nearest of a blue-noise subset (measured; .866 of
-// a hexagonal grid).
-constexpr float kAreaPerSquare = 0.92F;
-
-std::size_t strideOf(std::size_t size, std::size_t want) {
-  return std::max<std::size_t>(1, size / want);
-}
 
 float distance(const float* a, const float* b) {
   float squares = 0.F;
@@ -38,7 +35,7 @@ float distance(const float* a, const float* b) {
 float medianSixth(const PointView& points, const Neighborhoods& table) {
   constexpr int kSixth = 6;  // the first ring
   std::vector<float> distances;
-  for (std::size_t i = 0; i < points.size; i += strideOf(points.size, kPairRows)) {
+  for (const std::size_t i : EveryNth(points.size, kPairRows)) {
     if (table.count(i) <= kSixth) continue;
     const auto q = static_cast<std::size_t>(table.indices(i)[kSixth]);
     distances.push_back(distance(points[i], points[q]));
@@ -72,12 +69,11 @@ struct PairSums {
 
 OpposedPairs opposedPairs(const PointView& points, const Neighborhoods& neighborhoods,
                           const std::vector<float>& normals, int threads) {
-  const std::size_t stride = strideOf(points.size, kPairRows);
-  const std::size_t rows = (points.size + stride - 1) / stride;
-  std::vector<PairSums> sums(rows);
-#pragma omp parallel for num_threads(resolveThreads(threads, rows, 3000.0)) schedule(static)
-  for (std::size_t r = 0; r < rows; ++r) {
-    const std::size_t i = r * stride;
+  const EveryNth rows(points.size, kPairRows);
+  std::vector<PairSums> sums(rows.size());
+#pragma omp parallel for num_threads(resolveThreads(threads, rows.size(), 3000.0)) schedule(static)
+  for (std::size_t r = 0; r < rows.size(); ++r) {
+    const std::size_t i = rows[r];
     const float* n = &normals[4 * i];
     if (!isFinite(n)) continue;
     const int count = std::min(neighborhoods.count(i), kNearest + 1);
@@ -110,34 +106,24 @@ SignJudge::SignJudge(const PointView& points, const Neighborhoods& neighborhoods
   for (std::size_t c = 0; c < cells.kept.size(); ++c) {
     std::copy_n(points[cells.kept[c]], 3, &places[4 * c]);
   }
-  search::MedianHashIndex index;
-  search::MedianHashIndex::Options options;
-  options.threads = threads;
-  index.build({places.data(), 4, cells.kept.size()}, nullptr, options);
+  const PointView view{places.data(), 4, cells.kept.size()};
   Neighborhoods around;
-  index.nearestKAll(7, around);
+  search::indexOf(view, threads).nearestKAll(7, around, false);
   std::vector<float> share(cells.kept.size(), 0.F);
   for (const std::uint32_t c : cells.cell_of) share[c] += 1.F;
   for (std::size_t c = 0; c < share.size(); ++c) {
-    float sum = 0.F;
-    for (int j = 1; j < around.count(c); ++j) sum += std::sqrt(around.sqrDistances(c)[j]);
-    const float mean = around.count(c) > 1 ? sum / static_cast<float>(around.count(c) - 1) : 0.F;
-    share[c] = kAreaPerSquare * mean * mean / share[c];
+    share[c] = cellArea(view, around, c) / share[c];
   }
   for (std::size_t i = 0; i < points.size; ++i) areas_[i] = share[cells.cell_of[i]];
-  const std::size_t stride = strideOf(cells.kept.size(), kSamples);
-  for (std::size_t c = 0; c < cells.kept.size(); c += stride) samples_.push_back(cells.kept[c]);
+  for (const std::size_t c : EveryNth(cells.kept.size(), kSamples)) {
+    samples_.push_back(cells.kept[c]);
+  }
 }
 
 SignEnergy SignJudge::judge(const std::vector<float>& normals) const {
   SignEnergy energy;
   energy.pairs = opposedPairs(points_, neighborhoods_, normals, threads_);
-  std::vector<float> dipoles(4 * points_.size, 0.F);
-  for (std::size_t i = 0; i < points_.size; ++i) {
-    if (!isFinite(&normals[4 * i])) continue;
-    for (std::size_t a = 0; a < 3; ++a) dipoles[4 * i + a] = areas_[i] * normals[4 * i + a];
-    dipoles[4 * i + 3] = areas_[i];
-  }
+  const std::vector<float> dipoles = dipolesOf(normals, areas_);
   WindingNumber winding;
   winding.build(points_, dipoles, {});
   std::vector<float> in_front(samples_.size(), -1.F);

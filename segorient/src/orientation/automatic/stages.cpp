@@ -16,6 +16,7 @@
 #include "orientation/automatic/noise_field.h"
 #include "orientation/automatic/patch_signs.h"
 #include "orientation/automatic/sensor_normals.h"
+#include "search/index_of.h"
 #include "segmentation/segmentation_rows.h"
 
 namespace segorient::detail {
@@ -45,11 +46,8 @@ void findNeighbors(PreparedCloud& cloud, const PipelineOptions& options, const S
                                    : options.orientation.automatic.denoise && needsDenoising(noise);
   if (out.denoised) {
     smoothed = projectOnPlanes(cloud.points(), cloud.index(), kDenoisingNeighbors, options.threads);
-    search::MedianHashIndex index;
-    search::MedianHashIndex::Options search_options;
-    search_options.threads = options.threads;
-    index.build({smoothed.data(), 4, cloud.size()}, nullptr, search_options);
-    index.nearestKAll(out.k + 1, of_smoothed, false);
+    search::indexOf({smoothed.data(), 4, cloud.size()}, options.threads)
+        .nearestKAll(out.k + 1, of_smoothed, false);
   }
   cloud.dropIndex();
 }

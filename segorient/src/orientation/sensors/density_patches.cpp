@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstdint>
 
+#include "common/every_nth.h"
 #include "common/median.h"
 #include "common/threads.h"
 #include "features/symmetric_eigen.h"
@@ -82,8 +83,7 @@ struct Sample {
 Sample takeSample(const PointView& points, const search::MedianHashIndex& index, int count,
                   int threads) {
   Sample out;
-  const std::size_t step = std::max<std::size_t>(1, points.size / kSample);
-  for (std::size_t i = 0; i < points.size; i += step) out.rows.push_back(i);
+  for (const std::size_t i : EveryNth(points.size, kSample)) out.rows.push_back(i);
   const auto width = static_cast<std::size_t>(count);
   out.neighbors.resize(out.rows.size() * width);
   out.sixth.resize(out.rows.size());
@@ -147,8 +147,7 @@ DensityPatches DensityPatches::thinned(std::size_t count) const {
   out.flat = flat;
   out.spacing = spacing;
   out.reach = reach;
-  const std::size_t step = std::max<std::size_t>(1, size() / std::max<std::size_t>(1, count));
-  for (std::size_t i = 0; i < size(); i += step) {
+  for (const std::size_t i : EveryNth(size(), std::max<std::size_t>(1, count))) {
     out.x.push_back(x[i]);
     out.y.push_back(y[i]);
     out.z.push_back(z[i]);

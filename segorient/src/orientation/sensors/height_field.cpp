@@ -10,6 +10,8 @@
 #include <utility>
 #include <vector>
 
+#include "common/every_nth.h"
+
 namespace segorient::detail {
 namespace {
 
@@ -37,11 +39,10 @@ struct Ground {
 
 Ground groundOf(const PointView& points) {
   constexpr std::size_t kSample = 20000;
-  const std::size_t step = std::max<std::size_t>(1, points.size / kSample);
   Ground out;
   for (std::size_t a = 0; a < 3; ++a) {
     std::vector<float> values;
-    for (std::size_t i = 0; i < points.size; i += step) values.push_back(points[i][a]);
+    for (const std::size_t i : EveryNth(points.size, kSample)) values.push_back(points[i][a]);
     const std::size_t cut = values.size() / 50;
     const auto low = values.begin() + static_cast<std::ptrdiff_t>(cut);
     std::nth_element(values.begin(), low, values.end());

@@ -33,8 +33,9 @@ HidingPlace lookFrom(const PointView& points, const std::array<float, 3>& place,
   out.report.position = place;
   out.report.points = points.size;
   out.report.density = scan.density().ratio;
+  const EveryNth sample = scan.sample();
   for (std::size_t s = 0; s < hidden.size(); ++s) {
-    if (hidden[s] == 0) out.visible.push_back(static_cast<std::uint32_t>(s * scan.stride()));
+    if (hidden[s] == 0) out.visible.push_back(static_cast<std::uint32_t>(sample[s]));
   }
   return out;
 }

@@ -15,6 +15,7 @@
 #include "orientation/sensors/occupancy.h"
 #include "orientation/sensors/several_stations.h"
 #include "orientation/sensors/station_search.h"
+#include "search/index_of.h"
 
 namespace segorient {
 
@@ -43,10 +44,8 @@ void assignPlaces(PreparedCloud& cloud, const DensityPatches& patches,
   for (std::size_t i = 0; i < patches.size(); ++i) {
     centers.insert(centers.end(), {patches.x[i], patches.y[i], patches.z[i]});
   }
-  search::MedianHashIndex index;
-  search::MedianHashIndex::Options options;
-  options.threads = threads;
-  index.build({centers.data(), 3, patches.size()}, nullptr, options);
+  const search::MedianHashIndex index =
+      search::indexOf({centers.data(), 3, patches.size()}, threads);
   constexpr double kQueryTime = 300.0;  // ns, see resolveThreads()
   const int team = resolveThreads(threads, cloud.size(), kQueryTime);
 #pragma omp parallel for schedule(static) num_threads(team)

@@ -12,6 +12,7 @@
 #include "common/median.h"
 #include "common/threads.h"
 #include "features/sheet_fit.h"
+#include "search/index_of.h"
 
 namespace segorient::detail {
 namespace {
@@ -29,7 +30,20 @@ constexpr double kSpacingTime = 20.0;
 // Of those whose mean distance is the spacing.
 constexpr int kSpacing = 6;
 
-// \param row the point itself first
+Plane planeOf(const PointView& points, const Neighborhoods& nb, std::size_t i, int k) {
+  return detail::planeOf(points, i, nb.indices(i), std::min(nb.count(i), k + 1));
+}
+
+float scatterOf(std::vector<float> r) {
+  constexpr float kMost = 1.5F;  // a factor of four and more: another surface, or an outlier
+  const float middle = median(r);
+  double sum = 0.0;
+  for (const float v : r) sum += static_cast<double>(std::min(std::fabs(v - middle), kMost));
+  return r.empty() ? 0.F : static_cast<float>(sum / static_cast<double>(r.size()));
+}
+
+}  // namespace
+
 Plane planeOf(const PointView& points, std::size_t i, const pcl::index_t* row, int count) {
   Moments m;
   m.addOrigin();
@@ -42,24 +56,6 @@ Plane planeOf(const PointView& points, std::size_t i, const pcl::index_t* row, i
   }
   return fitPlane(m);
 }
-
-Plane planeOf(const PointView& points, const Neighborhoods& nb, std::size_t i, int k) {
-  return planeOf(points, i, nb.indices(i), std::min(nb.count(i), k + 1));
-}
-
-std::size_t strideOf(std::size_t points, std::size_t samples) {
-  return std::max<std::size_t>(1, points / samples);
-}
-
-float scatterOf(std::vector<float> r) {
-  constexpr float kMost = 1.5F;  // a factor of four and more: another surface, or an outlier
-  const float middle = median(r);
-  double sum = 0.0;
-  for (const float v : r) sum += static_cast<double>(std::min(std::fabs(v - middle), kMost));
-  return r.empty() ? 0.F : static_cast<float>(sum / static_cast<double>(r.size()));
-}
-
-}  // namespace
 
 // The nearest of one point, itself first.
 struct Scan::Row {
@@ -85,9 +81,7 @@ Scan::Scan(const PointView& points, const std::vector<std::uint32_t>& rows,
     near_ = neighborhoods;
     return;
   }
-  search::MedianHashIndex::Options options;
-  options.threads = threads;
-  index_.build(view_, nullptr, options);
+  index_ = search::indexOf(view_, threads);
 }
 
 void Scan::nearest(std::size_t i, int entries, Row& out) const {
@@ -108,8 +102,8 @@ float Scan::spacingOf(std::size_t i) const {
   return meanDistance(view_, i, row.indices + 1, row.count - 1);
 }
 
-std::size_t Scan::stride() const {
-  return strideOf(size(), kSamples);
+EveryNth Scan::sample() const {
+  return {size(), kSamples};
 }
 
 std::vector<std::uint8_t> Scan::hidden(bool all) {
@@ -123,13 +117,13 @@ std::vector<std::uint8_t> Scan::hidden(bool all) {
     for (std::size_t i = 0; i < size(); ++i) spacing[i] = spacingOf(i);
     spacing_ = std::move(spacing);
   }
-  const std::size_t step = all ? 1 : stride();
-  const std::size_t n = (size() + step - 1) / step;
+  const EveryNth some = all ? EveryNth(size(), std::max<std::size_t>(1, size())) : sample();
+  const std::size_t n = some.size();
   const search::MedianHashIndex directions = seen_.index(threads_);
   std::vector<std::uint8_t> out(n, 0);
 #pragma omp parallel for num_threads(resolveThreads(threads_, n, kRayTime)) schedule(dynamic, 64)
   for (std::size_t s = 0; s < n; ++s) {
-    out[s] = isHidden(s * step, directions) ? 1 : 0;
+    out[s] = isHidden(some[s], directions) ? 1 : 0;
   }
   return out;
 }
@@ -172,7 +166,6 @@ Scan::Density Scan::density() const {
   // Equal angles crowd at the poles of the sensor's axis: no nearer than 6 degrees.
   constexpr float kPole = 0.1F;
   constexpr std::size_t kLaws = 5;  // no axis, three axes, an image
-  const std::size_t step = stride();
   std::array<double, 3> mean{0.0, 0.0, 0.0};
   for (std::size_t i = 0; i < size(); ++i) {
     for (std::size_t a = 0; a < 3; ++a) mean[a] += static_cast<double>(seen_.direction[4 * i + a]);
@@ -185,7 +178,7 @@ Scan::Density Scan::density() const {
   std::vector<float> constant;
   std::array<std::vector<float>, kLaws> laws;
   Row row;
-  for (std::size_t i = 0; i < size(); i += step) {
+  for (const std::size_t i : sample()) {
     nearest(i, kPlane + 1, row);
     const Plane plane = planeOf(view_, i, row.indices, row.count);
     const Eigen::Vector3f& l = plane.lambda;
@@ -223,8 +216,8 @@ std::vector<ScanPairs> findContraryPairs(const PointView& points, const Neighbor
   constexpr float kClear = 0.3F;     // 17 degrees above grazing
   constexpr float kParallel = 0.9F;  // and no edge between them
   constexpr float kOffset = 0.7F;    // spacings: less than what walls are apart
-  const std::size_t step = strideOf(points.size, kPairSamples);
-  const std::size_t n = (points.size + step - 1) / step;
+  const EveryNth some(points.size, kPairSamples);
+  const std::size_t n = some.size();
   struct Pairs {
     std::array<std::int32_t, kAround> scan;
     std::array<std::int8_t, kAround> agree;  // 0 where nothing is said
@@ -233,7 +226,7 @@ std::vector<ScanPairs> findContraryPairs(const PointView& points, const Neighbor
 #pragma omp parallel for num_threads(resolveThreads(threads, n, kPairTime)) schedule(dynamic, 256)
   for (std::size_t s = 0; s < n; ++s) {
     found[s].agree.fill(0);
-    const std::size_t i = s * step;
+    const std::size_t i = some[s];
     if (scan[i] < 0) continue;
     const Plane mine = planeOf(points, nb, i, kSheetNeighbors);
     const float view = mine.valid ? dot(mine.normal.data(), &toward[3 * i]) : 0.F;
@@ -262,7 +255,7 @@ std::vector<ScanPairs> findContraryPairs(const PointView& points, const Neighbor
   for (std::size_t s = 0; s < n; ++s) {
     for (std::size_t j = 0; j < kAround; ++j) {
       if (found[s].agree[j] == 0) continue;
-      const auto a = static_cast<std::size_t>(scan[s * step]);
+      const auto a = static_cast<std::size_t>(scan[some[s]]);
       const auto b = static_cast<std::size_t>(found[s].scan[j]);
       for (const auto& pair : {std::pair(a, b), std::pair(b, a)}) {
         auto& [pairs, contrary] = counts[pair];

@@ -12,9 +12,15 @@
 #include <limits>
 #include <vector>
 
+#include "common/every_nth.h"
+#include "features/sheet_fit.h"
 #include "orientation/sensors/seen_from.h"
 
 namespace segorient::detail {
+
+/// The plane of a point and others, in units of the mean distance to the six nearest.
+/// \param row indices, the point itself first, by distance
+Plane planeOf(const PointView& points, std::size_t i, const pcl::index_t* row, int count);
 
 /// Points that one sensor is said to have seen. Neighbours are those among themselves.
 class Scan {
@@ -34,8 +40,8 @@ class Scan {
   /// \return one a point that was looked at
   std::vector<std::uint8_t> hidden(bool all);
 
-  /// From one of those some thousand to the next.
-  std::size_t stride() const;
+  /// Those some thousand.
+  EveryNth sample() const;
 
   struct Density {
     /// Scatter of log density about that of a sensor here, over that about a constant.

@@ -6,15 +6,12 @@
 #include <cmath>
 
 #include "common/threads.h"
+#include "search/index_of.h"
 
 namespace segorient::detail {
 
 search::MedianHashIndex SeenFrom::index(int threads) const {
-  search::MedianHashIndex out;
-  search::MedianHashIndex::Options options;
-  options.threads = threads;
-  out.build({direction.data(), 4, size()}, nullptr, options);
-  return out;
+  return search::indexOf({direction.data(), 4, size()}, threads);
 }
 
 SeenFrom seeFrom(const std::array<float, 3>& place, const PointView& points, int threads) {

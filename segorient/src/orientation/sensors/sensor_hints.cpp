@@ -8,6 +8,8 @@
 #include <limits>
 #include <optional>
 
+#include "common/every_nth.h"
+
 namespace segorient::detail {
 namespace {
 
@@ -24,9 +26,13 @@ void addViewpoints(const SensorReport& report, OrientationHints& hints) {
 
 }  // namespace
 
+bool saysPlaces(const OrientationHints& hints) {
+  return hints.has_viewpoint || !hints.viewpoints.empty();
+}
+
 bool lacksSensors(const OrientationHints& hints) {
-  return !hints.has_viewpoint && !hints.has_direction && hints.viewpoints.empty() &&
-         hints.normals.empty() && hints.surface != SurfaceKind::CLOSED;
+  return !saysPlaces(hints) && !hints.has_direction && hints.normals.empty() &&
+         hints.surface != SurfaceKind::CLOSED;
 }
 
 bool isImage(const OrientationHints& hints, std::size_t rows) {
@@ -87,8 +93,7 @@ bool contradictsPlace(const PreparedCloud& cloud, const SensorReport& report,
   double sum = 0.0;
   std::size_t count = 0;
   const PointView points = cloud.points();
-  const std::size_t step = std::max<std::size_t>(1, points.size / kSample);
-  for (std::size_t i = 0; i < points.size; i += step) {
+  for (const std::size_t i : EveryNth(points.size, kSample)) {
     const std::array<double, 3> given = directionTo(points[i], place);
     double least = 2.0;
     for (const FoundSensor& s : report.sensors) {

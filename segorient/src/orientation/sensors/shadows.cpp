@@ -13,10 +13,13 @@
 #include <vector>
 
 #include "common/dot.h"
+#include "common/every_nth.h"
 #include "common/median.h"
 #include "common/threads.h"
 #include "features/sheet_fit.h"
+#include "orientation/sensors/scan_checks.h"
 #include "orientation/sensors/seen_from.h"
+#include "search/index_of.h"
 
 namespace segorient::detail {
 namespace {
@@ -66,10 +69,9 @@ using Place = std::array<float, 3>;
 class ShadowSearch {
  public:
   ShadowSearch(const PointView& points, int threads) : threads_(threads) {
-    const std::size_t step = std::max<std::size_t>(1, points.size / kMostPoints);
-    const std::size_t n = (points.size + step - 1) / step;
-    xyz_.assign(4 * n, 0.F);
-    for (std::size_t i = 0; i < n; ++i) std::copy_n(points[i * step], 3, &xyz_[4 * i]);
+    const EveryNth some(points.size, kMostPoints);
+    xyz_.assign(4 * some.size(), 0.F);
+    for (std::size_t i = 0; i < some.size(); ++i) std::copy_n(points[some[i]], 3, &xyz_[4 * i]);
     findSurfaces();
   }
 
@@ -115,12 +117,12 @@ class ShadowSearch {
     Shadows out;
     out.open = openShare();
     if (!(out.open >= least_open)) return out;
-    const std::size_t stride = std::max<std::size_t>(1, size() / kSamples);
-    const std::size_t n = (size() + stride - 1) / stride;
+    const EveryNth some(size(), kSamples);
+    const std::size_t n = some.size();
     std::vector<Step> found(n, Step::NO_SURFACE);
 #pragma omp parallel for num_threads(resolveThreads(threads_, n, kRayTime)) schedule(dynamic, 32)
     for (std::size_t s = 0; s < n; ++s) {
-      if (spacing_[s * stride] > 0.F) found[s] = lookAt(s * stride);
+      if (spacing_[some[s]] > 0.F) found[s] = lookAt(some[s]);
     }
     const auto share = [&](Step what) {
       return static_cast<float>(std::count(found.begin(), found.end(), what));
@@ -167,12 +169,8 @@ class ShadowSearch {
   void findSurfaces() {
     constexpr float kFlat = 0.1F;
     constexpr float kWide = 0.03F;
-    search::MedianHashIndex index;
-    search::MedianHashIndex::Options options;
-    options.threads = threads_;
-    index.build(view(), nullptr, options);
     Neighborhoods near;
-    index.nearestKAll(kPlane + 1, near, false);
+    search::indexOf(view(), threads_).nearestKAll(kPlane + 1, near, false);
     const std::size_t n = view().size;
     normal_.assign(4 * n, 0.F);
     spacing_.assign(n, 0.F);
@@ -184,14 +182,7 @@ class ShadowSearch {
       const float h = meanDistance(view(), i, row + 1, std::min(count - 1, kSpacing));
       width_[i] = h;
       if (!(h > 0.F)) continue;
-      Moments m;
-      m.addOrigin();
-      for (int j = 1; j < count; ++j) {
-        const float* p = view()[i];
-        const float* q = view()[static_cast<std::size_t>(row[j])];
-        m.add((q[0] - p[0]) / h, (q[1] - p[1]) / h, (q[2] - p[2]) / h);
-      }
-      const Plane plane = fitPlane(m);
+      const Plane plane = planeOf(view(), i, row, count);
       const Eigen::Vector3f& l = plane.lambda;
       if (!plane.valid || !(l[0] < kFlat * l[1]) || !(l[1] > kWide * l[2])) continue;
       spacing_[i] = h;

@@ -20,12 +20,15 @@ struct Run {
   float reach;
 };
 
-std::vector<Run> cutRuns(const PointView& at, float widest) {
+template <typename RadiusAt>
+std::vector<Run> cutRuns(const PointView& at, const RadiusAt& radius) {
+  constexpr float kWidest = 4.F;       // in radii: what is nearer is seen point by point
   constexpr std::size_t kPlaces = 32;  // listing costs a tenth of the sums then
   std::vector<Run> runs;
   for (std::size_t first = 0; first < at.size;) {
     Box box;
     box.add(at[first]);
+    const float widest = kWidest * radius(first);
     std::size_t last = first + 1;
     for (; last < at.size && last - first < kPlaces; ++last) {
       Box wider = box;
@@ -39,11 +42,10 @@ std::vector<Run> cutRuns(const PointView& at, float widest) {
   return runs;
 }
 
-template <typename Evaluate>
-void forEachPlace(const PointView& at, const DipoleCloud& from, float radius, int threads,
+template <typename RadiusAt, typename Evaluate>
+void forEachPlace(const PointView& at, const DipoleCloud& from, const RadiusAt& radius, int threads,
                   Evaluate&& evaluate) {
-  constexpr float kWidest = 4.F;  // in radii: what is nearer is seen point by point
-  const std::vector<Run> runs = cutRuns(at, kWidest * radius);
+  const std::vector<Run> runs = cutRuns(at, radius);
   WindingNumber tree;
   const std::vector<std::uint32_t> all;
   tree.build(from.points, from.dipoles, from.rows != nullptr ? *from.rows : all);
@@ -53,18 +55,42 @@ void forEachPlace(const PointView& at, const DipoleCloud& from, float radius, in
 #pragma omp for schedule(dynamic, 16)
     for (std::size_t r = 0; r < runs.size(); ++r) {
       seen.clear();
-      tree.listDipoles(runs[r].center.data(), runs[r].reach + radius, seen);
+      tree.listDipoles(runs[r].center.data(), runs[r].reach + radius(runs[r].first), seen);
       for (std::size_t i = runs[r].first; i < runs[r].last; ++i) evaluate(seen, i);
     }
   }
 }
 
+auto everywhere(float radius) {
+  return [radius](std::size_t) { return radius; };
+}
+
+template <typename RadiusAt>
+std::vector<float> descents(const PointView& at, const DipoleCloud& from, const RadiusAt& radius,
+                            int threads) {
+  std::vector<float> out(4 * at.size, 0.F);
+  forEachPlace(at, from, radius, threads, [&](const DipoleList& seen, std::size_t i) {
+    steepestDescent(seen, at[i], radius(i), &out[4 * i]);
+  });
+  return out;
+}
+
 }  // namespace
+
+std::vector<float> dipolesOf(const std::vector<float>& normals, const std::vector<float>& areas) {
+  std::vector<float> out(4 * areas.size(), 0.F);
+  for (std::size_t i = 0; i < areas.size(); ++i) {
+    if (!isFinite(&normals[4 * i])) continue;
+    for (std::size_t a = 0; a < 3; ++a) out[4 * i + a] = areas[i] * normals[4 * i + a];
+    out[4 * i + 3] = areas[i];
+  }
+  return out;
+}
 
 std::vector<float> windingNumbers(const PointView& at, const DipoleCloud& from, float radius,
                                   int threads) {
   std::vector<float> out(at.size, 0.F);
-  forEachPlace(at, from, radius, threads, [&](const DipoleList& seen, std::size_t i) {
+  forEachPlace(at, from, everywhere(radius), threads, [&](const DipoleList& seen, std::size_t i) {
     out[i] = windingNumberOf(seen, at[i], radius);
   });
   return out;
@@ -72,17 +98,19 @@ std::vector<float> windingNumbers(const PointView& at, const DipoleCloud& from, 
 
 std::vector<float> steepestDescents(const PointView& at, const DipoleCloud& from, float radius,
                                     int threads) {
-  std::vector<float> out(4 * at.size, 0.F);
-  forEachPlace(at, from, radius, threads, [&](const DipoleList& seen, std::size_t i) {
-    steepestDescent(seen, at[i], radius, &out[4 * i]);
-  });
-  return out;
+  return descents(at, from, everywhere(radius), threads);
+}
+
+std::vector<float> steepestDescents(const PointView& at, const DipoleCloud& from,
+                                    const std::vector<float>& radii, int threads) {
+  return descents(
+      at, from, [&](std::size_t i) { return radii[i]; }, threads);
 }
 
 std::vector<float> windingPulls(const PointView& at, const DipoleCloud& from, float radius,
                                 int threads) {
   std::vector<float> out(4 * at.size, 0.F);
-  forEachPlace(at, from, radius, threads, [&](const DipoleList& seen, std::size_t i) {
+  forEachPlace(at, from, everywhere(radius), threads, [&](const DipoleList& seen, std::size_t i) {
     windingPull(seen, at[i], radius, &out[4 * i]);
   });
   return out;

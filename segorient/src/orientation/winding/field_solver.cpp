@@ -41,17 +41,8 @@ FieldSolver::FieldSolver(const PointView& points, const Neighborhoods& neighborh
       radius_(radius),
       threads_(threads) {}
 
-std::vector<float> FieldSolver::dipolesOf(const std::vector<float>& normals) const {
-  std::vector<float> dipoles(4 * points_.size, 0.F);
-  for (std::size_t i = 0; i < points_.size; ++i) {
-    for (std::size_t a = 0; a < 3; ++a) dipoles[4 * i + a] = areas_[i] * normals[4 * i + a];
-    dipoles[4 * i + 3] = areas_[i];
-  }
-  return dipoles;
-}
-
 std::vector<float> FieldSolver::windingOf(const std::vector<float>& normals) const {
-  const std::vector<float> dipoles = dipolesOf(normals);
+  const std::vector<float> dipoles = dipolesOf(normals, areas_);
   return windingNumbers(points_, {points_, dipoles}, radius_, threads_);
 }
 
@@ -140,7 +131,7 @@ std::vector<float> FieldSolver::solve(const std::vector<float>& evidence,
     squares = now;
   }
   add(evidence, factor, added);
-  const std::vector<float> dipoles = dipolesOf(added);
+  const std::vector<float> dipoles = dipolesOf(added, areas_);
   std::vector<float> field = steepestDescents(points_, {points_, dipoles}, radius_, threads_);
   for (std::size_t i = 0; i < points_.size; ++i) normalize(&field[4 * i]);
   return field;

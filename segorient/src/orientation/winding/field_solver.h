@@ -44,9 +44,6 @@ class FieldSolver {
 
   FieldFit fit(const std::vector<float>& normals) const;
 
-  /// Normals times areas, and areas.
-  std::vector<float> dipolesOf(const std::vector<float>& normals) const;
-
  private:
   std::vector<float> windingOf(const std::vector<float>& normals) const;
   std::vector<float> growthOf(const std::vector<float>& lack) const;

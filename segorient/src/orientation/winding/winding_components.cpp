@@ -13,6 +13,7 @@
 #include "common/box.h"
 #include "common/threads.h"
 #include "orientation/winding/winding_number.h"
+#include "search/index_of.h"
 
 namespace segorient {
 namespace {
@@ -100,9 +101,7 @@ class Solver {
     for (const std::uint32_t i : samples_) {
       places.insert(places.end(), points_[i], points_[i] + 3);
     }
-    search::MedianHashIndex::Options options;
-    options.threads = threads_;
-    index_.build({places.data(), 3, samples_.size()}, nullptr, options);
+    index_ = search::indexOf({places.data(), 3, samples_.size()}, threads_);
   }
 
   void evaluate(std::size_t c) {
