@@ -37,6 +37,7 @@ struct StoredFieldPoint {
   float position[3];
   std::uint32_t normal;
   std::int32_t piece;
+  float confidence;
 };
 
 TilePatch patchOf(const StoredPatch& s) {
@@ -85,6 +86,7 @@ void savePatches(const PatchFile& patches, const std::string& path, std::uint64_
     std::copy_n(p.position, 3, points[i].position);
     points[i].normal = packNormal(p.normal, kPatchNormalBits);
     points[i].piece = p.piece;
+    points[i].confidence = p.confidence;
   }
   file.list(points);
   file.list(patches.viewpoints);
@@ -101,6 +103,7 @@ PatchFile loadPatches(const std::string& path, std::uint64_t run, std::uint32_t 
     std::copy_n(s.position, 3, p.position);
     unpackNormal(s.normal, kPatchNormalBits, p.normal);
     p.piece = s.piece;
+    p.confidence = s.confidence;
     patches.field_points.push_back(p);
   }
   patches.viewpoints = file.list<float>();

@@ -65,16 +65,19 @@ void takeSigns(const PointView& points, float unit, const CloudField& field, int
 
 }  // namespace
 
-CloudField findNoise(const PointView& places, const std::vector<float>& normals, bool consistent,
-                     int threads) {
+CloudField findNoise(const PointView& places, const std::vector<float>& normals,
+                     const std::vector<float>& confidences, bool consistent, int threads) {
   PreparedCloud cloud(places, nullptr, threads);
   cloud.findNeighbors(kRing, false);
   std::vector<float> of_points;
+  std::vector<float> sure;
   for (std::size_t i = 0; i < cloud.size(); ++i) {
     const float* n = &normals[4 * cloud.rowOf(i)];
     of_points.insert(of_points.end(), n, n + 4);
+    if (!consistent) sure.push_back(confidences[cloud.rowOf(i)]);
   }
-  NoiseField noise = findNoiseField(cloud.points(), cloud.neighborhoods(), of_points, threads);
+  NoiseField noise =
+      findNoiseField(cloud.points(), cloud.neighborhoods(), of_points, threads, sure);
   noise.consistent = consistent;
   findWhatSheetsKeep(cloud.points(), cloud.neighborhoods(), of_points, threads, noise);
   CloudField out;

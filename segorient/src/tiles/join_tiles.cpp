@@ -135,14 +135,17 @@ CloudField TileJoiner::Impl::findField(const AutoOrientation& orientation, const
   if (field_points.empty()) return {};  // tiles whose sensors were known did not ask
   std::vector<float> places;
   std::vector<float> of_rows;
+  std::vector<float> confidences;
   for (const FieldPoint& p : field_points) {
     const auto sign =
         p.piece < 0 ? 0.F : static_cast<float>(orientation.result.segments[at(p.piece)].sign);
     places.insert(places.end(), p.position, p.position + 3);
     for (const float n : p.normal) of_rows.push_back(sign * n);
     of_rows.push_back(0.F);
+    const float of_piece = p.piece < 0 ? 1.F : orientation.result.segments[at(p.piece)].confidence;
+    confidences.push_back(std::min(p.confidence, of_piece));
   }
-  CloudField out = detail::findNoise({places.data(), 3, field_points.size()}, of_rows,
+  CloudField out = detail::findNoise({places.data(), 3, field_points.size()}, of_rows, confidences,
                                      options.traits.consistent != 0, options.threads);
   // Means of several points do not tell directions.
   if (options.patch_points == 1)

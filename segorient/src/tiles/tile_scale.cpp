@@ -120,6 +120,7 @@ void TileScale::cutPatches(const Segmentation& pieces, std::uint32_t most) {
 }
 
 void TileScale::listFieldPoints(const std::vector<float>& normals,
+                                const std::vector<float>& confidences,
                                 const std::vector<std::int32_t>& followed,
                                 const std::vector<SegmentOrientationResult>& pieces,
                                 std::uint32_t most, TileShare& out) {
@@ -136,6 +137,7 @@ void TileScale::listFieldPoints(const std::vector<float>& normals,
     for (std::size_t a = 0; a < 3; ++a) {
       f.position[a] += share * (points[i][a] * unit - f.position[a]);
     }
+    f.confidence += share * (confidences[i] - f.confidence);
     if (followed[i] < 0) continue;
     if (f.piece < 0) f.piece = followed[i];
     const auto sign = static_cast<float>(pieces[at(f.piece)].sign);

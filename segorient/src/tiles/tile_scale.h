@@ -35,7 +35,8 @@ struct TileScale {
   /// Of own points by their patches, of most points each. \param normals 4 floats a point,
   /// oriented \param followed the piece whose sign each follows \param pieces with the signs that
   /// they are oriented by
-  void listFieldPoints(const std::vector<float>& normals, const std::vector<std::int32_t>& followed,
+  void listFieldPoints(const std::vector<float>& normals, const std::vector<float>& confidences,
+                       const std::vector<std::int32_t>& followed,
                        const std::vector<SegmentOrientationResult>& pieces, std::uint32_t most,
                        TileShare& out);
   /// A point's normal as its piece is turned.

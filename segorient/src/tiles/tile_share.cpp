@@ -45,14 +45,17 @@ class Tile {
   TileShare work() {
     // Filtered by signs of the tile's own, which are undone again.
     std::vector<float> filtered;
+    std::vector<float> confidences;
     fine_.record.field = [&](const PointView&, const detail::AutoNormals& found) {
-      if (options_.traits.hasField() && hints_.nothing()) filtered = found.normals;
+      if (!options_.traits.hasField() || !hints_.nothing()) return;
+      filtered = found.normals;
+      confidences = found.confidences;
     };
     run();
     joined().list(options_.patch_points, out_);
     if (!filtered.empty()) {
       followPieces(filtered);
-      fine_.listFieldPoints(filtered, followed_, stages_.orientation.result.segments,
+      fine_.listFieldPoints(filtered, confidences, followed_, stages_.orientation.result.segments,
                             options_.patch_points, out_);
     }
     listSigns();

@@ -101,6 +101,7 @@ struct FieldPoint {
   float position[3] = {0.F, 0.F, 0.F};  ///< as measured, relative to the tile's origin
   float normal[3] = {0.F, 0.F, 0.F};    ///< filtered, as `piece` is turned
   std::int32_t piece = -1;              ///< whose sign the first one's normal follows
+  float confidence = 0.F;               ///< mean: whether the normals around agree
 };
 
 /// A point that two tiles know, as one of them sees it.
