@@ -23,18 +23,16 @@ class PlacesSaid {
   using Place = TileTree::Place;
   void add(const Place& p) {
     const bool known = std::isfinite(p[0]) && std::isfinite(p[1]) && std::isfinite(p[2]);
-    if (first_.empty()) first_.push_back(p);
-    one_ = one_ && known && p == first_[0];
+    if (!first_) first_ = p;
+    one_ = one_ && known && p == *first_;
     any_ = any_ || known;
   }
   bool none() const { return !any_; }
   /// The place, if it is one for all of them.
-  std::optional<Place> one() const {
-    return one_ && any_ ? std::optional(first_[0]) : std::nullopt;
-  }
+  std::optional<Place> one() const { return one_ && any_ ? first_ : std::nullopt; }
 
  private:
-  std::vector<Place> first_;
+  std::optional<Place> first_;
   bool one_ = true;
   bool any_ = false;
 };

@@ -35,7 +35,7 @@ struct JoinSummary {
   std::uint64_t pieces = 0;
   std::uint64_t again = 0;                             ///< tiles that have to be worked on again
   std::vector<ComponentOrientationResult> components;  ///< by descending number of points
-  bool sensors_dropped = false;                        ///< whether no sensor is followed in the end
+  bool sensors_dropped = false;  ///< whether those that are known are left aside
 };
 
 /// The signs of all tiles' pieces, from what tiles say of them.

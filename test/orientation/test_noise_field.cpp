@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <limits>
 #include <random>
 #include <vector>
 
@@ -443,6 +444,55 @@ TEST(NoiseField, OpenSheetStaysOneSheet) {
     add(p + spacing * draw(rng, normal), Vector(-0.6 * std::cos(3 * x), 0, 1).normalized(), cloud);
   }
   EXPECT_GT(std::fabs(right(cloud, true) - 0.5), 0.49);
+}
+
+// A patch that faces the wrong way is less evidence where its signs are unsure, if signs contradict
+// each other; if not, all are as good.
+TEST(NoiseField, UnsureSignsAreLessEvidenceWhereTheyContradict) {
+  const LabelledCloud cloud = sample("bracket", bracket(), 8000, 9, 0.3);
+  const PointView points = viewOf(cloud.xyz);
+  const Neighborhoods table = neighborsOf(cloud.xyz);
+  std::vector<float> normals(cloud.normals.begin(), cloud.normals.end());
+  std::vector<float> confidences(points.size, 1.F);
+  std::vector<std::size_t> wrong;
+  for (int j = 0; j < table.count(0); ++j) {
+    const auto near = static_cast<std::size_t>(table.indices(0)[j]);
+    for (int k = 0; k < table.count(near); ++k) {
+      const auto i = static_cast<std::size_t>(table.indices(near)[k]);
+      if (confidences[i] < 1.F) continue;
+      confidences[i] = 0.1F;
+      wrong.push_back(i);
+      for (std::size_t a = 0; a < 3; ++a) normals[4 * i + a] *= -1.F;
+    }
+  }
+  const auto field = [&](const std::vector<float>& of_signs, bool consistent) {
+    return detail::findNoiseField(points, table, normals, 0, of_signs, consistent);
+  };
+  const detail::NoiseField sure = field(confidences, false);
+  const detail::NoiseField alike = field({}, false);
+  EXPECT_EQ(field(confidences, true).dipoles, alike.dipoles);
+  // How far the cells nearest to the patch say the truth.
+  const auto truth = [&](const detail::NoiseField& found) {
+    const std::size_t cells = found.places.size() / 4;
+    double sum = 0.0;
+    for (const std::size_t i : wrong) {
+      std::size_t nearest = 0;
+      float least = std::numeric_limits<float>::infinity();
+      for (std::size_t c = 0; c < cells; ++c) {
+        float square = 0.F;
+        for (std::size_t a = 0; a < 3; ++a) {
+          const float d = found.places[4 * c + a] - points[i][a];
+          square += d * d;
+        }
+        if (square >= least) continue;
+        least = square;
+        nearest = c;
+      }
+      sum -= static_cast<double>(dot(&found.dipoles[4 * nearest], &normals[4 * i]));
+    }
+    return sum;
+  };
+  EXPECT_GT(truth(sure), truth(alike));
 }
 
 }  // namespace

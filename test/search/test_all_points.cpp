@@ -169,6 +169,27 @@ TEST(AllPoints, KLargerThanTheCloud) {
   }
 }
 
+// So many are searched for one by one.
+TEST(AllPoints, RegionByRegionManyNeighbors) {
+  for (const SearchCloud& cloud : searchClouds(900)) {
+    MedianHashIndex::Options options;
+    options.region_size = 100;
+    MedianHashIndex index;
+    index.build(cloud.view(), nullptr, options);
+    Neighborhoods all;
+    index.nearestKAll(300, all, false);
+    index.nearestKByRegion(
+        300, [&](const std::vector<pcl::index_t>& rows, const Neighborhoods& table) {
+          for (std::size_t i = 0; i < rows.size(); i += 19) {
+            const auto row = static_cast<std::size_t>(rows[i]);
+            const int count = all.count(row);
+            ASSERT_EQ(table.count(i), count);
+            ASSERT_TRUE(std::equal(all.indices(row), all.indices(row) + count, table.indices(i)));
+          }
+        });
+  }
+}
+
 TEST(AllPoints, RegionByRegionOfNothing) {
   MedianHashIndex index;
   const auto fail = [](const std::vector<pcl::index_t>&, const Neighborhoods&) { FAIL(); };

@@ -4,6 +4,8 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <fstream>
+#include <iterator>
 #include <limits>
 #include <random>
 
@@ -198,6 +200,14 @@ TEST_F(Hints, UnknownPlacesAreNone) {
   ASSERT_EQ(runProgram({"tiles", "tile", folder}).status, 0);
   // With places, each tile would be.
   EXPECT_EQ(runProgram({"tiles", "join", folder}).out, "");
+  const std::string report = scratch.file("report.json");
+  ASSERT_EQ(
+      runProgram({"orient", in, out, "--memory", "1G", "--tile-points", "700", "--report", report})
+          .status,
+      0);
+  std::ifstream file(report);
+  const std::string text{std::istreambuf_iterator<char>(file), {}};
+  EXPECT_NE(text.find("\"viewpoint_left_aside\": false"), std::string::npos) << text;
 }
 
 // Ground and fronts along a street, each point seen from the nearest of 20 poses.

@@ -42,7 +42,14 @@ class EstimationByRegion {
   EstimationByRegion(const PointView& points, const CloudNoise& noise,
                      const AutomaticNormalTraits* known, float* normals,
                      const std::vector<pcl::index_t>* rows)
-      : points_(points), noise_(noise), known_(known), normals_(normals) {
+      : xyz_(points),
+        points_{xyz_.data(), 4, points.size},
+        noise_(noise),
+        known_(known),
+        normals_(normals) {
+    report_.noise = static_cast<float>(noise.in_spacings);
+    report_.traits.noise = noise.length;
+    report_.traits.in_spacings = noise.in_spacings;
     if (rows == nullptr) return;
     wanted_.resize(points.size);
     for (const pcl::index_t row : *rows) wanted_[static_cast<std::size_t>(row)] = 1;
@@ -100,7 +107,8 @@ class EstimationByRegion {
     report_.undefined += of_region.undefined;
   }
 
-  const PointView& points_;
+  const detail::FourFloats xyz_;
+  const PointView points_;
   CloudNoise noise_;
   const AutomaticNormalTraits* known_;
   float* normals_;

@@ -7,6 +7,10 @@
 
 #include "features/plane_lanes.inl"
 
+// Of (lambda1 - lambda0) (lambda2 - lambda0), of a trace of 1: float leaves errors of 1e-4 rad
+// then.
+constexpr float kTellsDirection = 1e-3F;
+
 inline void add(const Twice3& d, Scatter<Twice>& s) {
   s.sum = sum(s.sum, d);
   s.xx = s.xx + d.x * d.x;
@@ -31,10 +35,11 @@ inline void storeFirst(float* to, const Twice& a, std::size_t used) {
 /// Brings offsets whose squares would over- or underflow to lengths around 1.
 /// \return the units: lengths that are 1 now
 inline Twice rescaleExtremes(Batch& batch) {
+  const Twice ones = Twice{} + 1.0F;
+  if (batch.first >= batch.count) return ones;
   const Twice3 farthest = batch.offsets(batch.count - 1);
   const Twice square = dot(farthest, farthest);
-  Twice units = Twice{} + 1.0F;
-  if (batch.first >= batch.count || !any((square < 1e-30F) | (square > 1e30F))) return units;
+  if (!any((square < 1e-30F) | (square > 1e30F))) return ones;
   float of_lane[kBatchRows];
   for (std::size_t l = 0; l < kBatchRows; ++l) {
     rescalePoint(batch, l);
@@ -48,8 +53,8 @@ inline void storePlanes(const Scatter<Twice>& s, const Twice& n, const Twice& un
                         std::size_t used, GrownPlanes& out) {
   const Flattest<Twice> found = flattestDirection(s, n);
   const Twice zero{};
-  // Float leaves errors of 1e-4 rad then.
-  const TwiceMask has_normal = (found.gap > 1e-3F) & (dot(found.normal, found.normal) > 0.5F);
+  const TwiceMask has_normal =
+      (found.gap > kTellsDirection) & (dot(found.normal, found.normal) > 0.5F);
   // Where all variances are equal, what was found is not a number: the other operand remains.
   const Twice third = zero + 1.0F / 3.0F;
   const Twice least = larger(zero, smaller(select(has_normal, found.lambda, found.first), third));

@@ -40,9 +40,8 @@ using ScanPlaneTaker = std::function<void(std::size_t i, const GrownPlanes& plan
 /// than 3.5 degrees, and at which the neighbours spread in two directions.
 /// \param more the points, and their neighbours
 /// \param smallest neighbourhood that the cloud's noise allows
-/// \param take called from several threads for each point whose scale is clearly larger and that
-/// has
-///        a plane there
+/// \param take called from several threads for each point whose scale is clearly larger and
+///        that has a plane there
 void fitScanPlanes(MoreNeighbors& more, int smallest, const ScanPlaneTaker& take);
 
 }  // namespace segorient::detail

@@ -94,9 +94,8 @@ constexpr float kFewTellNothing = 0.13F;
 /// So they do with scan_lines in clouds that show scan lines.
 ///
 /// \param points distinct finite points
-/// \param neighborhoods their neighbours: kSheetNeighbors beside the point itself, or as many as
-/// there
-///        are
+/// \param neighborhoods their neighbours: kSheetNeighbors beside the point itself, or as many
+///        as there are
 /// \param more of the same points, for scan_scales; null = sought here
 SEGORIENT_FEATURES_EXPORT SheetNormals estimateSheetNormals(const PointView& points,
                                                             const Neighborhoods& neighborhoods,

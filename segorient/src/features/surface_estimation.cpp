@@ -204,6 +204,7 @@ void SurfaceEstimation::triangulate() {
 // Cubic surfaces at what is open.
 EdgeCubics SurfaceEstimation::cubicsAtEdges() {
   EdgeCubics out;
+  out.rows = open_;
   out.k = cubicSize(in_spacings_, available());
   if (out.k == 0) return out;
   Surfaces cubics(NormalEstimator::AWAS_CUBIC);
@@ -213,7 +214,6 @@ EdgeCubics SurfaceEstimation::cubicsAtEdges() {
     return cubics.residuals[static_cast<std::size_t>(open_[o])];
   };
   out.nearer = countCubic(open_, cubic, kBetter);
-  out.rows = open_;
   for (const pcl::index_t o : open_) {
     const float* n = &cubics.normals[4 * static_cast<std::size_t>(o)];
     out.normals.insert(out.normals.end(), n, n + 4);

@@ -12,10 +12,10 @@ namespace segorient::detail {
 
 /// Cubic surfaces at what no quadratic one fits.
 struct EdgeCubics {
-  int k = 0;  ///< neighbours; 0 where there are no such surfaces
-  std::vector<pcl::index_t> rows;
-  std::vector<float> normals;  ///< 4 a row
-  std::size_t nearer = 0;      ///< of the rows: they are clearly nearer than quadratic ones
+  int k = 0;                       ///< neighbours; 0 where noise is too much for such surfaces
+  std::vector<pcl::index_t> rows;  ///< what no quadratic one fits
+  std::vector<float> normals;      ///< 4 a row; empty without such surfaces
+  std::size_t nearer = 0;          ///< of the rows: they are clearly nearer than quadratic ones
 
   /// Takes them, if they fit most of the rows better.
   /// \param all 4 floats a point
@@ -23,8 +23,8 @@ struct EdgeCubics {
                     AutomaticNormalReport& report) const;
 };
 
-/// Normals without a choice to make, see estimateNormalsAutomatically(), step by step: each leaves
-/// fewer points open.
+/// Normals without a choice to make, see estimateNormalsAutomatically(), step by step. Points are
+/// open until noise explains what a surface leaves of their neighbours: each step leaves fewer.
 class SurfaceEstimation {
  public:
   /// \param normals 4 floats for each row of the table
@@ -34,7 +34,9 @@ class SurfaceEstimation {
                     const std::vector<pcl::index_t>* rows);
 
   AutomaticNormalReport run(std::vector<pcl::index_t>* unexplained);
-  /// The first steps of a cloud whose few neighbours tell little, of a part of it.
+  /// Of a part of a noisy cloud: quadratic surfaces, and cubic ones at what these leave open, which
+  /// the whole cloud decides on. Not where fewTell() is false: then steps look at all points.
+  /// \param cubics found, not taken
   AutomaticNormalReport runPart(EdgeCubics& cubics);
 
  private:

@@ -77,8 +77,7 @@ CloudField findNoise(const PointView& places, const std::vector<float>& normals,
     if (!consistent) sure.push_back(confidences[cloud.rowOf(i)]);
   }
   NoiseField noise =
-      findNoiseField(cloud.points(), cloud.neighborhoods(), of_points, threads, sure);
-  noise.consistent = consistent;
+      findNoiseField(cloud.points(), cloud.neighborhoods(), of_points, threads, sure, consistent);
   findWhatSheetsKeep(cloud.points(), cloud.neighborhoods(), of_points, threads, noise);
   CloudField out;
   if (noise.empty()) return out;

@@ -14,9 +14,10 @@
 namespace segorient::detail {
 
 /// What noise leaves of the field, see findNoiseField().
-/// \param places of the cloud as measured \param normals 4 floats a row, oriented; gathered \param
-/// confidences of their signs, by row \param consistent whether the cloud is, as parts of it tell
-/// that were oriented one by one: some
+/// \param places of the cloud as measured
+/// \param normals 4 floats a row, oriented; gathered
+/// \param confidences of their signs, by row
+/// \param consistent whether the cloud is, as parts of it tell that were oriented one by one: some
 ///        points of tiles always follow the wrong piece
 CloudField findNoise(const PointView& places, const std::vector<float>& normals,
                      const std::vector<float>& confidences, bool consistent, int threads);

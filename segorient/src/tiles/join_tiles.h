@@ -50,7 +50,7 @@ struct JoinedTiles {
   CloudField field;
   std::vector<ComponentOrientationResult> components;  ///< by descending number of points
   std::size_t pieces = 0;                              ///< of all tiles
-  bool sensors_dropped = false;                        ///< whether no sensor is followed in the end
+  bool sensors_dropped = false;  ///< whether those that are known are left aside
 };
 
 /// Puts tiles together: pieces that two tiles see the same points of vote on each other as pieces

@@ -93,15 +93,18 @@ class SEGORIENT_SEARCH_EXPORT MedianHashIndex {
   /// \param epsilon instead of the one of build()
   void nearestKAll(int k, Neighborhoods& out, bool with_distances, float epsilon) const;
 
-  /// Called for each region of the index, from several threads at once: `rows` that build() was
-  /// given, which are near each other, and row i of `table` the nearest of rows[i].
+  /// Called for each region of the index, from several threads at once. Both are valid during the
+  /// call only. `rows` are near each other; they are rows that build() was given (or numbers of
+  /// indices, as in nearestKAll()). Row i of `table` has the min(k, size()) nearest of rows[i].
   using RegionTaker =
       std::function<void(const std::vector<pcl::index_t>& rows, const Neighborhoods& table)>;
 
   /// What nearestKAll() finds with epsilon 0, region by region, for whoever does not need the table
   /// of all rows at once: it takes region_size * k * sizeof(pcl::index_t) bytes a thread. Rows of
   /// points left out are not visited.
-  /// \throws what `take` does
+  /// \throws what `take` does, std::bad_alloc if there is no memory; other regions may not have
+  /// been
+  ///         visited then
   void nearestKByRegion(int k, const RegionTaker& take) const;
 
   /// All points nearer than `radius` to every row that build() was given, as nearestKAll(): each

@@ -173,7 +173,7 @@ void findWhatSheetsKeep(const PointView& points, const Neighborhoods& neighborho
 
 NoiseField findNoiseField(const PointView& points, const Neighborhoods& neighborhoods,
                           const std::vector<float>& normals, int threads,
-                          const std::vector<float>& confidences) {
+                          const std::vector<float>& confidences, std::optional<bool> consistent) {
   // Spread: noise of a spacing alone makes so much.
   constexpr float kSure = 0.03F;
   // The mean of w is a fifth of its root mean square there, as it is by chance of 25 pieces with
@@ -192,7 +192,9 @@ NoiseField findNoiseField(const PointView& points, const Neighborhoods& neighbor
                            threads);
   const FieldFit own = solver.fit(subset.normals);
   std::vector<float> found = subset.normals;
-  out.consistent = opposedPairs(points, neighborhoods, normals, threads).facing < kSuspicious;
+  out.consistent = consistent
+                       ? *consistent
+                       : opposedPairs(points, neighborhoods, normals, threads).facing < kSuspicious;
   if (own.spread < kSaysNothing && own.factor > 0.F) {
     // Signs that do not contradict each other are all as good, whatever votes were against them.
     const std::vector<float> trust = trustOf(

@@ -7,6 +7,7 @@
 #include <segorient/common/point_view.h>
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "orientation/automatic/orient_points.h"
@@ -43,12 +44,11 @@ struct NoiseField {
 /// \param points positions as measured, finite, near ones side by side
 /// \param neighborhoods of them, six at least
 /// \param normals 4 floats a point, oriented
-/// \param confidences of their signs; empty = all alike
-SEGORIENT_ORIENTATION_EXPORT NoiseField findNoiseField(const PointView& points,
-                                                       const Neighborhoods& neighborhoods,
-                                                       const std::vector<float>& normals,
-                                                       int threads,
-                                                       const std::vector<float>& confidences = {});
+/// \param confidences of their signs, looked at where these contradict each other; empty = all
+/// alike \param consistent whether they do not, see NoiseField; none = measured
+SEGORIENT_ORIENTATION_EXPORT NoiseField findNoiseField(
+    const PointView& points, const Neighborhoods& neighborhoods, const std::vector<float>& normals,
+    int threads, const std::vector<float>& confidences = {}, std::optional<bool> consistent = {});
 
 /// Finds NoiseField::keeps, for parts of the cloud that see only parts of what would be turned.
 /// \param points those of the field \param normals those that it was found with

@@ -2,6 +2,7 @@
 // Copyright (c) 2026, the segorient authors
 #include "orientation/winding/dipole_fields.h"
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 
@@ -17,7 +18,8 @@ struct Run {
   std::size_t first;
   std::size_t last;
   std::array<float, 3> center;
-  float reach;
+  float reach;   ///< of the places from the centre
+  float radius;  ///< the largest
 };
 
 template <typename RadiusAt>
@@ -29,14 +31,16 @@ std::vector<Run> cutRuns(const PointView& at, const RadiusAt& radius) {
     Box box;
     box.add(at[first]);
     const float widest = kWidest * radius(first);
+    float largest = radius(first);
     std::size_t last = first + 1;
     for (; last < at.size && last - first < kPlaces; ++last) {
       Box wider = box;
       wider.add(at[last]);
       if (0.5F * wider.diagonal() > widest) break;
       box = wider;
+      largest = std::max(largest, radius(last));
     }
-    runs.push_back({first, last, box.center(), 0.5F * box.diagonal()});
+    runs.push_back({first, last, box.center(), 0.5F * box.diagonal(), largest});
     first = last;
   }
   return runs;
@@ -55,7 +59,7 @@ void forEachPlace(const PointView& at, const DipoleCloud& from, const RadiusAt& 
 #pragma omp for schedule(dynamic, 16)
     for (std::size_t r = 0; r < runs.size(); ++r) {
       seen.clear();
-      tree.listDipoles(runs[r].center.data(), runs[r].reach + radius(runs[r].first), seen);
+      tree.listDipoles(runs[r].center.data(), runs[r].reach + runs[r].radius, seen);
       for (std::size_t i = runs[r].first; i < runs[r].last; ++i) evaluate(seen, i);
     }
   }
