@@ -262,7 +262,7 @@ Plan planStep(const TileRequest& request, const std::string& folder, const StepP
   plan.patch_points = static_cast<std::uint32_t>((plan.rows + kSamplePoints - 1) / kSamplePoints);
   Probe probe(places, points_each, plan.origin);
   // Columns of unknown places say no more than none, as in memory.
-  plan.has_viewpoints = plan.has_viewpoints && !said.none();
+  if (plan.trajectory.empty() && said.none()) plan.has_viewpoints = false;
   const PlanSensors sensors(plan, sample, said, image_width, request.threads);
   followSensors(sensors, plan);
   distribute(folder, progress, sensors, request.threads, probe, plan);
