@@ -14,34 +14,9 @@
 
 namespace segorient::detail {
 
-namespace portable {
-namespace {
-#define SEGORIENT_LANES 4
-#include "features/grown_lanes.inl"
-#undef SEGORIENT_LANES
-}  // namespace
-}  // namespace portable
-
-#if SEGORIENT_X86
-SEGORIENT_TARGET_BEGIN("avx2")
-namespace avx2 {
-namespace {
-#define SEGORIENT_LANES 8
-#include "features/grown_lanes.inl"
-#undef SEGORIENT_LANES
-}  // namespace
-}  // namespace avx2
-SEGORIENT_TARGET_END
-SEGORIENT_TARGET_BEGIN("avx512f,avx512vl")
-namespace avx512 {
-namespace {
-#define SEGORIENT_LANES 16
-#include "features/grown_lanes.inl"
-#undef SEGORIENT_LANES
-}  // namespace
-}  // namespace avx512
-SEGORIENT_TARGET_END
-#endif
+#define SEGORIENT_KERNELS "features/grown_lanes.inl"
+#include "features/each_width.inl"
+#undef SEGORIENT_KERNELS
 
 Plane GrownPlanes::at(std::size_t i, float length) const {
   const float scale = unit[i] / length;

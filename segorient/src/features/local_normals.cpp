@@ -18,34 +18,9 @@
 namespace segorient {
 namespace detail {
 
-namespace portable {
-namespace {
-#define SEGORIENT_LANES 4
-#include "features/local_kernels.inl"
-#undef SEGORIENT_LANES
-}  // namespace
-}  // namespace portable
-
-#if SEGORIENT_X86
-SEGORIENT_TARGET_BEGIN("avx2")
-namespace avx2 {
-namespace {
-#define SEGORIENT_LANES 8
-#include "features/local_kernels.inl"
-#undef SEGORIENT_LANES
-}  // namespace
-}  // namespace avx2
-SEGORIENT_TARGET_END
-SEGORIENT_TARGET_BEGIN("avx512f,avx512vl")
-namespace avx512 {
-namespace {
-#define SEGORIENT_LANES 16
-#include "features/local_kernels.inl"
-#undef SEGORIENT_LANES
-}  // namespace
-}  // namespace avx512
-SEGORIENT_TARGET_END
-#endif
+#define SEGORIENT_KERNELS "features/local_kernels.inl"
+#include "features/each_width.inl"
+#undef SEGORIENT_KERNELS
 
 namespace {
 

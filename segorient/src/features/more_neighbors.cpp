@@ -4,13 +4,13 @@
 
 #include <array>
 
+#include "search/index_of.h"
+
 namespace segorient::detail {
 
 const search::MedianHashIndex& MoreNeighbors::index() {
   if (!indexed_) {
-    search::MedianHashIndex::Options options;
-    options.threads = threads_;
-    index_.build(points_, nullptr, options);
+    index_ = search::indexOf(points_, threads_);
     indexed_ = true;
   }
   return index_;

@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "common/every_nth.h"
 #include "common/median.h"
 #include "common/threads.h"
 #include "features/sheet_fit.h"
@@ -67,15 +68,15 @@ NoiseLevel measureNoise(const PointView& points, const Neighborhoods& nb, int th
   // Of noise alone, one sample in 200 looks like two walls; of plates of two spacings with noise of
   // a quarter to .4 of one, a tenth to a half of the samples.
   constexpr float kThinShare = 0.1F;
-  const std::size_t step = std::max<std::size_t>(1, points.size / kSamples);
-  const std::size_t n = (points.size + step - 1) / step;
+  const detail::EveryNth samples(points.size, kSamples);
+  const std::size_t n = samples.size();
   const int t = resolveThreads(threads, n, 2000.0);
   // The median of what can be told of the samples.
   const auto medianOver = [&](const auto& residual, std::size_t& told) {
     std::vector<float> found(n);
 #pragma omp parallel for num_threads(t) schedule(dynamic, 64)
     for (std::size_t s = 0; s < n; ++s) {
-      const std::size_t i = s * step;
+      const std::size_t i = samples[s];
       found[s] = residual(gatherOffsets(points, nb, i, detail::meanDistance(points, nb, i, 6)));
     }
     found.erase(

@@ -9,6 +9,7 @@
 #include <limits>
 #include <memory>
 
+#include "common/every_nth.h"
 #include "common/threads.h"
 #include "features/grown_planes.h"
 #include "features/local_fit_job.h"
@@ -204,11 +205,10 @@ bool needsScanScales(const PointView& points, const Neighborhoods& nb, int small
   constexpr double kManyAsk = 0.15;
   // Noise that leaves the largest of them no say asks for more everywhere.
   if (smallest >= kSheetNeighbors) return true;
-  const std::size_t step = std::max<std::size_t>(1, points.size / kSamples);
   // Each sample, and behind it the points around.
   Rows rows;
   std::vector<std::size_t> first;
-  for (std::size_t i = 0; i < points.size; i += step) {
+  for (const std::size_t i : EveryNth(points.size, kSamples)) {
     first.push_back(rows.size());
     rows.push_back(static_cast<pcl::index_t>(i));
     const Around around(nb, i);
@@ -245,9 +245,10 @@ bool showsScanLines(const PointView& points, const Neighborhoods& nb, int thread
   constexpr double kMoreThanChance = 0.01;
   if (nb.k() <= kNearest) return false;
   const Scales<1> scale{{kNearest}};
-  const std::size_t step = std::max<std::size_t>(1, points.size / kSamples);
   Rows rows;
-  for (std::size_t i = 0; i < points.size; i += step) rows.push_back(static_cast<pcl::index_t>(i));
+  for (const std::size_t i : EveryNth(points.size, kSamples)) {
+    rows.push_back(static_cast<pcl::index_t>(i));
+  }
   std::size_t on_lines = 0;
   for (const Scales<1>::Fits& fits : scale.fitRows(points, nb, rows, threads)) {
     on_lines += std::isnan(fits.noise2[0]) ? 1 : 0;

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "common/searched_neighborhoods.h"
+#include "search/index_of.h"
 
 namespace segorient {
 
@@ -57,9 +58,7 @@ std::size_t PreparedCloud::duplicates() const {
 
 const search::MedianHashIndex& PreparedCloud::index() {
   if (!indexed_) {
-    search::MedianHashIndex::Options options;
-    options.threads = threads_;
-    index_.build(points(), nullptr, options);
+    index_ = search::indexOf(points(), threads_);
     indexed_ = true;
   }
   return index_;
