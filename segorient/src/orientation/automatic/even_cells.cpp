@@ -22,12 +22,6 @@ constexpr int kAround = 9;  // the cell itself and eight neighbours
 // a hexagonal grid).
 constexpr float kAreaPerSquare = 0.92F;
 
-search::MedianHashIndex findAround(int threads, EvenCells& cells) {
-  search::MedianHashIndex index = search::indexOf(cells.points(), threads);
-  index.nearestKAll(kAround, cells.around, false);
-  return index;
-}
-
 }  // namespace
 
 float cellArea(const PointView& cells, const Neighborhoods& around, std::size_t cell) {
@@ -60,22 +54,38 @@ EvenCells gatherCells(const PointView& points, const std::vector<float>& normals
       m[a] = length > 0.F ? m[a] / length : 0.F;
     }
   }
-  findAround(threads, out);
+  search::indexOf(out.points(), threads).nearestKAll(kAround, out.around, false);
   for (std::size_t c = 0; c < n; ++c) out.areas.push_back(cellArea(out.points(), out.around, c));
   return out;
 }
 
-void assignCells(const PointView& points, int threads, EvenCells& cells) {
-  const search::MedianHashIndex index = findAround(threads, cells);
-  cells.cell_of.assign(points.size, 0);
+namespace {
+
+std::vector<std::uint32_t> nearestBy(const search::MedianHashIndex& index, const PointView& points,
+                                     int threads) {
+  std::vector<std::uint32_t> out(points.size, 0);
 #pragma omp parallel for schedule(static) num_threads(resolveThreads(threads, points.size, 1.0))
   for (std::size_t i = 0; i < points.size; ++i) {
     pcl::index_t cell = 0;
     float square = 0.F;
     if (index.nearestK(points[i], 1, &cell, &square) > 0) {
-      cells.cell_of[i] = static_cast<std::uint32_t>(cell);
+      out[i] = static_cast<std::uint32_t>(cell);
     }
   }
+  return out;
+}
+
+}  // namespace
+
+std::vector<std::uint32_t> nearestCells(const PointView& points, const PointView& cells,
+                                        int threads) {
+  return nearestBy(search::indexOf(cells, threads), points, threads);
+}
+
+void assignCells(const PointView& points, int threads, EvenCells& cells) {
+  const search::MedianHashIndex index = search::indexOf(cells.points(), threads);
+  index.nearestKAll(kAround, cells.around, false);
+  cells.cell_of = nearestBy(index, points, threads);
 }
 
 }  // namespace segorient::detail

@@ -32,6 +32,11 @@ EvenCells gatherCells(const PointView& points, const std::vector<float>& normals
 /// From the distances to the six nearest. \param around of the cells
 float cellArea(const PointView& cells, const Neighborhoods& around, std::size_t cell);
 
+/// The nearest cell of each point.
+/// \param cells their places
+std::vector<std::uint32_t> nearestCells(const PointView& points, const PointView& cells,
+                                        int threads);
+
 /// Finds what is around each of some cells, and the nearest cell of each point.
 SEGORIENT_ORIENTATION_EXPORT void assignCells(const PointView& points, int threads,
                                               EvenCells& cells);

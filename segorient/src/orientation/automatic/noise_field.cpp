@@ -130,12 +130,8 @@ struct FieldSides {
   }
 };
 
-// The nearest cell of each point.
 std::vector<std::uint32_t> cellsOf(const PointView& points, const NoiseField& field, int threads) {
-  EvenCells cells;
-  cells.places = field.places;
-  assignCells(points, threads, cells);
-  return std::move(cells.cell_of);
+  return nearestCells(points, {field.places.data(), 4, field.places.size() / 4}, threads);
 }
 
 // Of the points that the field is against, those that are to be turned.
