@@ -169,10 +169,10 @@ struct GroupTask {
   std::uint32_t k;  ///< how many neighbours: at most the number of points, or of a radius search
   // nearest k
   float epsilon;
-  float margin;            ///< of Guess
-  pcl::index_t* indices;   ///< output, k entries a row
-  float* distances;        ///< output, or null
-  std::size_t row_length;  ///< entries from one row of the output to the next
+  float margin;              ///< of Guess
+  pcl::index_t* indices;     ///< output, k entries a row
+  float* distances;          ///< output, or null
+  std::size_t row_length;    ///< entries from one row of the output to the next
   const std::uint32_t* row;  ///< of the output for each point, ...
   std::size_t first;         ///< ... from this one of the layout on
   // radius
