@@ -3,11 +3,16 @@
 #include <gtest/gtest.h>
 #include <segorient/search/median_hash_index.h>
 
+#include <algorithm>
+#include <atomic>
 #include <limits>
+#include <new>
 #include <stdexcept>
 #include <string>
+#include <vector>
 
 #include "brute_force.h"
+#include "common/parallel_for.h"
 #include "common/parts.h"
 #include "common/threads.h"
 #include "search_clouds.h"
@@ -47,6 +52,44 @@ TEST(Threads, WhatTheFirstOfTheFailedPartsThrowsIsThrown) {
     message = error.what();
   }
   EXPECT_EQ(message, "1");
+}
+
+TEST(ParallelFor, CallsEachOnceAndMakesSpacesOnlyForThreadsThatWork) {
+  for (const double nanoseconds : {0.0, 1.0, 5e4, 1e9}) {
+    for (const std::size_t count : {0U, 1U, 3U, 250000U}) {
+      std::vector<std::atomic<int>> calls(count);
+      std::atomic<int> spaces{0};
+      parallelFor(
+          count, 4, nanoseconds, [&spaces] { return ++spaces; },
+          [&calls](std::size_t i, int) { ++calls[i]; });
+      const bool once =
+          std::all_of(calls.begin(), calls.end(), [](const auto& c) { return c == 1; });
+      EXPECT_TRUE(once) << count << " of " << nanoseconds << " ns";
+      EXPECT_LE(spaces, std::min<std::size_t>(4, count));
+      EXPECT_EQ(spaces > 0, count > 0);
+    }
+  }
+}
+
+TEST(ParallelFor, ThrowsWhatTheFirstCallThrows) {
+  for (int repeat = 0; repeat < 20; ++repeat) {
+    std::atomic<int> calls{0};
+    try {
+      parallelFor(10000, 4, 1e5, [&calls](std::size_t i) {
+        ++calls;
+        if (i % 7 == 5) throw std::runtime_error(std::to_string(i));
+      });
+      ADD_FAILURE() << "nothing thrown";
+    } catch (const std::runtime_error& error) {
+      EXPECT_STREQ(error.what(), "5");
+    }
+    EXPECT_LT(calls, 10000) << "goes on in vain";
+  }
+}
+
+TEST(ParallelFor, ASpaceThatCannotBeMadeIsAnError) {
+  const auto fail = []() -> int { throw std::bad_alloc(); };
+  EXPECT_THROW(parallelFor(10, 4, 1e5, fail, [](std::size_t, int) {}), std::bad_alloc);
 }
 
 TEST(Threads, AnyNumberFindsTheSame) {

@@ -20,7 +20,8 @@ class SEGORIENT_SEARCH_EXPORT Parts {
   std::size_t begin(std::size_t part) const { return size_ * part / count_; }
   std::size_t end(std::size_t part) const { return begin(part + 1); }
 
-  /// Calls work(part) for each of them, on a thread of its own. Throws what the first one throws.
+  /// Calls work(part) for each of them, on a thread of its own. Throws what the first of them
+  /// throws.
   void forEach(const std::function<void(std::size_t)>& work) const;
 
  private:

@@ -27,4 +27,9 @@ int resolveThreads(int requested, std::size_t items, double nanoseconds) {
   return worth < threads ? std::max(1, static_cast<int>(worth)) : threads;
 }
 
+void onEachThread(int threads, const std::function<void()>& work) {
+#pragma omp parallel num_threads(threads) if (threads > 1)
+  work();
+}
+
 }  // namespace segorient

@@ -5,6 +5,7 @@
 #include <segorient/common/export.h>
 
 #include <cstddef>
+#include <functional>
 
 namespace segorient {
 
@@ -18,5 +19,8 @@ SEGORIENT_SEARCH_EXPORT int resolveThreads(int requested);
 /// programs work, so each has to save more than that. \param items how many times something is done
 /// \param nanoseconds about how long that takes one thread each time
 SEGORIENT_SEARCH_EXPORT int resolveThreads(int requested, std::size_t items, double nanoseconds);
+
+/// Calls work() on each of some threads. None may throw.
+SEGORIENT_SEARCH_EXPORT void onEachThread(int threads, const std::function<void()>& work);
 
 }  // namespace segorient

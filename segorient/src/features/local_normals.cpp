@@ -10,7 +10,7 @@
 
 #include "common/compiler.h"
 #include "common/instruction_set.h"
-#include "common/threads.h"
+#include "common/parallel_for.h"
 #include "common/vectors.h"
 #include "features/local_fit_job.h"
 #include "features/surface_fit.h"
@@ -81,15 +81,11 @@ void estimateNormals(const PointView& queries, const PointView& points,
 
   constexpr double kPointTime = 300.0;  // ns
   const Kernel kernel = chooseKernel(options.portable);
-  const auto count = static_cast<std::ptrdiff_t>(rows ? rows->size() : neighborhoods.size());
-  constexpr std::ptrdiff_t kBlock = 1024;
-  const std::ptrdiff_t blocks = (count + kBlock - 1) / kBlock;
-  const int threads = resolveThreads(options.threads, static_cast<std::size_t>(count), kPointTime);
-#pragma omp parallel for schedule(dynamic) num_threads(threads)
-  for (std::ptrdiff_t b = 0; b < blocks; ++b) {
-    kernel(job, static_cast<std::size_t>(b * kBlock),
-           static_cast<std::size_t>(std::min(count, (b + 1) * kBlock)));
-  }
+  const std::size_t count = rows ? rows->size() : neighborhoods.size();
+  constexpr std::size_t kBlock = 1024;
+  const std::size_t blocks = (count + kBlock - 1) / kBlock;
+  parallelFor(blocks, options.threads, timeOfEach(blocks, count, kPointTime),
+              [&](std::size_t b) { kernel(job, b * kBlock, std::min(count, (b + 1) * kBlock)); });
 }
 
 }  // namespace detail

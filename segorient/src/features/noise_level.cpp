@@ -8,7 +8,7 @@
 
 #include "common/every_nth.h"
 #include "common/median.h"
-#include "common/threads.h"
+#include "common/parallel_for.h"
 #include "features/sheet_fit.h"
 #include "features/sheet_normals.h"
 #include "features/sheet_walls.h"
@@ -70,15 +70,13 @@ NoiseLevel measureNoise(const PointView& points, const Neighborhoods& nb, int th
   constexpr float kThinShare = 0.1F;
   const detail::EveryNth samples(points.size, kSamples);
   const std::size_t n = samples.size();
-  const int t = resolveThreads(threads, n, 2000.0);
   // The median of what can be told of the samples.
   const auto medianOver = [&](const auto& residual, std::size_t& told) {
     std::vector<float> found(n);
-#pragma omp parallel for num_threads(t) schedule(dynamic, 64)
-    for (std::size_t s = 0; s < n; ++s) {
+    parallelFor(n, threads, 2000.0, [&](std::size_t s) {
       const std::size_t i = samples[s];
       found[s] = residual(gatherOffsets(points, nb, i, detail::meanDistance(points, nb, i, 6)));
-    }
+    });
     found.erase(
         std::remove_if(found.begin(), found.end(), [](float r) { return !std::isfinite(r); }),
         found.end());

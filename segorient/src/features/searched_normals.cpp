@@ -7,7 +7,7 @@
 #include <iterator>
 #include <limits>
 
-#include "common/threads.h"
+#include "common/parallel_for.h"
 #include "features/local_normals.h"
 #include "search/prepared_cloud.h"
 
@@ -155,30 +155,31 @@ void searchAndEstimateNormals(const PointView& input, const pcl::Indices& indice
   LocalNormalOptions block_options = options;
   block_options.threads = 1;
   constexpr std::size_t kBlock = 256;
-  const auto blocks = static_cast<std::ptrdiff_t>((indices.size() + kBlock - 1) / kBlock);
-#pragma omp parallel num_threads(resolveThreads(options.threads, indices.size(), 1000.0))
-  {
+  const std::size_t blocks = (indices.size() + kBlock - 1) / kBlock;
+  struct Space {
     TableBuilder builder;
     pcl::Indices found;
     std::vector<float> sqr_distances;
-#pragma omp for schedule(dynamic)
-    for (std::ptrdiff_t b = 0; b < blocks; ++b) {
-      const std::size_t begin = static_cast<std::size_t>(b) * kBlock;
-      const std::size_t end = std::min(indices.size(), begin + kBlock);
-      builder.clear();
-      for (std::size_t i = begin; i < end; ++i) {
-        const float undefined[3] = {kNaN, kNaN, kNaN};
-        const bool usable =
-            isRow(indices[i], input.size) && isFinite(input[static_cast<std::size_t>(indices[i])]);
-        const int count = usable ? search(indices[i], found, sqr_distances) : 0;
-        builder.add(usable ? input[static_cast<std::size_t>(indices[i])] : undefined, found.data(),
-                    std::min(static_cast<std::size_t>(std::max(count, 0)), found.size()),
-                    points.size);
-      }
-      estimateNormals(builder.queries(), points, builder.table(), block_options,
-                      normals + 4 * begin, curvatures ? curvatures + begin : nullptr);
-    }
-  }
+  };
+  parallelFor(
+      blocks, options.threads, timeOfEach(blocks, indices.size(), 1000.0), [] { return Space(); },
+      [&](std::size_t b, Space& space) {
+        const std::size_t begin = b * kBlock;
+        const std::size_t end = std::min(indices.size(), begin + kBlock);
+        space.builder.clear();
+        for (std::size_t i = begin; i < end; ++i) {
+          const float undefined[3] = {kNaN, kNaN, kNaN};
+          const bool usable = isRow(indices[i], input.size) &&
+                              isFinite(input[static_cast<std::size_t>(indices[i])]);
+          const int count = usable ? search(indices[i], space.found, space.sqr_distances) : 0;
+          space.builder.add(
+              usable ? input[static_cast<std::size_t>(indices[i])] : undefined, space.found.data(),
+              std::min(static_cast<std::size_t>(std::max(count, 0)), space.found.size()),
+              points.size);
+        }
+        estimateNormals(space.builder.queries(), points, space.builder.table(), block_options,
+                        normals + 4 * begin, curvatures ? curvatures + begin : nullptr);
+      });
 }
 
 bool estimateNormalsFromTable(const PointView& input, const pcl::Indices& indices,

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cstddef>
 
-#include "common/threads.h"
+#include "common/parallel_for.h"
 #include "features/sheet_fit.h"
 
 namespace segorient {
@@ -19,27 +19,30 @@ bool needsDenoising(const NoiseLevel& noise) {
 std::vector<float> projectOnPlanes(const PointView& points, const search::MedianHashIndex& index,
                                    int k, int threads) {
   std::vector<float> out(4 * points.size, 0.F);
-  const int t = resolveThreads(threads, points.size, 3000.0);
-#pragma omp parallel num_threads(t)
-  {
-    std::vector<pcl::index_t> indices(static_cast<std::size_t>(std::max(k, 1)));
-    std::vector<float> distances(indices.size());
-#pragma omp for schedule(dynamic, 512)
-    for (std::size_t i = 0; i < points.size; ++i) {
-      const float* p = points[i];
-      const int found = index.nearestK(p, k, indices.data(), distances.data());
-      detail::Moments m;
-      for (int j = 0; j < found; ++j) {
-        const float* q = points[static_cast<std::size_t>(indices[static_cast<std::size_t>(j)])];
-        m.add(q[0] - p[0], q[1] - p[1], q[2] - p[2]);
-      }
-      const detail::Plane plane = detail::fitPlane(m);
-      const float shift = plane.valid ? plane.mean.dot(plane.normal) : 0.F;
-      for (std::size_t a = 0; a < 3; ++a) {
-        out[4 * i + a] = p[a] + shift * plane.normal[static_cast<Eigen::Index>(a)];
-      }
-    }
-  }
+  struct Near {
+    std::vector<pcl::index_t> indices;
+    std::vector<float> distances;
+  };
+  const auto room = static_cast<std::size_t>(std::max(k, 1));
+  parallelFor(
+      points.size, threads, 3000.0,
+      [room] {
+        return Near{std::vector<pcl::index_t>(room), std::vector<float>(room)};
+      },
+      [&](std::size_t i, Near& near) {
+        const float* p = points[i];
+        const int found = index.nearestK(p, k, near.indices.data(), near.distances.data());
+        detail::Moments m;
+        for (std::size_t j = 0; j < static_cast<std::size_t>(found); ++j) {
+          const float* q = points[static_cast<std::size_t>(near.indices[j])];
+          m.add(q[0] - p[0], q[1] - p[1], q[2] - p[2]);
+        }
+        const detail::Plane plane = detail::fitPlane(m);
+        const float shift = plane.valid ? plane.mean.dot(plane.normal) : 0.F;
+        for (std::size_t a = 0; a < 3; ++a) {
+          out[4 * i + a] = p[a] + shift * plane.normal[static_cast<Eigen::Index>(a)];
+        }
+      });
   return out;
 }
 

@@ -10,9 +10,8 @@
 #include <memory>
 #include <vector>
 
-#include "common/threads.h"
+#include "common/parallel_for.h"
 #include "search/index_impl.h"
-#include "search/parallel_error.h"
 
 namespace segorient::search {
 namespace {
@@ -80,23 +79,15 @@ void growPart(RowBuffer& rows, std::size_t capacity) {
 }
 
 // Calls search(region, task) for all regions, each thread with a task of its own.
+// \param nanoseconds a point, see resolveThreads()
 template <typename Search>
-void forAllRegions(const Layout& layout, int threads, const GroupTask& wanted, std::size_t block,
-                   std::size_t candidates, Search&& search) {
-  const auto regions = static_cast<std::int64_t>(layout.regions.size());
-  ParallelError error;
-#pragma omp parallel num_threads(threads) if (threads > 1)
-  {
-    std::unique_ptr<GroupWork> work;
-#pragma omp for schedule(dynamic, 1)
-    for (std::int64_t r = 0; r < regions; ++r) {
-      error.guard([&] {
-        if (!work) work = std::make_unique<GroupWork>(layout, wanted, block, candidates);
-        search(static_cast<std::size_t>(r), work->task);
-      });
-    }
-  }
-  error.rethrow();
+void forAllRegions(const Layout& layout, int threads, double nanoseconds, const GroupTask& wanted,
+                   std::size_t block, std::size_t candidates, Search&& search) {
+  const std::size_t regions = layout.regions.size();
+  parallelFor(
+      regions, threads, timeOfEach(regions, layout.size(), nanoseconds),
+      [&] { return GroupWork(layout, wanted, block, candidates); },
+      [&](std::size_t r, GroupWork& work) { search(r, work.task); });
 }
 
 }  // namespace
@@ -151,8 +142,8 @@ void MedianHashIndex::Impl::nearestOfRegions(GroupTask task, const RegionSearch&
   // A group has up to 31 points with up to some 3 k + 104 candidates each, in two halves.
   const std::size_t block = 2048 + 16 * shared;
   const std::size_t half = block + Layout::kPadding + 16 * (3 * shared + 112);
-  forAllRegions(layout, resolveThreads(options.threads, layout.size() * wanted, kNeighborTime),
-                task, block, 2 * wholeLines(half), search);
+  forAllRegions(layout, options.threads, kNeighborTime * static_cast<double>(wanted), task, block,
+                2 * wholeLines(half), search);
 }
 
 void MedianHashIndex::Impl::nearestOfAll(std::size_t wanted, float epsilon,
@@ -253,8 +244,8 @@ void MedianHashIndex::radiusAll(double radius, RadiusNeighborhoods& out, unsigne
   try {
     out.reset(self.rows, self.layout.regions.size(), with_distances);
     if (!(radius > 0.0) || !(limit > 0.0F)) return;
-    forAllRegions(self.layout, resolveThreads(self.options.threads, self.layout.size(), kRowTime),
-                  task, kRadiusBlock, 4 * kRadiusBlock, search);
+    forAllRegions(self.layout, self.options.threads, kRowTime, task, kRadiusBlock, 4 * kRadiusBlock,
+                  search);
   } catch (...) {
     out = RadiusNeighborhoods();
     throw;

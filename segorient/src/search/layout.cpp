@@ -7,7 +7,7 @@
 #include <cmath>
 #include <memory>
 
-#include "search/parallel_error.h"
+#include "common/parallel_for.h"
 
 namespace segorient::search {
 namespace {
@@ -137,37 +137,27 @@ void sortIntoCells(BuildPoint* points, const Box& box, const Region& region, Lay
 }
 
 void hashRegions(BuildPoint* points, Layout& layout, int threads) {
-  const auto regions = static_cast<std::ptrdiff_t>(layout.regions.size());
-#pragma omp parallel for num_threads(threads) schedule(dynamic, 1) if (threads > 1)
-  for (std::ptrdiff_t i = 0; i < regions; ++i) {
-    const auto r = static_cast<std::size_t>(i);
+  constexpr double kRegionTime = 1e5;  // ns, see resolveThreads()
+  const std::size_t regions = layout.regions.size();
+  parallelFor(regions, threads, kRegionTime, [&](std::size_t r) {
     Region& region = layout.regions[r];
-    const Box& box = layout.boxes[layout.regions.size() + r];
+    const Box& box = layout.boxes[regions + r];
     const std::size_t count = region.end - region.begin;
     region.flat = 0;
     chooseGrid(box, count, typicalSpacing(points + region.begin, count, box), region);
-  }
+  });
   std::size_t starts = 0;
   for (Region& region : layout.regions) {
     region.first_start = static_cast<std::uint32_t>(starts);
     starts += cellCount(region) + 1;
   }
   layout.starts.assign(starts, 0);
-  ParallelError error;
-#pragma omp parallel num_threads(threads) if (threads > 1)
-  {
-    std::vector<std::uint32_t> cell;
-#pragma omp for schedule(dynamic, 1)
-    for (std::ptrdiff_t i = 0; i < regions; ++i) {
-      const auto r = static_cast<std::size_t>(i);
-      const Region& region = layout.regions[r];
-      error.guard([&] {
-        sortIntoCells(points + region.begin, layout.boxes[layout.regions.size() + r], region,
-                      layout, cell);
+  parallelFor(
+      regions, threads, kRegionTime, [] { return std::vector<std::uint32_t>(); },
+      [&](std::size_t r, std::vector<std::uint32_t>& cell) {
+        const Region& region = layout.regions[r];
+        sortIntoCells(points + region.begin, layout.boxes[regions + r], region, layout, cell);
       });
-    }
-  }
-  error.rethrow();
 }
 
 bool isFlat(const Box& box) {

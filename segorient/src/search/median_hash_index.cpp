@@ -6,9 +6,8 @@
 #include <utility>
 
 #include "common/median.h"
-#include "common/threads.h"
+#include "common/parallel_for.h"
 #include "search/index_impl.h"
-#include "search/parallel_error.h"
 
 namespace segorient::search {
 
@@ -117,42 +116,27 @@ void MedianHashIndex::nearestKBatch(const PointView& queries, int k,
                                     std::vector<std::vector<pcl::index_t>>& indices,
                                     std::vector<std::vector<float>>& sqr_distances,
                                     float epsilon) const {
-  const auto count = static_cast<std::int64_t>(queries.size);
-  const int threads = resolveThreads(impl_->options.threads, queries.size, kQueryTime);
   const std::size_t wanted = std::min(static_cast<std::size_t>(std::max(k, 0)), size());
   indices.resize(queries.size);
   sqr_distances.resize(queries.size);
-  ParallelError error;
-#pragma omp parallel for num_threads(threads) schedule(dynamic, 512) if (threads > 1)
-  for (std::int64_t i = 0; i < count; ++i) {
-    error.guard([&, at = static_cast<std::size_t>(i)] {
-      const float* query = queries[at];
-      const std::size_t found = isFinite(query) ? wanted : 0;
-      indices[at].resize(found);
-      sqr_distances[at].resize(found);
-      nearestK(query, static_cast<int>(found), indices[at].data(), sqr_distances[at].data(),
-               epsilon);
-    });
-  }
-  error.rethrow();
+  parallelFor(queries.size, impl_->options.threads, kQueryTime, [&](std::size_t i) {
+    const float* query = queries[i];
+    const std::size_t found = isFinite(query) ? wanted : 0;
+    indices[i].resize(found);
+    sqr_distances[i].resize(found);
+    nearestK(query, static_cast<int>(found), indices[i].data(), sqr_distances[i].data(), epsilon);
+  });
 }
 
 void MedianHashIndex::radiusBatch(const PointView& queries, double radius,
                                   std::vector<std::vector<pcl::index_t>>& indices,
                                   std::vector<std::vector<float>>& sqr_distances,
                                   unsigned int max_nn, bool sorted) const {
-  const auto count = static_cast<std::int64_t>(queries.size);
-  const int threads = resolveThreads(impl_->options.threads, queries.size, kQueryTime);
   indices.resize(queries.size);
   sqr_distances.resize(queries.size);
-  ParallelError error;
-#pragma omp parallel for num_threads(threads) schedule(dynamic, 512) if (threads > 1)
-  for (std::int64_t i = 0; i < count; ++i) {
-    error.guard([&, at = static_cast<std::size_t>(i)] {
-      this->radius(queries[at], radius, indices[at], sqr_distances[at], max_nn, sorted);
-    });
-  }
-  error.rethrow();
+  parallelFor(queries.size, impl_->options.threads, kQueryTime, [&](std::size_t i) {
+    this->radius(queries[i], radius, indices[i], sqr_distances[i], max_nn, sorted);
+  });
 }
 
 }  // namespace segorient::search

@@ -6,8 +6,8 @@
 #include <cmath>
 #include <limits>
 
+#include "common/parallel_for.h"
 #include "search/layout.h"
-#include "search/parallel_error.h"
 
 namespace segorient::search {
 namespace {
@@ -162,7 +162,7 @@ class Subdivision {
       return;
     }
     const std::size_t half = count / 2;
-    error_.guard([&] {
+    error_.guard(node, [&] {
       FastVector<BuildPoint>& scratch = scratch_[static_cast<std::size_t>(omp_get_thread_num())];
       scratch.clear();
       scratch.resize(count + kMoreScratch);

@@ -11,7 +11,7 @@
 #include <limits>
 #include <vector>
 
-#include "common/threads.h"
+#include "common/parallel_for.h"
 #include "segmentation/growth_state.h"
 
 namespace segorient::segmentation {
@@ -28,8 +28,8 @@ class SeedOrder {
         allowed_(allowed),
         blocks_(nodes_.size() / kBlock + 1) {
     firsts_.resize(blocks_.size());
-#pragma omp parallel for schedule(static) num_threads(resolveThreads(threads, nodes_.size(), 10.0))
-    for (std::size_t block = 0; block < blocks_.size(); ++block) firsts_[block] = leastOf(block);
+    parallelFor(blocks_.size(), threads, 10.0 * kBlock,
+                [&](std::size_t block) { firsts_[block] = leastOf(block); });
     firsts_.erase(std::remove(firsts_.begin(), firsts_.end(), kNone), firsts_.end());
     std::make_heap(firsts_.begin(), firsts_.end(), std::greater<>());
   }

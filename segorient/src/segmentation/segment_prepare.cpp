@@ -6,7 +6,7 @@
 #include <limits>
 
 #include "common/every_nth.h"
-#include "common/threads.h"
+#include "common/parallel_for.h"
 #include "common/unit_vector.h"
 #include "segmentation/growth_state.h"
 
@@ -105,16 +105,13 @@ float sqrSpacing(const float* sqr_distances, int count) {
 void packNodes(const PointView& points, const NormalView& normals, const Scaling& scaling,
                int threads, GrowthState& state) {
   const Neighborhoods& hood = *state.neighborhoods;
-  const auto n = static_cast<std::ptrdiff_t>(points.size);
   state.nodes.resize(points.size);
   Node* nodes = state.nodes.data();
   const float square = scaling.scale * scaling.scale;
   // The table's own distances save the look-up of the neighbours, but may have over- or
   // underflowed.
   const bool use_table = hood.hasDistances() && square > 1e-24F && square < 1e24F;
-#pragma omp parallel for num_threads(threads) schedule(static)
-  for (std::ptrdiff_t i = 0; i < n; ++i) {
-    const auto row = static_cast<std::size_t>(i);
+  parallelFor(points.size, threads, 40.0, [&](std::size_t row) {
     const float* p = points[row];
     const float* m = normals[row];
     Node& node = nodes[row];
@@ -136,17 +133,15 @@ void packNodes(const PointView& points, const NormalView& normals, const Scaling
     }
     const float curvature = m[normals.curvature];
     node.curvature = std::isnan(curvature) ? std::numeric_limits<float>::max() : curvature;
-    if (!use_table) continue;
+    if (!use_table) return;
     const float mean = sqrSpacing(hood.sqrDistances(row), hood.count(row)) * square;
     node.spacing = std::sqrt(mean * kSqrSpacingPerMean);
-  }
+  });
   if (use_table) return;
-#pragma omp parallel for num_threads(threads) schedule(static)
-  for (std::ptrdiff_t i = 0; i < n; ++i) {
-    const auto row = static_cast<std::size_t>(i);
+  parallelFor(points.size, threads, 40.0, [&](std::size_t row) {
     const float mean = sqrSpacing(nodes, hood.indices(row), row, hood.count(row));
     nodes[row].spacing = std::sqrt(mean * kSqrSpacingPerMean);
-  }
+  });
 }
 
 // Typical offset of a neighbour from a tangent plane in spacings, as a standard deviation: medians
@@ -195,10 +190,9 @@ bool isScattered(const Neighborhoods& hood) {
 
 void prepare(const PointView& points, const NormalView& normals, const SegmentationOptions& options,
              GrowthState& state) {
-  const int threads = resolveThreads(options.threads, points.size, 20.0);
   const Scaling scaling = scalingOf(points);
   state.scale = scaling.scale;
-  packNodes(points, normals, scaling, threads, state);
+  packNodes(points, normals, scaling, options.threads, state);
 
   constexpr float kNoLimit = std::numeric_limits<float>::max();
   state.limits.gap_sqr = options.max_gap > 0.F ? options.max_gap * options.max_gap : kNoLimit;
@@ -215,11 +209,8 @@ void prepare(const PointView& points, const NormalView& normals, const Segmentat
 void prepare(const PointView& points, const SheetField& field, int threads, GrowthState& state) {
   // Seeds are told apart to a percent or so: near points one after the other.
   constexpr std::uint32_t kLeading = 0xffff0000U;
-  const auto n = static_cast<std::ptrdiff_t>(points.size);
   state.nodes.resize(points.size);
-#pragma omp parallel for num_threads(resolveThreads(threads, points.size, 20.0)) schedule(static)
-  for (std::ptrdiff_t i = 0; i < n; ++i) {
-    const auto row = static_cast<std::size_t>(i);
+  parallelFor(points.size, threads, 20.0, [&](std::size_t row) {
     const float* p = points[row];
     const float* m = field.normals + 4 * row;
     std::uint32_t bits = 0;
@@ -228,7 +219,7 @@ void prepare(const PointView& points, const SheetField& field, int threads, Grow
     Node& node = state.nodes[row];
     node = {p[0], p[1], p[2], kSidePerMeanDistance * field.spacing[row], m[0], m[1], m[2], 0.F};
     std::memcpy(&node.curvature, &bits, sizeof bits);
-  }
+  });
   state.limits.gap_sqr = std::numeric_limits<float>::max();
   state.limits.offset = state.sheets->offset();
   state.typical_offset = typicalOffset(state);

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <iterator>
 
-#include "common/threads.h"
+#include "common/parallel_for.h"
 #include "segmentation/distinct_points.h"
 #include "segmentation/growth_state.h"
 #include "segmentation/settling_candidate.h"
@@ -218,18 +218,13 @@ std::size_t settleOnce(const SegmentationOptions& options, const std::vector<pcl
                        GrowthState& state) {
   std::vector<std::int32_t> wanted(border.size());
   const Settler settler(options, state);
-  const auto n = static_cast<std::ptrdiff_t>(border.size());
-#pragma omp parallel num_threads(resolveThreads(options.threads, border.size(), 1000.0))
-  {
-    DistinctPoints around;
-#pragma omp for schedule(dynamic, 256)
-    for (std::ptrdiff_t i = 0; i < n; ++i) {
-      const auto at = static_cast<std::size_t>(i);
-      if (at + kRowsAhead < border.size())
-        state.fetchRow(static_cast<std::size_t>(border[at + kRowsAhead]));
-      wanted[at] = settler.settle(static_cast<std::size_t>(border[at]), around);
-    }
-  }
+  parallelFor(
+      border.size(), options.threads, 1000.0, [] { return DistinctPoints(); },
+      [&](std::size_t i, DistinctPoints& around) {
+        if (i + kRowsAhead < border.size())
+          state.fetchRow(static_cast<std::size_t>(border[i + kRowsAhead]));
+        wanted[i] = settler.settle(static_cast<std::size_t>(border[i]), around);
+      });
   std::size_t moved = 0;
   for (std::size_t i = 0; i < border.size(); ++i) {
     const auto p = static_cast<std::size_t>(border[i]);

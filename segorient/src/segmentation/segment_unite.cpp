@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "common/threads.h"
+#include "common/parallel_for.h"
 #include "segmentation/border_test.h"
 #include "segmentation/growth_state.h"
 #include "segmentation/segment_sets.h"
@@ -48,16 +48,12 @@ std::vector<TestedBorder> testBorders(const SegmentationOptions& options,
   }
   std::vector<TestedBorder> borders(starts.size());
   starts.push_back(pairs.size());
-  const auto count = static_cast<std::ptrdiff_t>(borders.size());
-#pragma omp parallel num_threads(resolveThreads(options.threads, pairs.size(), 200.0))
-  {
-    BorderTest border_test(options, state);
-#pragma omp for schedule(dynamic, 16)
-    for (std::ptrdiff_t i = 0; i < count; ++i) {
-      const auto at = static_cast<std::size_t>(i);
-      borders[at] = border_test.test(pairs.data() + starts[at], pairs.data() + starts[at + 1]);
-    }
-  }
+  parallelFor(
+      borders.size(), options.threads, timeOfEach(borders.size(), pairs.size(), 200.0),
+      [&] { return BorderTest(options, state); },
+      [&](std::size_t i, BorderTest& border_test) {
+        borders[i] = border_test.test(pairs.data() + starts[i], pairs.data() + starts[i + 1]);
+      });
   return borders;
 }
 

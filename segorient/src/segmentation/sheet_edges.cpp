@@ -2,7 +2,7 @@
 // Copyright (c) 2026, the segorient authors
 #include "segmentation/sheet_edges.h"
 
-#include "common/threads.h"
+#include "common/parallel_for.h"
 
 namespace segorient {
 
@@ -26,16 +26,14 @@ SheetEdges::SheetEdges(const PointView& points, const SheetField& field)
 
 std::vector<std::uint32_t> SheetEdges::list(const Neighborhoods& neighborhoods, int threads) const {
   std::vector<std::uint32_t> masks(points_.size, 0);
-  const int t = resolveThreads(threads, points_.size, 60.0);
-#pragma omp parallel for num_threads(t) schedule(dynamic, 4096)
-  for (std::size_t p = 0; p < points_.size; ++p) {
-    if (!std::isfinite(field_.normals[4 * p])) continue;
+  parallelFor(points_.size, threads, 60.0, [&](std::size_t p) {
+    if (!std::isfinite(field_.normals[4 * p])) return;
     const pcl::index_t* row = neighborhoods.indices(p) + 1;
     const int degree = std::min(neighborhoods.count(p) - 1, kSheetDegree);
     for (int j = 0; j < degree; ++j) {
       masks[p] |= static_cast<std::uint32_t>(join(p, static_cast<std::size_t>(row[j]))) << j;
     }
-  }
+  });
   return masks;
 }
 

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "common/threads.h"
+#include "common/parallel_for.h"
 #include "surface/triangle_selection.h"
 
 namespace segorient {
@@ -161,17 +161,15 @@ SegmentMesh triangulatePoints(const PointView& points, const pcl::index_t* membe
 std::vector<SegmentMesh> triangulateSegments(const PointView& points,
                                              const Segmentation& segmentation,
                                              const TriangulationOptions& options, bool all) {
+  constexpr double kPointTime = 1500.0;  // ns, see resolveThreads()
   std::vector<SegmentMesh> meshes(segmentation.segments.size());
-  const int threads = resolveThreads(options.threads, segmentation.members.size(), 1500.0);
-  const auto count = static_cast<std::ptrdiff_t>(meshes.size());
-#pragma omp parallel for num_threads(threads) schedule(dynamic, 1)
-  for (std::ptrdiff_t i = 0; i < count; ++i) {
-    const auto s = static_cast<std::size_t>(i);
+  const double time = timeOfEach(meshes.size(), segmentation.members.size(), kPointTime);
+  parallelFor(meshes.size(), options.threads, time, [&](std::size_t s) {
     const Segment& segment = segmentation.segments[s];
-    if (!all && segment.kind != SegmentKind::REGULAR) continue;
+    if (!all && segment.kind != SegmentKind::REGULAR) return;
     meshes[s] = triangulatePoints(points, segmentation.begin(s), segment.size,
                                   segment.reference_normal, options);
-  }
+  });
   return meshes;
 }
 

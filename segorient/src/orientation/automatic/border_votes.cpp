@@ -6,7 +6,7 @@
 #include <array>
 #include <cmath>
 
-#include "common/threads.h"
+#include "common/parallel_for.h"
 #include "orientation/automatic/border_groups.h"
 #include "orientation/automatic/wide_votes.h"
 
@@ -127,12 +127,10 @@ std::vector<RawVote> castVotes(const Voter& voter, std::size_t n, int threads) {
   constexpr std::size_t kChunk = 8192;
   const std::size_t chunks = (n + kChunk - 1) / kChunk;
   std::vector<std::vector<RawVote>> parts(chunks);
-  const int t = resolveThreads(threads, n, 300.0);
-#pragma omp parallel for num_threads(t) schedule(dynamic, 1)
-  for (std::size_t c = 0; c < chunks; ++c) {
+  parallelFor(chunks, threads, timeOfEach(chunks, n, 300.0), [&](std::size_t c) {
     for (std::size_t p = c * kChunk; p < std::min(n, (c + 1) * kChunk); ++p)
       voter.vote(p, parts[c]);
-  }
+  });
   std::vector<RawVote> votes;
   std::size_t total = 0;
   for (const auto& part : parts) total += part.size();

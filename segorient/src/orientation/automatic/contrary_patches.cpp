@@ -8,7 +8,7 @@
 #include <limits>
 #include <utility>
 
-#include "common/threads.h"
+#include "common/parallel_for.h"
 
 namespace segorient::detail {
 namespace {
@@ -167,11 +167,10 @@ std::size_t turnContraryPatches(const PointView& points, const Neighborhoods& ne
   if (!(residual < kMostResidual)) return 0;
   Patches patches(points, neighborhoods, spacing, filtered.normals);
   std::vector<std::uint8_t> contrary(points.size);
-#pragma omp parallel for num_threads(resolveThreads(threads, points.size, 100.0)) schedule(static)
-  for (std::size_t p = 0; p < points.size; ++p) {
+  parallelFor(points.size, threads, 100.0, [&](std::size_t p) {
     const bool agreed = filtered.confidences[p] > kUnanimous;
     contrary[p] = !agreed && patches.meetsContrary(p) ? 1 : 0;
-  }
+  });
   std::size_t turned = 0;
   for (std::size_t p = 0; p < points.size; ++p) {
     if (contrary[p] != 0) turned += patches.settle(p);

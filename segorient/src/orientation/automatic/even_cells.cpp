@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "common/dot.h"
-#include "common/threads.h"
+#include "common/parallel_for.h"
 #include "features/sheet_fit.h"
 #include "orientation/automatic/blue_noise.h"
 #include "search/index_of.h"
@@ -64,14 +64,13 @@ namespace {
 std::vector<std::uint32_t> nearestBy(const search::MedianHashIndex& index, const PointView& points,
                                      int threads) {
   std::vector<std::uint32_t> out(points.size, 0);
-#pragma omp parallel for schedule(static) num_threads(resolveThreads(threads, points.size, 1.0))
-  for (std::size_t i = 0; i < points.size; ++i) {
+  parallelFor(points.size, threads, 200.0, [&](std::size_t i) {
     pcl::index_t cell = 0;
     float square = 0.F;
     if (index.nearestK(points[i], 1, &cell, &square) > 0) {
       out[i] = static_cast<std::uint32_t>(cell);
     }
-  }
+  });
   return out;
 }
 

@@ -10,7 +10,7 @@
 #include <utility>
 
 #include "common/dot.h"
-#include "common/threads.h"
+#include "common/parallel_for.h"
 #include "segmentation/segment_order.h"
 
 namespace segorient::detail {
@@ -129,19 +129,10 @@ void labelTheRest(const Neighborhoods& table, const std::vector<float>& normals,
 void followFinalNormals(const Neighborhoods& table, const std::vector<float>& normals, int threads,
                         Segmentation& segmentation) {
   const std::vector<std::int32_t> labels = segmentation.labels;
-  const auto n = static_cast<std::ptrdiff_t>(labels.size());
-  int moved = 0;
-#pragma omp parallel num_threads(resolveThreads(threads, labels.size(), 30.0)) reduction(+ : moved)
-  {
-    Follower follower(table, normals, labels);
-#pragma omp for schedule(static)
-    for (std::ptrdiff_t p = 0; p < n; ++p) {
-      const auto i = static_cast<std::size_t>(p);
-      segmentation.labels[i] = follower.labelOf(i);
-      moved += segmentation.labels[i] != labels[i] ? 1 : 0;
-    }
-  }
-  if (moved > 0) rankAgain(segmentation);
+  parallelFor(
+      labels.size(), threads, 30.0, [&] { return Follower(table, normals, labels); },
+      [&](std::size_t i, Follower& follower) { segmentation.labels[i] = follower.labelOf(i); });
+  if (segmentation.labels != labels) rankAgain(segmentation);
 }
 
 }  // namespace segorient::detail

@@ -9,7 +9,7 @@
 #include <utility>
 
 #include "common/dot.h"
-#include "common/threads.h"
+#include "common/parallel_for.h"
 
 namespace segorient::detail {
 namespace {
@@ -58,13 +58,11 @@ void listen(const PointView& points, CoarseLevel& level, float radius, int threa
   const search::MedianHashIndex& index = level.cloud.index();
   const float unit = level.cloud.unit();
   const float softening = (radius / unit) * (radius / unit);
-#pragma omp parallel for num_threads(resolveThreads(threads, points.size, 3000.0)) \
-    schedule(static, 1024)
-  for (std::size_t i = 0; i < points.size; ++i) {
+  parallelFor(points.size, threads, 3000.0, [&](std::size_t i) {
     float* n = &out.found.normals[4 * i];
     if (!isFinite(n)) {
       out.found.confidences[i] = 0.F;
-      continue;
+      return;
     }
     const float x[3] = {points[i][0] / unit, points[i][1] / unit, points[i][2] / unit};
     std::array<pcl::index_t, kHeard> near{};
@@ -81,11 +79,11 @@ void listen(const PointView& points, CoarseLevel& level, float radius, int threa
       }
     }
     heard.mean(&out.around[4 * i]);
-    if (!out.found.by_sensor.empty() && out.found.by_sensor[i] != 0) continue;
+    if (!out.found.by_sensor.empty() && out.found.by_sensor[i] != 0) return;
     out.found.confidences[i] = heard.confidence();
-    if (!heard.against()) continue;
+    if (!heard.against()) return;
     for (std::size_t a = 0; a < 3; ++a) n[a] = -n[a];
-  }
+  });
 }
 
 // What the level knows of its own points, in the cloud's unit and by all its points.

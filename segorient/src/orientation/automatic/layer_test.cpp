@@ -11,7 +11,7 @@
 
 #include "common/dot.h"
 #include "common/every_nth.h"
-#include "common/threads.h"
+#include "common/parallel_for.h"
 #include "segmentation/sheet_segmentation.h"
 
 namespace segorient::detail {
@@ -54,11 +54,10 @@ float thicknessScatter(const PointView& points, const Neighborhoods& neighborhoo
                        const std::vector<float>& around, int threads) {
   const EveryNth rows(points.size, kSamples);
   std::vector<float> values(rows.size(), -1.F);
-#pragma omp parallel for num_threads(resolveThreads(threads, rows.size(), 3000.0)) schedule(static)
-  for (std::size_t r = 0; r < rows.size(); ++r) {
+  parallelFor(rows.size(), threads, 3000.0, [&](std::size_t r) {
     const float* mean = &around[4 * rows[r]];
     if (mean[3] >= kFlat) values[r] = thickness(points, neighborhoods, rows[r], mean);
-  }
+  });
   std::vector<Eigen::Vector3d> normals;
   std::vector<double> found;
   for (std::size_t r = 0; r < rows.size(); ++r) {

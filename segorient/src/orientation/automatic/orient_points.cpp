@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "common/median.h"
-#include "common/threads.h"
+#include "common/parallel_for.h"
 #include "features/sheet_normals.h"
 #include "orientation/automatic/coarse_levels.h"
 #include "orientation/automatic/grazing_normals.h"
@@ -38,15 +38,14 @@ std::vector<std::uint8_t> lookAround(const SheetNormals& sheets, int threads) {
   constexpr float kExact = 1e-4F;
   constexpr float kWithoutNoise = 0.01F;
   std::vector<std::uint8_t> out(sheets.spacing.size());
-#pragma omp parallel for schedule(static) num_threads(resolveThreads(threads, out.size(), 5.0))
-  for (std::size_t i = 0; i < out.size(); ++i) {
+  parallelFor(out.size(), threads, 5.0, [&](std::size_t i) {
     const float residual = sheets.normals[4 * i + 3];
     unsigned bits = 0;
     if (residual < kExact) bits |= ONE_PLANE;
     if (residual < kWithoutNoise) bits |= ON_A_FACE;
     if (std::isfinite(sheets.below[i]) || std::isfinite(sheets.above[i])) bits |= SECOND_WALL;
     out[i] = static_cast<std::uint8_t>(bits);
-  }
+  });
   return out;
 }
 
@@ -95,12 +94,10 @@ AutoNormals orientAtOneScale(MoreNeighbors& more, const Neighborhoods& neighborh
   }
   if (begin) begin("recomputation", 0.7);
   OrientationResult& result = out.orientation.result;
-  const int workers = resolveThreads(threads, points.size, 5.0);
-#pragma omp parallel for schedule(static) num_threads(workers)
-  for (std::size_t i = 0; i < points.size; ++i) {
+  parallelFor(points.size, threads, 5.0, [&](std::size_t i) {
     const auto sign = static_cast<float>(result.point_signs[i]);
     for (std::size_t a = 0; a < 3; ++a) sheets.normals[4 * i + a] *= sign;
-  }
+  });
   out.around = lookAround(sheets, threads);
   FilteredNormals filtered = filterOrientedNormals(
       points, neighborhoods, std::move(sheets.normals), sheets.spacing, sheets.residual,
@@ -115,27 +112,25 @@ AutoNormals orientAtOneScale(MoreNeighbors& more, const Neighborhoods& neighborh
     }
   }
   out.normals = std::move(filtered.normals);
-#pragma omp parallel for schedule(static) num_threads(workers)
-  for (std::size_t i = 0; i < points.size; ++i) {
+  parallelFor(points.size, threads, 5.0, [&](std::size_t i) {
     const bool has_normal = std::isfinite(out.normals[4 * i]);
     const float curvature =
         has_normal && !std::isfinite(sheets.curvature[i]) ? 0.F : sheets.curvature[i];
     out.normals[4 * i + 3] = has_normal ? curvature : out.normals[4 * i];
     const bool plane_around = filtered.confidences[i] > kAllAgree;
     if (!plane_around) out.around[i] = static_cast<std::uint8_t>(out.around[i] & ~ONE_PLANE);
-  }
+  });
   out.confidences = std::move(filtered.confidences);
   out.scan_scales = sheets.traits.scan_scales;
   out.sheets = sheets.traits;
   out.components = std::move(result.point_components);
   // The less of both: do the normals around agree, and is their segment sure? Of a part of a cloud
   // only the first is known yet.
-#pragma omp parallel for schedule(static) num_threads(workers)
-  for (std::size_t i = 0; i < (record == nullptr ? points.size : 0); ++i) {
+  parallelFor(record == nullptr ? points.size : 0, threads, 5.0, [&](std::size_t i) {
     if (out.components[i] >= 0) {
       out.confidences[i] = std::min(out.confidences[i], result.point_confidences[i]);
     }
-  }
+  });
   result.point_confidences = {};
   return out;
 }

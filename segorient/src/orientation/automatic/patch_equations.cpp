@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "common/every_nth.h"
-#include "common/threads.h"
+#include "common/parallel_for.h"
 #include "orientation/winding/dipole_fields.h"
 
 namespace segorient::detail {
@@ -57,12 +57,11 @@ void PatchEquations::findFields(float radius, int threads) {
   const std::vector<float> dipoles = dipolesOf(cells_.normals, cells_.areas);
   const PointView places{at.data(), 4, places_.size()};
   fields_.resize(areas_.size(), static_cast<Eigen::Index>(size()));
-#pragma omp parallel for num_threads(resolveThreads(threads, size(), 2.0)) schedule(dynamic)
-  for (std::size_t p = 0; p < size(); ++p) {
+  parallelFor(size(), threads, 1e5, [&](std::size_t p) {
     const std::vector<float> w =
         windingNumbers(places, {cells_.points(), dipoles, &patches_.cells[p]}, radius, 1);
     std::copy(w.begin(), w.end(), fields_.col(static_cast<Eigen::Index>(p)).data());
-  }
+  });
 }
 
 // Each sign in turn takes its best value while the others stay: down to the one minimum, as the sum

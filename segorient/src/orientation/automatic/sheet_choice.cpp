@@ -8,7 +8,7 @@
 #include <cstdint>
 #include <utility>
 
-#include "common/threads.h"
+#include "common/parallel_for.h"
 
 namespace segorient::detail {
 namespace {
@@ -119,12 +119,10 @@ void chooseSheets(const PointView& points, const Neighborhoods& nb,
   // What has been told is a witness in the next pass: so they work their way into the wedge.
   constexpr int kPasses = 4;
   for (int pass = 0; pass < kPasses && !undecided.empty(); ++pass) {
-#pragma omp parallel for num_threads(resolveThreads(threads, undecided.size(), 3000.0)) \
-    schedule(dynamic, 256)
-    for (std::size_t i = 0; i < undecided.size(); ++i) {
+    parallelFor(undecided.size(), threads, 3000.0, [&](std::size_t i) {
       const bool found = choice.choose(undecided[i], spacing[undecided[i]], chosen[i].data());
       chosen[i][3] = found ? 1.F : 0.F;
-    }
+    });
     std::size_t left = 0;
     for (std::size_t i = 0; i < undecided.size(); ++i) {
       const std::size_t p = undecided[i];

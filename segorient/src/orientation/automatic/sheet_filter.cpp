@@ -10,7 +10,7 @@
 
 #include "common/compiler.h"
 #include "common/instruction_set.h"
-#include "common/threads.h"
+#include "common/parallel_for.h"
 #include "common/vectors.h"
 #include "orientation/automatic/contrary_patches.h"
 #include "orientation/automatic/sheet_choice.h"
@@ -211,23 +211,21 @@ FilteredNormals filterOrientedNormals(const PointView& points, const Neighborhoo
   out.normals = std::move(oriented);
   out.confidences.assign(points.size, 0.F);
   std::vector<float> next;
-  const int t = resolveThreads(threads, points.size, 500.0);
   for (int round = 0; round < rounds; ++round) {
     next = out.normals;
-#pragma omp parallel for num_threads(t) schedule(dynamic, 2048)
-    for (std::size_t p = 0; p < points.size; ++p) {
-      if (out.confidences[p] > kAllAgree) continue;
+    parallelFor(points.size, threads, 500.0, [&](std::size_t p) {
+      if (out.confidences[p] > kAllAgree) return;
       const Mean mean = meanNormal(points, nb, out.normals, spacing[p], p, kernel, addBlock);
       const double l = mean.length();
       const auto total = static_cast<double>(mean.total);
-      if (!(total > 0.0) || !(l > 1e-4 * total)) continue;
+      if (!(total > 0.0) || !(l > 1e-4 * total)) return;
       float* n = next.data() + 4 * p;
       if (!std::isfinite(n[0])) n[3] = half_fit;
       n[0] = static_cast<float>(static_cast<double>(mean.x) / l);
       n[1] = static_cast<float>(static_cast<double>(mean.y) / l);
       n[2] = static_cast<float>(static_cast<double>(mean.z) / l);
       out.confidences[p] = static_cast<float>(std::min(l / total, 1.0));  // rounding may exceed 1
-    }
+    });
     out.normals.swap(next);
     if (wedges) detail::turnContraryPatches(points, nb, spacing, residual, threads, out);
   }

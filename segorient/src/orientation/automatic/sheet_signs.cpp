@@ -6,7 +6,7 @@
 #include <numeric>
 #include <utility>
 
-#include "common/threads.h"
+#include "common/parallel_for.h"
 #include "orientation/automatic/loose_parts.h"
 
 namespace segorient::detail {
@@ -66,15 +66,14 @@ std::vector<float> SheetSigns::orientedNormals(bool dipoles) const {
   // square.
   const float r = field.residual;
   const float per_square = 1.047F / (1.F + 2.F * r * r);
-#pragma omp parallel for schedule(static) num_threads(resolveThreads(threads, points.size, 10.0))
-  for (std::size_t i = 0; i < points.size; ++i) {
+  parallelFor(points.size, threads, 10.0, [&](std::size_t i) {
     const float h = field.spacing[i];
     const float area = dipoles ? per_square * h * h : 1.F;
     const float sign = pointSign(i);
-    if (sign == 0.F) continue;
+    if (sign == 0.F) return;
     for (std::size_t a = 0; a < 3; ++a) out[4 * i + a] = sign * area * field.normals[4 * i + a];
     out[4 * i + 3] = area;
-  }
+  });
   return out;
 }
 

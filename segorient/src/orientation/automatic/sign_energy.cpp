@@ -10,7 +10,7 @@
 
 #include "common/every_nth.h"
 #include "common/median.h"
-#include "common/threads.h"
+#include "common/parallel_for.h"
 #include "orientation/automatic/blue_noise.h"
 #include "orientation/automatic/even_cells.h"
 #include "orientation/winding/dipole_fields.h"
@@ -71,17 +71,16 @@ OpposedPairs opposedPairs(const PointView& points, const Neighborhoods& neighbor
                           const std::vector<float>& normals, int threads) {
   const EveryNth rows(points.size, kPairRows);
   std::vector<PairSums> sums(rows.size());
-#pragma omp parallel for num_threads(resolveThreads(threads, rows.size(), 3000.0)) schedule(static)
-  for (std::size_t r = 0; r < rows.size(); ++r) {
+  parallelFor(rows.size(), threads, 3000.0, [&](std::size_t r) {
     const std::size_t i = rows[r];
     const float* n = &normals[4 * i];
-    if (!isFinite(n)) continue;
+    if (!isFinite(n)) return;
     const int count = std::min(neighborhoods.count(i), kNearest + 1);
     for (int j = 1; j < count; ++j) {
       const auto q = static_cast<std::size_t>(neighborhoods.indices(i)[j]);
       if (isFinite(&normals[4 * q])) sums[r].add(points[i], n, points[q], &normals[4 * q]);
     }
-  }
+  });
   double facing = 0.0;
   double backs = 0.0;
   double pairs = 0.0;
@@ -127,16 +126,14 @@ SignEnergy SignJudge::judge(const std::vector<float>& normals) const {
   WindingNumber winding;
   winding.build(points_, dipoles, {});
   std::vector<float> in_front(samples_.size(), -1.F);
-#pragma omp parallel for num_threads(resolveThreads(threads_, samples_.size(), 300.0)) \
-    schedule(dynamic, 64)
-  for (std::size_t s = 0; s < samples_.size(); ++s) {
+  parallelFor(samples_.size(), threads_, 300.0, [&](std::size_t s) {
     const float* p = points_[samples_[s]];
     const float* n = &normals[4 * samples_[s]];
-    if (!isFinite(n)) continue;
+    if (!isFinite(n)) return;
     const float far = kCell * sixth_;  // nearer, single cells stand out
     const float x[3] = {p[0] + far * n[0], p[1] + far * n[1], p[2] + far * n[2]};
     in_front[s] = std::min(std::fabs(winding.evaluate(x, sixth_)), 0.5F);
-  }
+  });
   double sum = 0.0;
   double count = 0.0;
   for (const float w : in_front) {

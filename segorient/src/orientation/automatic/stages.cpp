@@ -8,7 +8,7 @@
 #include <cmath>
 
 #include "common/dot.h"
-#include "common/threads.h"
+#include "common/parallel_for.h"
 #include "features/sheet_denoise.h"
 #include "features/sheet_normals.h"
 #include "orientation/automatic/final_labels.h"
@@ -57,9 +57,8 @@ void turnSegments(const AutoNormals& oriented, int threads, AutoStages& out) {
   Segmentation& segmentation = out.segmentation;
   segmentation::collectMembers(segmentation);
   out.segments.resize(segmentation.segments.size());
-  const int workers = resolveThreads(threads, segmentation.members.size(), 20.0);
-#pragma omp parallel for schedule(dynamic, 16) num_threads(workers)
-  for (std::size_t s = 0; s < segmentation.segments.size(); ++s) {
+  const double time = timeOfEach(out.segments.size(), segmentation.members.size(), 20.0);
+  parallelFor(out.segments.size(), threads, time, [&](std::size_t s) {
     Segment& segment = segmentation.segments[s];
     long balance = 0;
     double confidence = 0.0;
@@ -85,7 +84,7 @@ void turnSegments(const AutoNormals& oriented, int threads, AutoStages& out) {
     result.confidence = static_cast<float>(confidence / size * unanimous);
     result.component = oriented.components[static_cast<std::size_t>(*segmentation.begin(s))];
     result.hard = confidence <= 0.0;
-  }
+  });
 }
 
 }  // namespace

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <cstddef>
 
-#include "common/threads.h"
+#include "common/parallel_for.h"
 #include "orientation/paper/box_subdivision.h"
 
 namespace segorient {
@@ -35,20 +35,17 @@ std::vector<ExtremalPoint> findExtremalPoints(const PointView& points, const Poi
                                               const std::vector<pcl::index_t>& rows,
                                               std::size_t max_box_points, int threads) {
   const BoxSubdivision space(points, rows, max_box_points);
-  const auto boxes = static_cast<std::ptrdiff_t>(space.boxes().size());
   std::vector<std::array<pcl::index_t, 6>> found(space.boxes().size());  // by side, -1 = none
-#pragma omp parallel for schedule(dynamic, 256) \
-    num_threads(resolveThreads(threads, space.boxes().size(), 500.0))
-  for (std::ptrdiff_t b = 0; b < boxes; ++b) {
-    const BoxSubdivision::Box& box = space.boxes()[static_cast<std::size_t>(b)];
+  parallelFor(found.size(), threads, 500.0, [&](std::size_t b) {
+    const BoxSubdivision::Box& box = space.boxes()[b];
     for (int side = 0; side < 6; ++side) {
       const BoxSubdivision::Direction direction{side / 2, side % 2 == 1};
       const bool full_leaf = box.children == 0 && box.size != 0;
-      found[static_cast<std::size_t>(b)][static_cast<std::size_t>(side)] =
-          full_leaf && space.isFree(box, direction) ? extremalPoint(points, space, box, direction)
-                                                    : -1;
+      found[b][static_cast<std::size_t>(side)] = full_leaf && space.isFree(box, direction)
+                                                     ? extremalPoint(points, space, box, direction)
+                                                     : -1;
     }
-  }
+  });
   std::vector<ExtremalPoint> out;
   for (const std::array<pcl::index_t, 6>& of_box : found) {
     for (std::size_t side = 0; side < 6; ++side) {

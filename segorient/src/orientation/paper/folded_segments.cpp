@@ -13,7 +13,7 @@
 #include <tuple>
 #include <vector>
 
-#include "common/threads.h"
+#include "common/parallel_for.h"
 
 namespace segorient {
 namespace {
@@ -132,14 +132,11 @@ std::vector<std::int32_t> findFoldedSegments(const PointView& points,
                                              const Neighborhoods& neighborhoods,
                                              const Segmentation& segmentation, int threads,
                                              float max_share) {
-  const auto segments = static_cast<std::ptrdiff_t>(segmentation.segments.size());
   std::vector<std::uint8_t> folded(segmentation.segments.size());
-#pragma omp parallel for schedule(dynamic, 16) \
-    num_threads(resolveThreads(threads, segmentation.members.size(), 300.0))
-  for (std::ptrdiff_t i = 0; i < segments; ++i) {
-    const auto s = static_cast<std::size_t>(i);
+  const double time = timeOfEach(folded.size(), segmentation.members.size(), 300.0);
+  parallelFor(folded.size(), threads, time, [&](std::size_t s) {
     folded[s] = isFolded(points, neighborhoods, segmentation, s, max_share) ? 1 : 0;
-  }
+  });
   std::vector<std::int32_t> out;
   for (std::size_t s = 0; s < folded.size(); ++s) {
     if (folded[s] != 0) out.push_back(static_cast<std::int32_t>(s));

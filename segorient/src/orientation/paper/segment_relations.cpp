@@ -10,7 +10,7 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "common/threads.h"
+#include "common/parallel_for.h"
 #include "orientation/paper/boundary_ballot.h"
 
 namespace segorient {
@@ -166,16 +166,13 @@ std::vector<float> segmentCosines(const PointView& points, const PointView& norm
                                   const Segmentation& segmentation, const SegmentLinks& links,
                                   SegmentAngle angle, int threads) {
   std::vector<float> out(links.links.size());
-  const auto count = static_cast<std::ptrdiff_t>(links.links.size());
-#pragma omp parallel for schedule(dynamic, 16) \
-    num_threads(resolveThreads(threads, links.links.size(), 3000.0))
-  for (std::ptrdiff_t i = 0; i < count; ++i) {
-    const SegmentLink& link = links.links[static_cast<std::size_t>(i)];
+  parallelFor(out.size(), threads, 3000.0, [&](std::size_t i) {
+    const SegmentLink& link = links.links[i];
     const float cosine = angle == SegmentAngle::REFERENCE_NORMALS
                              ? referenceCosine(segmentation, link)
                              : borderCosine(points, normals, segmentation, links, link);
-    out[static_cast<std::size_t>(i)] = std::clamp(cosine, -1.F, 1.F);
-  }
+    out[i] = std::clamp(cosine, -1.F, 1.F);
+  });
   return out;
 }
 
@@ -185,13 +182,8 @@ std::vector<BoundaryVote> localBoundaryVotes(const PointView& points, const Poin
                                              const SegmentLinks& links, int threads) {
   const LocalBoundary boundary(points, normals, neighborhoods, segmentation);
   std::vector<BoundaryVote> out(links.links.size());
-  const auto count = static_cast<std::ptrdiff_t>(links.links.size());
-#pragma omp parallel for schedule(dynamic, 16) \
-    num_threads(resolveThreads(threads, links.links.size(), 3000.0))
-  for (std::ptrdiff_t i = 0; i < count; ++i) {
-    const auto l = static_cast<std::size_t>(i);
-    out[l] = boundary.vote(links, links.links[l]);
-  }
+  parallelFor(out.size(), threads, 3000.0,
+              [&](std::size_t l) { out[l] = boundary.vote(links, links.links[l]); });
   return out;
 }
 

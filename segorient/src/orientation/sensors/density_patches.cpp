@@ -9,7 +9,7 @@
 
 #include "common/every_nth.h"
 #include "common/median.h"
-#include "common/threads.h"
+#include "common/parallel_for.h"
 #include "features/symmetric_eigen.h"
 
 namespace segorient::detail {
@@ -79,6 +79,9 @@ struct Sample {
   std::vector<float> sixth;             // distance to the sixth neighbour
 };
 
+// ns a point, see resolveThreads().
+constexpr double kPatchTime = 3000.0;
+
 // Only as many neighbours as the scale needs: on a cloud of even density the first one will do.
 Sample takeSample(const PointView& points, const search::MedianHashIndex& index, int count,
                   int threads) {
@@ -87,15 +90,12 @@ Sample takeSample(const PointView& points, const search::MedianHashIndex& index,
   const auto width = static_cast<std::size_t>(count);
   out.neighbors.resize(out.rows.size() * width);
   out.sixth.resize(out.rows.size());
-#pragma omp parallel num_threads(threads)
-  {
-    std::vector<float> squared(width);
-#pragma omp for schedule(static)
-    for (std::size_t i = 0; i < out.rows.size(); ++i) {
-      index.nearestK(points[out.rows[i]], count, &out.neighbors[i * width], squared.data());
-      out.sixth[i] = std::sqrt(squared[6]);
-    }
-  }
+  parallelFor(
+      out.rows.size(), threads, kPatchTime, [&] { return std::vector<float>(width); },
+      [&](std::size_t i, std::vector<float>& squared) {
+        index.nearestK(points[out.rows[i]], count, &out.neighbors[i * width], squared.data());
+        out.sixth[i] = std::sqrt(squared[6]);
+      });
   return out;
 }
 
@@ -104,11 +104,10 @@ DensityPatches atScale(const PointView& points, const search::MedianHashIndex& i
   const int count = k + 1;
   Sample sample = takeSample(points, index, count, threads);
   std::vector<Piece> pieces(sample.rows.size());
-#pragma omp parallel for schedule(static) num_threads(threads)
-  for (std::size_t i = 0; i < pieces.size(); ++i) {
+  parallelFor(pieces.size(), threads, kPatchTime, [&](std::size_t i) {
     pieces[i] = pieceOf(points, points[sample.rows[i]],
                         &sample.neighbors[i * static_cast<std::size_t>(count)], count);
-  }
+  });
   DensityPatches out;
   out.k = k;
   for (std::size_t i = 0; i < pieces.size(); ++i) {
@@ -163,12 +162,10 @@ DensityPatches DensityPatches::thinned(std::size_t count) const {
 
 DensityPatches densityPatches(const PointView& points, const search::MedianHashIndex& index,
                               int threads) {
-  constexpr double kPatchTime = 3000.0;  // ns, see resolveThreads()
-  const int team = resolveThreads(threads, std::min(points.size, kSample), kPatchTime);
   std::vector<DensityPatches> scales;
   for (const int k : kScales) {
     if (points.size < static_cast<std::size_t>(k) * kIndependent) break;
-    DensityPatches found = atScale(points, index, k, team);
+    DensityPatches found = atScale(points, index, k, threads);
     const float independent = found.flat * static_cast<float>(points.size) / static_cast<float>(k);
     const bool enough =
         independent >= static_cast<float>(kIndependent) && found.size() >= kLeastFlat;

@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "common/threads.h"
+#include "common/parallel_for.h"
 #include "orientation/sensors/height_field.h"
 #include "orientation/sensors/moving_sensor.h"
 #include "orientation/sensors/occupancy.h"
@@ -47,14 +47,12 @@ void assignPlaces(PreparedCloud& cloud, const DensityPatches& patches,
   const search::MedianHashIndex index =
       search::indexOf({centers.data(), 3, patches.size()}, threads);
   constexpr double kQueryTime = 300.0;  // ns, see resolveThreads()
-  const int team = resolveThreads(threads, cloud.size(), kQueryTime);
-#pragma omp parallel for schedule(static) num_threads(team)
-  for (std::size_t i = 0; i < cloud.size(); ++i) {
+  parallelFor(cloud.size(), threads, kQueryTime, [&](std::size_t i) {
     pcl::index_t nearest = 0;
     float distance = 0.F;
-    if (index.nearestK(cloud.points()[i], 1, &nearest, &distance) < 1) continue;
+    if (index.nearestK(cloud.points()[i], 1, &nearest, &distance) < 1) return;
     report.sensor_of[i] = place_of_piece[static_cast<std::size_t>(nearest)];
-  }
+  });
   for (const std::int32_t s : report.sensor_of) {
     if (s >= 0) ++report.sensors[static_cast<std::size_t>(s)].points;
   }

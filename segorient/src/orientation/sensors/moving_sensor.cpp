@@ -9,7 +9,7 @@
 #include <numeric>
 #include <utility>
 
-#include "common/threads.h"
+#include "common/parallel_for.h"
 #include "orientation/sensors/sampling_law.h"
 #include "orientation/sensors/shares.h"
 #include "orientation/sensors/simplex.h"
@@ -235,15 +235,9 @@ Track searchTrack(const DensityPatches& patches, const Extent& extent, int threa
   }
   std::vector<double> costs(lines.size());
   constexpr double kFitTime = 1e6;  // ns a line, see resolveThreads()
-  const int team = resolveThreads(threads, lines.size(), kFitTime);
-#pragma omp parallel num_threads(team)
-  {
-    TrackModel model(some);
-#pragma omp for schedule(static)
-    for (std::size_t i = 0; i < lines.size(); ++i) {
-      costs[i] = costOf(lines[i], extent, model);
-    }
-  }
+  parallelFor(
+      lines.size(), threads, kFitTime, [&] { return TrackModel(some); },
+      [&](std::size_t i, TrackModel& model) { costs[i] = costOf(lines[i], extent, model); });
   std::vector<std::size_t> order;
   const std::size_t each = lines.size() / kLengths.size();
   for (std::size_t first = 0; first < lines.size(); first += each) {
@@ -253,13 +247,13 @@ Track searchTrack(const DensityPatches& patches, const Extent& extent, int threa
                      [&](std::size_t a, std::size_t b) { return costs[a] < costs[b]; });
     order.insert(order.end(), of_length.begin(), of_length.begin() + kStarts);
   }
-#pragma omp parallel for schedule(static, 1) num_threads(team)
-  for (std::size_t s = 0; s < order.size(); ++s) {
-    TrackModel model(some);
-    const auto cost = [&](const Line& line) { return costOf(line, extent, model); };
-    const std::vector<double> steps(5, kStep * extent.diagonal());
-    costs[order[s]] = minimize(cost, steps, kEvaluations, lines[order[s]]);
-  }
+  const std::vector<double> steps(5, kStep * extent.diagonal());
+  parallelFor(
+      order.size(), threads, kEvaluations * kFitTime, [&] { return TrackModel(some); },
+      [&](std::size_t s, TrackModel& model) {
+        const auto cost = [&](const Line& line) { return costOf(line, extent, model); };
+        costs[order[s]] = minimize(cost, steps, kEvaluations, lines[order[s]]);
+      });
   const std::size_t best =
       *std::min_element(order.begin(), order.end(),
                         [&](std::size_t a, std::size_t b) { return costs[a] < costs[b]; });

@@ -16,6 +16,9 @@ namespace segorient::detail {
 /// Where a cloud has points, in cubes: what hides one place from another.
 class Occupancy {
  public:
+  /// ns for one piece and one place, see resolveThreads().
+  static constexpr double kTime = 100.0;
+
   Occupancy(const PointView& points, const DensityPatches& patches, const Extent& extent);
 
   /// How much of each piece's density a sensor there can be made responsible for: 1, or little

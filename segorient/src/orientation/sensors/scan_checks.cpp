@@ -10,7 +10,7 @@
 #include "common/box.h"
 #include "common/dot.h"
 #include "common/median.h"
-#include "common/threads.h"
+#include "common/parallel_for.h"
 #include "features/sheet_fit.h"
 #include "search/index_of.h"
 
@@ -113,18 +113,15 @@ std::vector<std::uint8_t> Scan::hidden(bool all) {
   }
   if (all && spacing_.empty()) {
     std::vector<float> spacing(size());
-#pragma omp parallel for num_threads(resolveThreads(threads_, size(), kSpacingTime))
-    for (std::size_t i = 0; i < size(); ++i) spacing[i] = spacingOf(i);
+    parallelFor(size(), threads_, kSpacingTime, [&](std::size_t i) { spacing[i] = spacingOf(i); });
     spacing_ = std::move(spacing);
   }
   const EveryNth some = all ? EveryNth(size(), std::max<std::size_t>(1, size())) : sample();
   const std::size_t n = some.size();
   const search::MedianHashIndex directions = seen_.index(threads_);
   std::vector<std::uint8_t> out(n, 0);
-#pragma omp parallel for num_threads(resolveThreads(threads_, n, kRayTime)) schedule(dynamic, 64)
-  for (std::size_t s = 0; s < n; ++s) {
-    out[s] = isHidden(some[s], directions) ? 1 : 0;
-  }
+  parallelFor(n, threads_, kRayTime,
+              [&](std::size_t s) { out[s] = isHidden(some[s], directions) ? 1 : 0; });
   return out;
 }
 
@@ -223,14 +220,13 @@ std::vector<ScanPairs> findContraryPairs(const PointView& points, const Neighbor
     std::array<std::int8_t, kAround> agree;  // 0 where nothing is said
   };
   std::vector<Pairs> found(n);
-#pragma omp parallel for num_threads(resolveThreads(threads, n, kPairTime)) schedule(dynamic, 256)
-  for (std::size_t s = 0; s < n; ++s) {
+  parallelFor(n, threads, kPairTime, [&](std::size_t s) {
     found[s].agree.fill(0);
     const std::size_t i = some[s];
-    if (scan[i] < 0) continue;
+    if (scan[i] < 0) return;
     const Plane mine = planeOf(points, nb, i, kSheetNeighbors);
     const float view = mine.valid ? dot(mine.normal.data(), &toward[3 * i]) : 0.F;
-    if (std::fabs(view) < kClear) continue;
+    if (std::fabs(view) < kClear) return;
     const int count = std::min(nb.count(i) - 1, kAround);
     for (int j = 0; j < count; ++j) {
       const auto q = static_cast<std::size_t>(nb.indices(i)[j + 1]);
@@ -249,7 +245,7 @@ std::vector<ScanPairs> findContraryPairs(const PointView& points, const Neighbor
       found[s].scan[at] = scan[q];
       found[s].agree[at] = view * seen * parallel > 0.F ? 1 : -1;
     }
-  }
+  });
   // Of many scans, few are neighbours of each other.
   std::map<std::pair<std::size_t, std::size_t>, std::pair<double, double>> counts;
   for (std::size_t s = 0; s < n; ++s) {

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "common/threads.h"
+#include "common/parallel_for.h"
 #include "search/index_of.h"
 
 namespace segorient::detail {
@@ -19,9 +19,7 @@ SeenFrom seeFrom(const std::array<float, 3>& place, const PointView& points, int
   SeenFrom out;
   out.direction.assign(4 * points.size, 0.F);
   out.distance.assign(points.size, 0.F);
-  const int t = resolveThreads(threads, points.size, kPointTime);
-#pragma omp parallel for schedule(static) num_threads(t)
-  for (std::size_t i = 0; i < points.size; ++i) {
+  parallelFor(points.size, threads, kPointTime, [&](std::size_t i) {
     double v[3];
     double square = 0.0;
     for (std::size_t a = 0; a < 3; ++a) {
@@ -33,7 +31,7 @@ SeenFrom seeFrom(const std::array<float, 3>& place, const PointView& points, int
     for (std::size_t a = 0; a < 3 && d > 0.0; ++a) {
       out.direction[4 * i + a] = static_cast<float>(v[a] / d);
     }
-  }
+  });
   if (points.size > 0) {
     const auto [least, most] = std::minmax_element(out.distance.begin(), out.distance.end());
     out.depth = *most - *least;

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <cstddef>
 
-#include "common/threads.h"
+#include "common/parallel_for.h"
 #include "orientation/sensors/sampling_law.h"
 #include "orientation/sensors/shares.h"
 #include "orientation/sensors/simplex.h"
@@ -67,12 +67,13 @@ class Sum {
   void setAlternatives(std::vector<Position> places, int threads) {
     alternatives_ = std::move(places);
     alternative_densities_.resize(alternatives_.size());
-#pragma omp parallel for schedule(static) num_threads(threads)
-    for (std::size_t c = 0; c < alternatives_.size(); ++c) {
-      std::vector<float> seen(patches_.size());
-      occupancy_.visibility(patches_, alternatives_[c], seen.data());
-      densityAt(alternatives_[c], seen, alternative_densities_[c]);
-    }
+    parallelFor(
+        alternatives_.size(), threads, Occupancy::kTime * static_cast<double>(patches_.size()),
+        [&] { return std::vector<float>(patches_.size()); },
+        [&](std::size_t c, std::vector<float>& seen) {
+          occupancy_.visibility(patches_, alternatives_[c], seen.data());
+          densityAt(alternatives_[c], seen, alternative_densities_[c]);
+        });
   }
 
   // Puts one station to one of the alternatives and lets all settle, if that is better: a mirror
@@ -129,9 +130,7 @@ class Sum {
     return strongestPlaces(patches_, positions_, densities_);
   }
 
-  const std::vector<Position>& positions() const {
-    return positions_;
-  }
+  const std::vector<Position>& positions() const { return positions_; }
 
  private:
   void look() {
@@ -183,11 +182,10 @@ Stations searchStations(const DensityPatches& patches, const Occupancy& occupanc
   const DensityPatches some = patches.thinned(kPieces);
   Stations out;
   out.axis = axis;
-  const std::vector<Position> places =
-      mixturePlaces(some, occupancy, extent, axis, resolveThreads(threads));
+  const std::vector<Position> places = mixturePlaces(some, occupancy, extent, axis, threads);
   Sum sum(some, occupancy, axis, places);
   if (sum.positions().empty()) return out;
-  sum.setAlternatives(placesInside(extent, kAlternatives), resolveThreads(threads));
+  sum.setAlternatives(placesInside(extent, kAlternatives), threads);
   sum.refine(kStep * diagonal);
   // All numbers of stations down to one.
   std::vector<Stations> tried;

@@ -15,7 +15,7 @@
 #include "common/dot.h"
 #include "common/every_nth.h"
 #include "common/median.h"
-#include "common/threads.h"
+#include "common/parallel_for.h"
 #include "features/sheet_fit.h"
 #include "orientation/sensors/scan_checks.h"
 #include "orientation/sensors/seen_from.h"
@@ -120,10 +120,9 @@ class ShadowSearch {
     const EveryNth some(size(), kSamples);
     const std::size_t n = some.size();
     std::vector<Step> found(n, Step::NO_SURFACE);
-#pragma omp parallel for num_threads(resolveThreads(threads_, n, kRayTime)) schedule(dynamic, 32)
-    for (std::size_t s = 0; s < n; ++s) {
+    parallelFor(n, threads_, kRayTime, [&](std::size_t s) {
       if (spacing_[some[s]] > 0.F) found[s] = lookAt(some[s]);
-    }
+    });
     const auto share = [&](Step what) {
       return static_cast<float>(std::count(found.begin(), found.end(), what));
     };
@@ -175,21 +174,20 @@ class ShadowSearch {
     normal_.assign(4 * n, 0.F);
     spacing_.assign(n, 0.F);
     width_.assign(n, 0.F);
-#pragma omp parallel for num_threads(resolveThreads(threads_, n, kPlaneTime))
-    for (std::size_t i = 0; i < n; ++i) {
+    parallelFor(n, threads_, kPlaneTime, [&](std::size_t i) {
       const pcl::index_t* row = near.indices(i);
       const int count = near.count(i);
       const float h = meanDistance(view(), i, row + 1, std::min(count - 1, kSpacing));
       width_[i] = h;
-      if (!(h > 0.F)) continue;
+      if (!(h > 0.F)) return;
       const Plane plane = planeOf(view(), i, row, count);
       const Eigen::Vector3f& l = plane.lambda;
-      if (!plane.valid || !(l[0] < kFlat * l[1]) || !(l[1] > kWide * l[2])) continue;
+      if (!plane.valid || !(l[0] < kFlat * l[1]) || !(l[1] > kWide * l[2])) return;
       spacing_[i] = h;
       for (std::size_t a = 0; a < 3; ++a) {
         normal_[4 * i + a] = plane.normal[static_cast<Eigen::Index>(a)];
       }
-    }
+    });
   }
 
   Step lookAt(std::size_t i) const {

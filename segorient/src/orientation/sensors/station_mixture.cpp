@@ -7,6 +7,7 @@
 #include <cstddef>
 #include <numeric>
 
+#include "common/parallel_for.h"
 #include "orientation/sensors/sampling_law.h"
 #include "orientation/sensors/station_search.h"
 
@@ -37,23 +38,21 @@ Shares sharesOf(const DensityPatches& patches, const Occupancy& occupancy,
   out.place.resize(places.size());
   std::iota(out.place.begin(), out.place.end(), std::size_t{0});
   const std::size_t n = patches.size();
-#pragma omp parallel num_threads(threads)
-  {
-    std::vector<float> seen(n);
-#pragma omp for schedule(static)
-    for (std::size_t j = 0; j < places.size(); ++j) {
-      std::vector<float>& row = out.rows[j];
-      ratios(patches, {places[j], axis, SamplingLaw::ANGLE_GRID}, row);
-      occupancy.visibility(patches, places[j], seen.data());
-      float sum = 0.F;
-      for (std::size_t i = 0; i < n; ++i) {
-        row[i] *= seen[i];
-        sum += row[i];
-      }
-      const float mean = std::max(sum / static_cast<float>(n), 1e-30F);
-      for (float& v : row) v /= mean;
-    }
-  }
+  parallelFor(
+      places.size(), threads, Occupancy::kTime * static_cast<double>(n),
+      [n] { return std::vector<float>(n); },
+      [&](std::size_t j, std::vector<float>& seen) {
+        std::vector<float>& row = out.rows[j];
+        ratios(patches, {places[j], axis, SamplingLaw::ANGLE_GRID}, row);
+        occupancy.visibility(patches, places[j], seen.data());
+        float sum = 0.F;
+        for (std::size_t i = 0; i < n; ++i) {
+          row[i] *= seen[i];
+          sum += row[i];
+        }
+        const float mean = std::max(sum / static_cast<float>(n), 1e-30F);
+        for (float& v : row) v /= mean;
+      });
   return out;
 }
 

@@ -8,7 +8,7 @@
 #include <numeric>
 #include <utility>
 
-#include "common/threads.h"
+#include "common/parallel_for.h"
 
 namespace segorient::detail {
 namespace {
@@ -63,21 +63,24 @@ std::vector<Position> shells(const Position& middle, double extent) {
   return out;
 }
 
+// Of one place, see resolveThreads().
+double timeAt(const DensityPatches& patches) {
+  constexpr double kTermTime = 10.0;
+  return kTermTime * static_cast<double>(patches.size());
+}
+
 // The best places for one law, apart from each other, the best first.
 std::vector<FittedPlace> valleys(const DensityPatches& coarse, const std::vector<Position>& places,
                                  const Place& law, double extent, int threads) {
   std::vector<float> costs(places.size());
-#pragma omp parallel num_threads(threads)
-  {
-    std::vector<float> scratch;
-#pragma omp for schedule(static)
-    for (std::size_t i = 0; i < places.size(); ++i) {
-      Place place = law;
-      place.position = places[i];
-      if (law.law == SamplingLaw::PINHOLE) place.axis = meanView(coarse, places[i]);
-      costs[i] = costOf(coarse, place, scratch);
-    }
-  }
+  parallelFor(
+      places.size(), threads, timeAt(coarse), [] { return std::vector<float>(); },
+      [&](std::size_t i, std::vector<float>& scratch) {
+        Place place = law;
+        place.position = places[i];
+        if (law.law == SamplingLaw::PINHOLE) place.axis = meanView(coarse, places[i]);
+        costs[i] = costOf(coarse, place, scratch);
+      });
   std::vector<std::size_t> order(places.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
   std::stable_sort(order.begin(), order.end(),
@@ -99,11 +102,10 @@ std::vector<FittedPlace> valleys(const DensityPatches& coarse, const std::vector
 // Where the best of the valleys leads to.
 FittedPlace follow(const DensityPatches& coarse, std::vector<FittedPlace> starts, double extent,
                    int threads) {
-#pragma omp parallel for schedule(static, 1) num_threads(threads)
-  for (std::size_t i = 0; i < starts.size(); ++i) {
+  parallelFor(starts.size(), threads, kCoarseEvaluations * timeAt(coarse), [&](std::size_t i) {
     starts[i].cost =
         refinePlace(coarse, kCoarseStep * extent, false, kCoarseEvaluations, starts[i].place);
-  }
+  });
   return *std::min_element(starts.begin(), starts.end(),
                            [](const auto& a, const auto& b) { return a.cost < b.cost; });
 }
@@ -187,15 +189,13 @@ std::optional<FittedPlace> searchStation(const DensityPatches& patches, float co
   const double diagonal = extent.diagonal();
   const DensityPatches coarse = patches.thinned(kCoarse);
   const std::vector<Position> places = placesAround(extent, kPlacesInside);
-  constexpr double kTermTime = 10.0;  // ns for one patch at one place, see resolveThreads()
-  const int team = resolveThreads(threads, places.size() * coarse.size(), kTermTime);
   // The best of each law, of those with a vertical the best vertical.
   std::vector<FittedPlace> found;
   for (const Place& law : lawsAt({0.0, 0.0, 0.0})) {
-    std::vector<FittedPlace> starts = valleys(coarse, places, law, diagonal, team);
+    std::vector<FittedPlace> starts = valleys(coarse, places, law, diagonal, threads);
     // The other laws differ by what the device does to directions, which is less than this.
     if (found.empty() && starts.front().cost > kHopeless * constant) return std::nullopt;
-    const FittedPlace fitted = follow(coarse, std::move(starts), diagonal, team);
+    const FittedPlace fitted = follow(coarse, std::move(starts), diagonal, threads);
     const bool rival = !found.empty() && found.back().place.law == law.law;
     if (!rival) {
       found.push_back(fitted);
@@ -203,11 +203,10 @@ std::optional<FittedPlace> searchStation(const DensityPatches& patches, float co
       found.back() = fitted;
     }
   }
-#pragma omp parallel for schedule(static, 1) num_threads(team)
-  for (std::size_t i = 0; i < found.size(); ++i) {
+  parallelFor(found.size(), threads, kFineEvaluations * timeAt(patches), [&](std::size_t i) {
     found[i].cost =
         refinePlace(patches, kFineStep * diagonal, true, kFineEvaluations, found[i].place);
-  }
+  });
   return *std::min_element(found.begin(), found.end(),
                            [](const auto& a, const auto& b) { return a.cost < b.cost; });
 }

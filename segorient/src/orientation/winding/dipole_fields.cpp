@@ -7,7 +7,7 @@
 #include <cstddef>
 
 #include "common/box.h"
-#include "common/threads.h"
+#include "common/parallel_for.h"
 #include "orientation/winding/winding_number.h"
 
 namespace segorient {
@@ -53,16 +53,13 @@ void forEachPlace(const PointView& at, const DipoleCloud& from, const RadiusAt& 
   WindingNumber tree;
   const std::vector<std::uint32_t> all;
   tree.build(from.points, from.dipoles, from.rows != nullptr ? *from.rows : all);
-#pragma omp parallel num_threads(resolveThreads(threads, runs.size(), 30000.0))
-  {
-    DipoleList seen;
-#pragma omp for schedule(dynamic, 16)
-    for (std::size_t r = 0; r < runs.size(); ++r) {
-      seen.clear();
-      tree.listDipoles(runs[r].center.data(), runs[r].reach + runs[r].radius, seen);
-      for (std::size_t i = runs[r].first; i < runs[r].last; ++i) evaluate(seen, i);
-    }
-  }
+  parallelFor(
+      runs.size(), threads, 30000.0, [] { return DipoleList(); },
+      [&](std::size_t r, DipoleList& seen) {
+        seen.clear();
+        tree.listDipoles(runs[r].center.data(), runs[r].reach + runs[r].radius, seen);
+        for (std::size_t i = runs[r].first; i < runs[r].last; ++i) evaluate(seen, i);
+      });
 }
 
 auto everywhere(float radius) {

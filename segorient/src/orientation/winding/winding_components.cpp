@@ -11,7 +11,7 @@
 #include <utility>
 
 #include "common/box.h"
-#include "common/threads.h"
+#include "common/parallel_for.h"
 #include "orientation/winding/winding_number.h"
 #include "search/index_of.h"
 
@@ -126,12 +126,10 @@ class Solver {
     // Nanoseconds: some nodes of each level of the tree are opened.
     constexpr double kLevel = 2000.0;
     const double time = kLevel * std::log2(static_cast<double>(rows_[c].size()) + 1.0);
-#pragma omp parallel for num_threads(resolveThreads(threads_, reach.size(), time)) \
-    schedule(dynamic, 64)
-    for (std::size_t r = 0; r < reach.size(); ++r) {
+    parallelFor(reach.size(), threads_, time, [&](std::size_t r) {
       const std::uint32_t i = samples_[reach[r].sample];
       reach[r].w = winding.evaluate(points_[i], spacing_[i]);
-    }
+    });
   }
 
   // The largest first, each with the sign that suits what is there already.
