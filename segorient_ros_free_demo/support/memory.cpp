@@ -42,9 +42,11 @@ std::size_t leftInAddressSpace() {
   return all - std::min(all, pages * static_cast<std::size_t>(sysconf(_SC_PAGESIZE)));
 }
 
-std::string gigabytes(std::size_t bytes) {
+std::string amount(std::size_t bytes) {
   char text[32];
-  std::snprintf(text, sizeof text, "%.1f GB", static_cast<double>(bytes) / 1e9);
+  const bool large = bytes >= 1000000000;
+  std::snprintf(text, sizeof text, large ? "%.1f GB" : "%.0f MB",
+                static_cast<double>(bytes) / (large ? 1e9 : 1e6));
   return text;
 }
 
@@ -68,8 +70,8 @@ std::size_t availableMemory() {
 
 void requireMemory(const std::string& file, std::size_t needed, std::size_t available) {
   if (needed <= available) return;
-  throw FileError(file, "takes about " + gigabytes(needed) + " of memory to work on, and " +
-                            gigabytes(available) + " are free");
+  throw FileError(file, "takes about " + amount(needed) + " of memory to work on, and " +
+                            amount(available) + " are free");
 }
 
 }  // namespace segorient::program
