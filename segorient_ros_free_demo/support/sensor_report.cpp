@@ -8,13 +8,15 @@ namespace segorient::program {
 
 std::string describeSensor(const FoundSensor& sensor, const std::array<double, 3>& origin) {
   char text[200];
-  std::snprintf(text, sizeof(text),
-                "%s at (%.4g, %.4g, %.4g)%s for %zu points: %.0f %% of the deviation left, %s",
-                toString(sensor.kind), origin[0] + static_cast<double>(sensor.position[0]),
-                origin[1] + static_cast<double>(sensor.position[1]),
-                origin[2] + static_cast<double>(sensor.position[2]),
-                sensor.suggested ? ", as suggested," : "", sensor.points,
-                100.0 * static_cast<double>(sensor.cost_ratio), sensor.sure ? "sure" : "not sure");
+  std::snprintf(
+      text, sizeof(text), "%s at (%.4g, %.4g, %.4g)%s for %zu points: %.0f %% of the %s, %s",
+      toString(sensor.kind), origin[0] + static_cast<double>(sensor.position[0]),
+      origin[1] + static_cast<double>(sensor.position[1]),
+      origin[2] + static_cast<double>(sensor.position[2]),
+      sensor.suggested ? ", as suggested," : "", sensor.points,
+      100.0 * static_cast<double>(sensor.cost_ratio),
+      sensor.evidence == SensorEvidence::SHADOWS ? "steps of depth go on behind" : "deviation left",
+      sensor.sure ? "sure" : "not sure");
   return text;
 }
 

@@ -136,6 +136,39 @@ std::vector<float> city(float height) {
   return xyz;
 }
 
+// A plate lies on the plane z = 0 and against the others, as parts do in the files they are drawn
+// in, with a corner cut off: whoever looks along its faces sees holes in them as steps.
+TEST(Shadows, ACutCornerInTheOriginSeesNothingOfAPlate) {
+  constexpr double kWidth = 16.0;
+  constexpr double kLength = 24.0;
+  constexpr double kCut = 2.0;
+  constexpr double kHole = 0.4;
+  std::mt19937 random(7);
+  std::uniform_real_distribution<double> unit(0.0, 1.0);
+  std::vector<float> xyz;
+  const auto add = [&xyz](double x, double y, double z) {
+    bool kept = x + y > kCut;
+    for (const double a : {4.0, 12.0}) {
+      for (const double b : {6.0, 18.0}) kept = kept && std::hypot(x - a, y - b) > kHole;
+    }
+    if (!kept) return;
+    for (const double v : {x, y, z, 0.0}) xyz.push_back(static_cast<float>(v));
+  };
+  for (int i = 0; i < 11500; ++i) {
+    for (const double z : {0.0, 1.0}) add(kWidth * unit(random), kLength * unit(random), z);
+  }
+  for (int i = 0; i < 480; ++i) {
+    for (const double y : {0.0, kLength}) add(kWidth * unit(random), y, unit(random));
+  }
+  for (int i = 0; i < 720; ++i) {
+    for (const double x : {0.0, kWidth}) add(x, kLength * unit(random), unit(random));
+  }
+  const PointView points{xyz.data(), 4, xyz.size() / 4};
+  EXPECT_FALSE(detail::findShadows(points, {0.F, 0.F, 0.F}, 0).confirm());
+  const OrientedCloud found = orient(xyz, nullptr);
+  EXPECT_TRUE(found.report.sensors.sensors.empty());
+}
+
 TEST(Shadows, FarAboveAndFarBelowLookAlike) {
   for (const float height : {0.F, 2000.F}) {
     const std::vector<float> xyz = city(height);

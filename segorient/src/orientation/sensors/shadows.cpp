@@ -53,7 +53,7 @@ constexpr float kDenied = 0.5F;
 constexpr float kOpen = 0.1F;
 constexpr float kFewOpen = 0.005F;
 constexpr float kMostOpen = 0.5F;
-// A surface that is seen at less rises by many spacings.
+// A surface that is seen at less rises by many spacings, and ends nowhere for sure.
 constexpr float kLeastIncidence = 0.15F;
 // Spacings that a step takes at least, and the part of a cloud's depth that it does: steps of depth
 // cameras, and their noise.
@@ -194,7 +194,9 @@ class ShadowSearch {
     constexpr std::size_t kTwo = 2;  // a single point that floats before the others hides nothing
     const float* u = &seen_.direction[4 * i];
     const float d = seen_.distance[i];
-    const float incidence = std::max(std::fabs(dot(&normal_[4 * i], u)), kLeastIncidence);
+    const float incidence = std::fabs(dot(&normal_[4 * i], u));
+    // A place in the plane of a face sees nothing of it, only holes in it.
+    if (incidence < kLeastIncidence) return Step::NONE;
     const float steps = kStepDepth * std::min(d, seen_.depth);
     const float margin = std::max(kStepSpacings * width_[i] / incidence, steps);
     std::array<pcl::index_t, kAround> around;
