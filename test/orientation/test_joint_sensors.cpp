@@ -193,6 +193,33 @@ TEST(Sensors, UnevenGroundIsSeenFromAbove) {
   EXPECT_GT(static_cast<double>(up), 0.99 * static_cast<double>(points.size));
 }
 
+// Two strips of equal steps along the way and of angle across it. Densities of stations far above
+// and far below explain them.
+TEST(Sensors, StripsOfAnAircraftAreNotSeenFromFarBelow) {
+  constexpr double kAltitude = 90.0;
+  constexpr double kStep = 0.8;
+  std::mt19937 random(5);
+  std::normal_distribution<double> noise(0.0, 0.05);
+  std::vector<float> rows;
+  for (const double y0 : {-20.0, 20.0}) {
+    for (double x = -60.0; x < 60.0; x += kStep) {
+      for (double a = -0.436; a < 0.436; a += kStep / kAltitude) {
+        const double z = 4.0 * std::sin(x / 8.0) * std::cos(0.1 * (y0 + kAltitude * std::tan(a)));
+        for (const double v : {x, y0 + (kAltitude - z) * std::tan(a), z}) {
+          rows.push_back(static_cast<float>(v + noise(random)));
+        }
+      }
+    }
+  }
+  const PointView points{rows.data(), 3, rows.size() / 3};
+  for (const FoundSensor& s : findSensors(points).sensors) EXPECT_GT(s.position[2], 0.F);
+  const OrientedCloud cloud = orientCloud(points, nullptr, {});
+  std::size_t up = 0;
+  for (std::size_t i = 0; i < points.size; ++i) up += cloud.normals[4 * i + 2] > 0.F ? 1 : 0;
+  const auto least = static_cast<double>(std::min(up, points.size - up));
+  EXPECT_LT(least, 0.01 * static_cast<double>(points.size));
+}
+
 TEST(Sensors, ThinPlatesAreNotSeenFromAbove) {
   for (const float thickness : {0.1F, 0.2F, 0.4F, 1.F}) {
     const std::vector<float> rows = hills(30000, thickness);

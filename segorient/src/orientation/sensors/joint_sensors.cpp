@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <numeric>
 #include <utility>
@@ -119,6 +120,19 @@ bool areInside(const std::vector<std::array<double, 3>>& positions, const detail
   });
 }
 
+// What is seen from far away looks much alike from the other side: that several places outside of
+// the ball that holds the scene explain densities does not tell the sides.
+bool areOutside(const std::vector<std::array<double, 3>>& positions, const detail::Extent& extent) {
+  return std::all_of(positions.begin(), positions.end(), [&](const std::array<double, 3>& p) {
+    double square = 0.0;
+    for (std::size_t a = 0; a < 3; ++a) {
+      const double d = p[a] - 0.5 * (extent.low[a] + extent.high[a]);
+      square += d * d;
+    }
+    return std::sqrt(square) > 0.5 * extent.diagonal();
+  });
+}
+
 // Scanners that tilt turn about a level axis.
 // \param left what a scanner on its way leaves of the deviation: it is to be less
 void lookForTilted(PreparedCloud& cloud, const DensityPatches& patches,
@@ -153,7 +167,7 @@ void detail::findSeveral(PreparedCloud& cloud, const DensityPatches& patches, in
   const detail::Stations stations = detail::searchStations(patches, occupancy, kUp, threads);
   const float ratio = stations.cost / report.deviation;
   const bool explained = ratio <= kSureSeveral || stations.cost <= report.chance;
-  if (!stations.positions.empty() && explained) {
+  if (explained && !areOutside(stations.positions, extent)) {
     addSensors(stations.positions, SensorKind::STATION, kUp, ratio, report);
     assignPlaces(cloud, patches, detail::stationOf(patches, occupancy, stations), threads, report);
     report.why = "several places explain the densities";
