@@ -495,5 +495,64 @@ TEST(NoiseField, UnsureSignsAreLessEvidenceWhereTheyContradict) {
   EXPECT_GT(truth(sure), truth(alike));
 }
 
+// Normals of a cloud whose near points are side by side.
+struct Ordered {
+  CompactCloud cloud;
+  std::vector<float> normals;
+
+  explicit Ordered(const Noisy& from) : cloud(compactCloud(viewOf(from.xyz))) {
+    for (const auto source : cloud.source) {
+      const float* n = &from.normals[4 * static_cast<std::size_t>(source)];
+      normals.insert(normals.end(), n, n + 4);
+    }
+  }
+};
+
+// What the fine field makes of true normals but for those that face up around a place.
+struct Mended {
+  double before = 0.0;
+  std::vector<float> normals;
+
+  Mended(const Ordered& cloud, double radius) {
+    const PointView points = cloud.cloud.view();
+    detail::AutoNormals found;
+    found.normals = cloud.normals;
+    found.confidences.assign(points.size, 1.F);
+    for (std::size_t i = 0; i < points.size; ++i) {
+      const Vector p = at(points, i) * static_cast<double>(cloud.cloud.unit);
+      const bool around = std::hypot(p[0] - 0.1, p[1] - 0.8) < radius;
+      if (!around || !(cloud.normals[4 * i + 2] > 0.F)) continue;
+      for (std::size_t a = 0; a < 3; ++a) found.normals[4 * i + a] *= -1.F;
+    }
+    before = shareOutward(found.normals, cloud.normals);
+    const std::vector<float> xyz(cloud.cloud.xyz.begin(), cloud.cloud.xyz.end());
+    detail::takeFineField(points, neighborsOf(xyz), 0, found);
+    normals = found.normals;
+  }
+};
+
+// Sides of the wing are some spacings apart there.
+TEST(FineField, TurnsPatchesOfAThinPartBack) {
+  const Ordered cloud(winged(8000, 0.0, 4));
+  for (const double radius : {0.05, 0.12, 0.2}) {
+    const Mended patch(cloud, radius);
+    const double wrong = 1.0 - shareOutward(patch.normals, cloud.normals);
+    EXPECT_LT(wrong, 0.75 * (1.0 - patch.before)) << radius;
+  }
+  EXPECT_GT(shareOutward(Mended(cloud, 0.0).normals, cloud.normals), 0.999) << "the truth";
+}
+
+// Without an inside the field says nothing of sides.
+TEST(FineField, LeavesOpenSheetsAsTheyAre) {
+  std::mt19937 rng(6);
+  std::uniform_real_distribution<double> side(-1.0, 1.0);
+  Noisy sheet;
+  for (int i = 0; i < 4000; ++i) add({side(rng), side(rng), 0.0}, Vector::UnitZ(), sheet);
+  const std::vector<float> after = Mended(Ordered(sheet), 0.15).normals;
+  std::size_t down = 0;
+  for (std::size_t i = 2; i < after.size(); i += 4) down += after[i] < 0.F ? 1 : 0;
+  EXPECT_GT(down, 50U);
+}
+
 }  // namespace
 }  // namespace segorient::test

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "common/median.h"
+#include "orientation/automatic/noise_field.h"
 #include "orientation/automatic/orient_sheets.h"
 #include "orientation/automatic/stages.h"
 #include "orientation/sensors/known_sensors.h"

@@ -25,12 +25,6 @@ namespace segorient::detail {
 namespace {
 
 constexpr int kSix = 6;  // neighbours of the spacing
-// In mean distances to the six nearest points. A cell holds about four points, whose mean has half
-// the noise.
-constexpr float kCell = 1.5F;
-constexpr float kSmooth = 2.F;  // noise of a spacing is no more to the field than to its cells
-// Less than that, as cells have averaged some of the noise, and fine parts are lost to a wide one.
-constexpr float kFinal = 1.5F;
 
 float medianSpacing(const PointView& points, const Neighborhoods& table) {
   constexpr std::size_t kRows = 20000;  // a median of so many is known to a hundredth
@@ -169,7 +163,8 @@ void findWhatSheetsKeep(const PointView& points, const Neighborhoods& neighborho
 
 NoiseField findNoiseField(const PointView& points, const Neighborhoods& neighborhoods,
                           const std::vector<float>& normals, int threads,
-                          const std::vector<float>& confidences, std::optional<bool> consistent) {
+                          const std::vector<float>& confidences, std::optional<bool> consistent,
+                          const FieldScale& scale) {
   // Spread: noise of a spacing alone makes so much.
   constexpr float kSure = 0.03F;
   // The mean of w is a fifth of its root mean square there, as it is by chance of 25 pieces with
@@ -182,9 +177,9 @@ NoiseField findNoiseField(const PointView& points, const Neighborhoods& neighbor
   const float spacing = medianSpacing(points, neighborhoods);
   NoiseField out;
   if (!(spacing > 0.F)) return out;  // one place
-  EvenCells subset = gatherCells(points, normals, kCell * spacing, threads);
+  EvenCells subset = gatherCells(points, normals, scale.cell * spacing, threads);
   if (subset.size() == 0) return out;
-  const FieldSolver solver(subset.points(), subset.around, subset.areas, kSmooth * spacing,
+  const FieldSolver solver(subset.points(), subset.around, subset.areas, scale.smooth * spacing,
                            threads);
   const FieldFit own = solver.fit(subset.normals);
   std::vector<float> found = subset.normals;
@@ -199,11 +194,13 @@ NoiseField findNoiseField(const PointView& points, const Neighborhoods& neighbor
   }
   out.factor = solver.fit(found).factor;
   out.dipoles = dipolesOf(found, subset.areas);
-  out.radius = kFinal * spacing;
+  out.radius = scale.last * spacing;
   // The signs as they came contradict the field by more than noise explains: the surface may be
   // open, or a wall whose two sides came out as one sheet, and which of them cannot be told.
   out.most = kSure / std::max(kSure, own.spread);
-  if (hidesTwoSides(points, neighborhoods, normals, threads)) out.most = 0.F;
+  // What single points show of two sides are their own lines.
+  const bool averaged = scale.cell > 1.F;
+  if (averaged && hidesTwoSides(points, neighborhoods, normals, threads)) out.most = 0.F;
   out.places = std::move(subset.places);
   return out;
 }
@@ -240,6 +237,22 @@ void takeNoiseField(const PointView& points, const Neighborhoods& neighborhoods,
     }
     confidence = std::min(confidence, field.most);
   }
+}
+
+void takeFineField(const PointView& points, const Neighborhoods& neighborhoods, int threads,
+                   AutoNormals& found) {
+  NoiseField field = findNoiseField(points, neighborhoods, found.normals, threads,
+                                    found.confidences, false, kFineField);
+  if (field.empty() || field.most < 1.F) return;
+  field.averaged_below = kAcross;
+  AutoNormals other;
+  other.normals = found.normals;
+  other.confidences = found.confidences;
+  takeNoiseField(points, neighborhoods, field, threads, other);
+  const SignJudge judge(points, neighborhoods, threads);
+  if (!(judge.judge(other.normals).total() < judge.judge(found.normals).total())) return;
+  found.normals = std::move(other.normals);
+  found.confidences = std::move(other.confidences);
 }
 
 }  // namespace segorient::detail

@@ -17,6 +17,23 @@ namespace segorient::detail {
 /// In spacings, as NoiseLevel::fine measures it: with less, borders tell enough.
 constexpr float kFieldNoise = 0.2F;
 
+/// 45 degrees: normals of layers that are farther off what all layers make were fitted across them.
+constexpr float kAcross = 0.7F;
+
+/// Sizes in mean distances to the six nearest points.
+struct FieldScale {
+  float cell;    ///< that points are averaged over
+  float smooth;  ///< of the field that is solved for
+  float last;    ///< of the one that points are turned by
+};
+/// In noise: cells of some four points, whose mean has half the noise. Noise of a spacing is no
+/// more to the field than to its cells; at last less than that, as cells have averaged some of the
+/// noise, and fine parts are lost to a wide one.
+constexpr FieldScale kNoisyField{1.5F, 2.F, 1.5F};
+/// Without noise: nearly each point is a cell of its own, so that the sides of walls of a spacing
+/// are apart, and the field is as smooth as its dipoles are apart.
+constexpr FieldScale kFineField{0.4F, 0.8F, 0.8F};
+
 /// Where noise hides which way sheets go on, the field of all points knows more than borders do: an
 /// even subset of these, with normals that agree with it.
 struct NoiseField {
@@ -48,7 +65,8 @@ struct NoiseField {
 /// alike \param consistent whether they do not, see NoiseField; none = measured
 SEGORIENT_ORIENTATION_EXPORT NoiseField findNoiseField(
     const PointView& points, const Neighborhoods& neighborhoods, const std::vector<float>& normals,
-    int threads, const std::vector<float>& confidences = {}, std::optional<bool> consistent = {});
+    int threads, const std::vector<float>& confidences = {}, std::optional<bool> consistent = {},
+    const FieldScale& scale = kNoisyField);
 
 /// Finds NoiseField::keeps, for parts of the cloud that see only parts of what would be turned.
 /// \param points those of the field \param normals those that it was found with
@@ -66,5 +84,13 @@ SEGORIENT_ORIENTATION_EXPORT void takeNoiseField(const PointView& points,
                                                  const Neighborhoods& neighborhoods,
                                                  const NoiseField& field, int threads,
                                                  AutoNormals& found);
+
+/// The same without noise, where signs contradict each other on parts hardly thicker than points
+/// are apart: from a field as fine as the points. It is taken where the surface is closed and the
+/// energy of the signs (SignJudge) is less.
+/// \param points finite, near ones side by side \param found normals and confidences may change
+SEGORIENT_ORIENTATION_EXPORT void takeFineField(const PointView& points,
+                                                const Neighborhoods& neighborhoods, int threads,
+                                                AutoNormals& found);
 
 }  // namespace segorient::detail

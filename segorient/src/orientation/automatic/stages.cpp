@@ -125,6 +125,8 @@ AutoStages runAutoStages(PreparedCloud& cloud, const PipelineOptions& options,
                     findCellSigns(points, oriented.normals, oriented.spacing,
                                   oriented.orientation.result.components, options.threads),
                     oriented);
+      // Judged scales: signs contradict each other somewhere.
+      if (!oriented.scales.empty()) takeFineField(points, table, options.threads, oriented);
     }
   }
   labelTheRest(table, oriented.normals, out.segmentation);

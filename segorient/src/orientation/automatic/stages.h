@@ -13,9 +13,6 @@
 
 namespace segorient::detail {
 
-/// 45 degrees: normals of layers that are farther off what all layers make were fitted across them.
-constexpr float kAcross = 0.7F;
-
 /// What the default method found out about the distinct points of a cloud.
 struct AutoStages {
   std::vector<float> normals;      ///< 4 floats a point: oriented normal, curvature; NaN where none
