@@ -193,6 +193,48 @@ TEST(Sensors, UnevenGroundIsSeenFromAbove) {
   EXPECT_GT(static_cast<double>(up), 0.99 * static_cast<double>(points.size));
 }
 
+// A pit in level ground, 2 deep and 8 wide at its bottom.
+double pit(double x, double y) {
+  return std::clamp(0.8 * (std::hypot(x, y) - 6.5), -2.0, 0.0);
+}
+
+// What a ray from `from` hits of the pit within 15 of its middle.
+void addHit(const Vector& from, const Vector& direction, std::vector<float>& rows) {
+  constexpr double kStride = 0.05;
+  const auto at = [&](double t, std::size_t a) { return from[a] + t * direction[a]; };
+  const auto above = [&](double t) { return at(t, 2) - pit(at(t, 0), at(t, 1)); };
+  for (double t = kStride; std::hypot(at(t, 0), at(t, 1)) < 15.0; t += kStride) {
+    if (above(t) > 0.0) continue;
+    const double before = above(t - kStride);
+    t -= kStride * above(t) / (above(t) - before);
+    for (std::size_t a = 0; a < 3; ++a) rows.push_back(static_cast<float>(at(t, a)));
+    return;
+  }
+}
+
+// Of level ground, places above it and their images below explain the densities alike; the slopes
+// of a pit tell them apart.
+TEST(Sensors, StationsOnTheGroundAreNotTheirImagesBelowIt) {
+  const std::array<Vector, 4> truth{
+      {{9.0, 1.0, 1.6}, {-1.5, 8.5, 1.7}, {-9.2, -0.5, 1.5}, {0.5, -9.5, 1.8}}};
+  std::vector<float> rows;
+  constexpr double kStep = 1.1 * kPi / 180.0;
+  for (const Vector& t : truth) {
+    for (double e = -1.0; e < 0.0; e += kStep) {
+      for (double a = 0.3 * kStep; a < 2.0 * kPi; a += kStep) {
+        addHit(t, {std::cos(e) * std::cos(a), std::cos(e) * std::sin(a), std::sin(e)}, rows);
+      }
+    }
+  }
+  const SensorReport report = findSensors({rows.data(), 3, rows.size() / 3});
+  ASSERT_EQ(report.sensors.size(), truth.size()) << report.why;
+  for (const FoundSensor& s : report.sensors) {
+    double nearest = 1e30;
+    for (const Vector& t : truth) nearest = std::min(nearest, distanceTo(s, t));
+    EXPECT_LT(nearest, 0.5);
+  }
+}
+
 // Two strips of equal steps along the way and of angle across it. Densities of stations far above
 // and far below explain them.
 TEST(Sensors, StripsOfAnAircraftAreNotSeenFromFarBelow) {

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <limits>
+#include <utility>
 
 #include "common/parallel_for.h"
 #include "orientation/sensors/sampling_law.h"
@@ -103,6 +105,25 @@ class Sum {
     return true;
   }
 
+  // Each station to its image across the surface next to it, if that is better. Over level ground
+  // both leave the same where nothing hides anything, and no small step leads through the ground.
+  void reflect(double step) {
+    for (std::size_t j = 0; j < positions_.size(); ++j) {
+      const float before = cost();
+      const Position position = positions_[j];
+      std::vector<float> seen = seen_[j];
+      std::vector<float> density = densities_[j];
+      positions_[j] = imageOf(position);
+      lookFrom(j);
+      refineOne(j, step);
+      lookFrom(j);
+      if (cost() < before) continue;
+      positions_[j] = position;
+      seen_[j] = std::move(seen);
+      densities_[j] = std::move(density);
+    }
+  }
+
   // The one that is missed least goes.
   void dropOne() {
     std::size_t least = 0;
@@ -134,11 +155,33 @@ class Sum {
 
  private:
   void look() {
-    for (std::size_t j = 0; j < positions_.size(); ++j) {
-      seen_[j].resize(patches_.size());
-      occupancy_.visibility(patches_, positions_[j], seen_[j].data());
-      densityAt(positions_[j], seen_[j], densities_[j]);
+    for (std::size_t j = 0; j < positions_.size(); ++j) lookFrom(j);
+  }
+
+  void lookFrom(std::size_t j) {
+    seen_[j].resize(patches_.size());
+    occupancy_.visibility(patches_, positions_[j], seen_[j].data());
+    densityAt(positions_[j], seen_[j], densities_[j]);
+  }
+
+  // Across the plane of the nearest piece.
+  Position imageOf(const Position& p) const {
+    Position image = p;
+    double least = std::numeric_limits<double>::infinity();
+    for (std::size_t i = 0; i < patches_.size(); ++i) {
+      const double away[3] = {p[0] - static_cast<double>(patches_.x[i]),
+                              p[1] - static_cast<double>(patches_.y[i]),
+                              p[2] - static_cast<double>(patches_.z[i])};
+      const double square = away[0] * away[0] + away[1] * away[1] + away[2] * away[2];
+      if (square >= least) continue;
+      least = square;
+      const double normal[3] = {static_cast<double>(patches_.nx[i]),
+                                static_cast<double>(patches_.ny[i]),
+                                static_cast<double>(patches_.nz[i])};
+      const double height = away[0] * normal[0] + away[1] * normal[1] + away[2] * normal[2];
+      for (std::size_t a = 0; a < 3; ++a) image[a] = p[a] - 2.0 * height * normal[a];
     }
+    return image;
   }
 
   // Over the density that is there.
@@ -194,6 +237,7 @@ Stations searchStations(const DensityPatches& patches, const Occupancy& occupanc
     const bool few = sum.positions().size() <= kMostRelocated;
     for (int i = 0; few && i < kRelocations && sum.relocate(kStep * diagonal); ++i) {
     }
+    sum.reflect(kStep * diagonal);
     tried.push_back({sum.positions(), axis, sum.cost()});
     if (sum.positions().size() == 1) break;
     sum.dropOne();
@@ -207,7 +251,10 @@ Stations searchStations(const DensityPatches& patches, const Occupancy& occupanc
   }
   const DensityPatches fine = patches.thinned(kFinePieces);
   Sum found(fine, occupancy, axis, out.positions);
-  for (int round = 0; round < kFineRounds; ++round) found.refine(kFineStep * diagonal);
+  for (int round = 0; round < kFineRounds; ++round) {
+    found.reflect(kFineStep * diagonal);
+    found.refine(kFineStep * diagonal);
+  }
   out.positions = found.positions();
   out.cost = found.cost();
   return out;
