@@ -3,6 +3,7 @@
 // Normals where the nearest neighbours are of one ring, or below the noise: planes are the oracle.
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <random>
 
 #include "features/scan_scale.h"
@@ -64,6 +65,38 @@ TEST(ScanScale, LinesOfAScannerShowButNoChance) {
   EXPECT_FALSE(detail::showsScanLines(viewOf(even.xyz), neighborsOf(even.xyz), 0));
 }
 
+// More points than one region of the index has: those at rims wait for the ones behind them.
+TEST(ScanScale, EachPointIsTakenOnceByAnyNumberOfThreads) {
+  std::mt19937 rng(84);
+  std::normal_distribution<float> gauss(0.F, 1.F);
+  std::uniform_real_distribution<float> uniform(0.F, 150.F);
+  std::vector<float> xyz;
+  for (int i = 0; i < 22500; ++i) {
+    xyz.insert(xyz.end(), {uniform(rng), uniform(rng), 0.5F * gauss(rng), 0.F});
+  }
+  const std::size_t n = xyz.size() / 4;
+  std::vector<float> first;
+  for (const int threads : {1, 4}) {
+    std::vector<float> normals(3 * n, 0.F);
+    std::vector<int> times(n, 0);
+    detail::MoreNeighbors more(viewOf(xyz), threads);
+    detail::fitScanPlanes(more, 8, threads,
+                          [&](std::size_t i, const detail::GrownPlanes& planes, std::size_t r) {
+                            for (std::size_t a = 0; a < 3; ++a)
+                              normals[3 * i + a] = planes.normal[a][r];
+                            ++times[i];
+                          });
+    std::size_t level = 0;
+    for (std::size_t i = 0; i < n; ++i) {
+      ASSERT_LE(times[i], 1);
+      level += std::fabs(normals[3 * i + 2]) > 0.97F ? 1 : 0;
+    }
+    EXPECT_GT(level, n * 9 / 10) << "noise of half a spacing asks for large neighbourhoods";
+    if (first.empty()) first = normals;
+    EXPECT_EQ(normals, first);
+  }
+}
+
 TEST(ScanScale, FewPointsAndLines) {
   std::vector<float> line;
   for (int i = 0; i < 40; ++i) line.insert(line.end(), {static_cast<float>(i), 0.F, 0.F, 0.F});
@@ -71,9 +104,9 @@ TEST(ScanScale, FewPointsAndLines) {
     FAIL() << "a line has no plane";
   };
   detail::MoreNeighbors more(viewOf(line), 0);
-  detail::fitScanPlanes(more, 8, fail);
+  detail::fitScanPlanes(more, 8, 0, fail);
   detail::MoreNeighbors none({nullptr, 4, 0}, 0);
-  detail::fitScanPlanes(none, 8, fail);
+  detail::fitScanPlanes(none, 8, 0, fail);
 }
 
 }  // namespace

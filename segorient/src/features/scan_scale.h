@@ -42,6 +42,6 @@ using ScanPlaneTaker = std::function<void(std::size_t i, const GrownPlanes& plan
 /// \param smallest neighbourhood that the cloud's noise allows
 /// \param take called from several threads for each point whose scale is clearly larger and
 ///        that has a plane there
-void fitScanPlanes(MoreNeighbors& more, int smallest, const ScanPlaneTaker& take);
+void fitScanPlanes(MoreNeighbors& more, int smallest, int threads, const ScanPlaneTaker& take);
 
 }  // namespace segorient::detail

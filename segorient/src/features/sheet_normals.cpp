@@ -116,7 +116,7 @@ SheetNormals estimateSheetNormals(const PointView& points, const Neighborhoods& 
   if (out.traits.scan_scales) {
     done.resize(n);
     detail::MoreNeighbors own(points, options.threads);
-    detail::fitScanPlanes(more != nullptr ? *more : own, out.scale,
+    detail::fitScanPlanes(more != nullptr ? *more : own, out.scale, options.threads,
                           [&](std::size_t i, const GrownPlanes& planes, std::size_t r) {
                             const Plane p = planes.at(r, out.spacing[i]);
                             store({p, p.variation(), {}, false}, i, out, lopsided);
