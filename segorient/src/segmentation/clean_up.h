@@ -35,16 +35,24 @@ class CleanUp {
   void connectSmall();
 
  private:
+  /// Points around a small segment that lie in its surface, by their segment.
   struct Count {
     std::int32_t label;
     std::uint32_t points;
+  };
+  struct Hosts {
+    std::vector<Count> counts;
+    std::uint32_t total = 0;  ///< points around, in its surface or not
   };
 
   bool isSmall(std::int32_t label) const {
     return state_.clusters[static_cast<std::size_t>(label)].size < small_size_;
   }
   bool isFace(std::int32_t label) const { return state_.isFace(label, small_size_); }
-  std::int32_t bestHost(std::int32_t label);
+  static void add(std::int32_t label, std::uint32_t points, std::vector<Count>& counts);
+  void listHosts(std::int32_t label, std::vector<std::uint32_t>& room, Hosts& hosts) const;
+  std::int32_t bestHost(std::int32_t label, const Hosts& hosts);
+  std::int32_t joinedTo(std::int32_t label);
   void join(std::int32_t from, std::int32_t into);
   bool tryExtract(std::uint32_t slot);
   void flip(std::size_t p);
@@ -55,6 +63,7 @@ class CleanUp {
   SmallAdjacency adjacency_;
   float cos_join_;
   float cos_alpha_;
+  std::vector<std::int32_t> joined_to_;  ///< by segment: where its points went, or itself
   std::vector<Count> counts_;
 };
 

@@ -4,7 +4,6 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <vector>
 
 #include "segmentation/growth_state.h"
 
@@ -31,10 +30,9 @@ struct LimitedEdges {
 struct ListedEdges {
   static constexpr bool kLooksAtRows = true;
   const GrowthState& state;
-  std::vector<std::uint32_t> masks;  ///< see SheetEdges::list()
-  const std::uint8_t* reliable;      ///< null = all points are
+  const std::uint8_t* reliable;  ///< null = all points are
 
-  std::uint32_t among(std::size_t p) const { return masks[p]; }
+  std::uint32_t among(std::size_t p) const { return state.joined[p]; }
   bool admits(const Node& /*p*/, const Node& /*q*/, std::size_t index) const {
     return reliable == nullptr || reliable[index] != 0;
   }
@@ -43,16 +41,9 @@ struct ListedEdges {
   bool supports(std::size_t q, std::int32_t label, std::uint32_t size) const {
     constexpr std::uint32_t kYoung = 6;  // a segment that small has not so many to offer
     const int wanted = size <= kYoung ? 0 : state.support;
-    const pcl::index_t* row = state.neighborhoods->indices(q) + 1;
-    const int last = state.rowSize(q) - 1;
-    // Which of them are in the segment is nothing that a processor could guess: no branches.
-    std::uint32_t members = 0;
-    for (int j = 0; j < last; ++j) {
-      const bool member = state.labels[static_cast<std::size_t>(row[j])] == label;
-      members |= static_cast<std::uint32_t>(member) << j;
-    }
-    const int good = countBits(members & masks[q]);
-    const int bad = countBits(members & ~masks[q]);
+    const std::uint32_t members = state.membersAmong(q, label);
+    const int good = countBits(members & state.joined[q]);
+    const int bad = countBits(members & ~state.joined[q]);
     return good >= wanted && (state.support == 0 || bad <= good);
   }
 };

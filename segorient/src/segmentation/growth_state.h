@@ -109,6 +109,8 @@ struct GrowthState {
   PairLimits limits;
   const SheetEdges* sheets = nullptr;  ///< where not null, these decide in place of the limits
   int support = 0;  ///< neighbours in a segment that a point needs to join it, see supports()
+  /// By point, where `sheets` decide: see SheetEdges::list(). Empty = not listed.
+  std::vector<std::uint32_t> joined;
   bool scattered = false;      ///< neighbours are far from each other in memory
   float typical_offset = 0.F;  ///< of a neighbour from a tangent plane, in spacings: the noise
   FastVector<Node> nodes;
@@ -138,11 +140,29 @@ struct GrowthState {
     int good = 0;
     int bad = 0;
     const pcl::index_t* row = neighborhoods->indices(p);
+    if (!joined.empty()) {
+      const std::uint32_t members = membersAmong(p, label);
+      good = countBits(members & joined[p]);
+      bad = countBits(members & ~joined[p]);
+      return good >= support && bad <= good;
+    }
     for (int j = 1; j < rowSize(p); ++j) {
       const auto q = static_cast<std::size_t>(row[j]);
       if (labels[q] == label) (joins(p, q) ? good : bad) += 1;
     }
     return good >= support && bad <= good;
+  }
+  /// Which of p's neighbours, 32 at most, a segment has: bit j for the j-th, itself not counted.
+  std::uint32_t membersAmong(std::size_t p, std::int32_t label) const {
+    const pcl::index_t* row = neighborhoods->indices(p) + 1;
+    const int last = rowSize(p) - 1;
+    // Which of them are in the segment is nothing that a processor could guess: no branches.
+    std::uint32_t members = 0;
+    for (int j = 0; j < last; ++j) {
+      const bool member = labels[static_cast<std::size_t>(row[j])] == label;
+      members |= static_cast<std::uint32_t>(member) << j;
+    }
+    return members;
   }
   /// Asks the memory for a row of the table that is looked at soon.
   void fetchRow(std::size_t row) const { prefetch(neighborhoods->indices(row)); }

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026, the segorient authors
+#include <numeric>
+
 #include "common/disjoint_sets.h"
+#include "common/parallel_for.h"
 #include "segmentation/clean_up.h"
 
 namespace segorient::segmentation {
@@ -14,7 +17,7 @@ CleanUp::CleanUp(const SegmentationOptions& options, GrowthState& state)
     : options_(options),
       state_(state),
       small_size_(static_cast<std::uint32_t>(std::min(options.small_size, state.nodes.size() + 1))),
-      adjacency_(state, small_size_),
+      adjacency_(state, small_size_, options.threads),
       cos_join_(std::cos(std::min(options.beta + options.epsilon, kRightAngle))),
       cos_alpha_(std::cos(std::min(options.alpha, kRightAngle))) {}
 
@@ -26,28 +29,44 @@ void CleanUp::flip(std::size_t p) {
   state_.signs[p] = static_cast<std::int8_t>(-state_.signs[p]);
 }
 
+void CleanUp::add(std::int32_t label, std::uint32_t points, std::vector<Count>& counts) {
+  const auto it =
+      std::find_if(counts.begin(), counts.end(), [&](const Count& c) { return c.label == label; });
+  if (it == counts.end()) {
+    counts.push_back({label, points});
+  } else {
+    it->points += points;
+  }
+}
+
+void CleanUp::listHosts(std::int32_t label, std::vector<std::uint32_t>& room, Hosts& hosts) const {
+  hosts.counts.clear();
+  hosts.total = 0;
+  adjacency_.forEachAround(label, room, [&](std::size_t q, bool admissible) {
+    ++hosts.total;
+    if (admissible) add(state_.labels[q], 1, hosts.counts);
+  });
+}
+
+std::int32_t CleanUp::joinedTo(std::int32_t label) {
+  const auto at = [this](std::int32_t s) -> std::int32_t& {
+    return joined_to_[static_cast<std::size_t>(s)];
+  };
+  while (at(label) != label) label = at(label) = at(at(label));
+  return label;
+}
+
 // Pass 1, one segment: the neighbouring segment of the smallest angle among those that hold enough
 // of the points around, or -1.
-std::int32_t CleanUp::bestHost(std::int32_t label) {
+// \param hosts as listed at any time since other segments joined this one
+std::int32_t CleanUp::bestHost(std::int32_t label, const Hosts& hosts) {
   counts_.clear();
-  std::uint32_t total = 0;
-  adjacency_.forEachAround(label, [&](std::size_t q, bool admissible) {
-    ++total;
-    if (!admissible) return;
-    const std::int32_t other = state_.labels[q];
-    const auto it = std::find_if(counts_.begin(), counts_.end(),
-                                 [&](const Count& c) { return c.label == other; });
-    if (it == counts_.end()) {
-      counts_.push_back({other, 1});
-    } else {
-      ++it->points;
-    }
-  });
+  for (const Count& c : hosts.counts) add(joinedTo(c.label), c.points, counts_);
   const NormalSum& own = state_.clusters[static_cast<std::size_t>(label)].normal;
   std::int32_t best = -1;
   double best_cosine = cos_join_;
   for (const Count& c : counts_) {
-    if (static_cast<float>(c.points) <= options_.neighbor_share * static_cast<float>(total))
+    if (static_cast<float>(c.points) <= options_.neighbor_share * static_cast<float>(hosts.total))
       continue;
     const NormalSum& other = state_.clusters[static_cast<std::size_t>(c.label)].normal;
     const double cosine =
@@ -71,22 +90,49 @@ void CleanUp::join(std::int32_t from, std::int32_t into) {
   target.normal.add(source.normal, sign);
   target.size += source.size;
   source = Cluster{};
+  joined_to_[static_cast<std::size_t>(from)] = into;
   adjacency_.append(from, into);
 }
 
 // Ascending size; a small segment that has taken in another one has its turn again at its new size.
+// What is around the others is listed beforehand, on all threads, for so many at once.
 std::size_t CleanUp::absorbSmall() {
+  constexpr std::size_t kListed = 1U << 16U;
+  constexpr double kPointTime = 1000.0;  // ns, see resolveThreads()
   std::size_t absorbed = 0;
   std::vector<std::vector<std::int32_t>> by_size(small_size_);
+  joined_to_.resize(state_.clusters.size());
+  std::iota(joined_to_.begin(), joined_to_.end(), 0);
   for (std::size_t s = 0; s < state_.clusters.size(); ++s) {
     const std::uint32_t size = state_.clusters[s].size;
     if (size < small_size_) by_size[size].push_back(static_cast<std::int32_t>(s));
   }
+  std::vector<std::int32_t> order;
+  std::vector<std::size_t> first_turns(small_size_, 0);
+  for (std::uint32_t size = 1; size < small_size_; ++size) {
+    order.insert(order.end(), by_size[size].begin(), by_size[size].end());
+    first_turns[size] = by_size[size].size();
+  }
+  std::vector<Hosts> listed(std::min(kListed, order.size()));
+  std::vector<std::uint32_t> room;
+  Hosts own;
+  std::size_t turn = 0;
   for (std::uint32_t size = 1; size < small_size_; ++size) {
     for (std::size_t i = 0; i < by_size[size].size(); ++i) {
+      if (i < first_turns[size] && turn % kListed == 0) {
+        const std::size_t count = std::min(kListed, order.size() - turn);
+        parallelFor(
+            count, options_.threads, timeOfEach(order.size(), adjacency_.size(), kPointTime),
+            [] { return std::vector<std::uint32_t>(); },
+            [&](std::size_t h, std::vector<std::uint32_t>& of_thread) {
+              listHosts(order[turn + h], of_thread, listed[h]);
+            });
+      }
+      const std::size_t at = i < first_turns[size] ? turn++ % kListed : kListed;
       const std::int32_t label = by_size[size][i];
       if (state_.clusters[static_cast<std::size_t>(label)].size != size) continue;
-      const std::int32_t host = bestHost(label);
+      if (at == kListed) listHosts(label, room, own);
+      const std::int32_t host = bestHost(label, at == kListed ? own : listed[at]);
       if (host < 0) continue;
       join(label, host);
       ++absorbed;
@@ -104,14 +150,14 @@ bool CleanUp::tryExtract(std::uint32_t slot) {
   std::int32_t best = -1;
   double best_cosine = cos_join_;
   double best_sign = 1.0;
+  std::int32_t last = own;  // neighbours next to each other mostly have one label
   const auto consider = [&](std::size_t q) {
     const std::int32_t label = state_.labels[q];
-    if (label == own || !isFace(label)) return;
-    const Node& node = state_.nodes[p];
-    if (!(std::abs(dotNormals(node, state_.nodes[q])) > cos_alpha_)) return;
-    if (!state_.joins(q, p) || !state_.supports(p, label)) return;
+    if (label == last || label == own) return;
+    last = label;
+    if (!isFace(label) || !state_.supports(p, label)) return;
     const NormalSum& reference = state_.clusters[static_cast<std::size_t>(label)].normal;
-    const double along = reference.dot(node) / std::sqrt(reference.squaredNorm());
+    const double along = reference.dot(state_.nodes[p]) / std::sqrt(reference.squaredNorm());
     const double cosine = std::abs(along);
     if (cosine > best_cosine || (cosine == best_cosine && best >= 0 && label < best)) {
       best_cosine = cosine;
@@ -120,9 +166,9 @@ bool CleanUp::tryExtract(std::uint32_t slot) {
     }
   };
   if (state_.support > 0) {
-    adjacency_.forEachInRow(slot, consider);
+    adjacency_.forEachMarkedInRow(slot, consider);
   } else {
-    adjacency_.forEachNeighbor(slot, consider);
+    adjacency_.forEachMarked(slot, consider);
   }
   if (best < 0) return false;
   Cluster& source = state_.clusters[static_cast<std::size_t>(own)];
@@ -138,7 +184,12 @@ bool CleanUp::tryExtract(std::uint32_t slot) {
 
 // A point is tried again whenever a neighbour of it has moved, until nothing moves.
 std::size_t CleanUp::extractEdges() {
+  constexpr std::size_t kAhead = 8;  // the memory is asked for their rows
   std::size_t extracted = 0;
+  adjacency_.mark(options_.threads, [this](std::size_t p, std::size_t q) {
+    return std::abs(dotNormals(state_.nodes[p], state_.nodes[q])) > cos_alpha_ &&
+           state_.joins(q, p);
+  });
   std::vector<std::uint32_t> queue;
   std::vector<std::uint8_t> queued(adjacency_.size(), 0);
   for (std::uint32_t slot = 0; slot < adjacency_.size(); ++slot) {
@@ -147,6 +198,7 @@ std::size_t CleanUp::extractEdges() {
     queued[slot] = 1;
   }
   for (std::size_t head = 0; head < queue.size(); ++head) {
+    if (head + kAhead < queue.size()) state_.fetchRow(adjacency_.point(queue[head + kAhead]));
     const std::uint32_t slot = queue[head];
     queued[slot] = 0;
     if (isFace(state_.labels[adjacency_.point(slot)]) || !tryExtract(slot)) continue;

@@ -231,8 +231,8 @@ void grow(const SegmentationOptions& options, GrowthState& state) {
 void growSheets(const SegmentationOptions& options, GrowthState& state) {
   std::vector<std::uint8_t> on_border = start(state);
   const SheetEdges& sheets = *state.sheets;
-  ListedEdges edges{state, sheets.list(*state.neighborhoods, options.threads),
-                    sheets.field().reliable};
+  state.joined = sheets.list(*state.neighborhoods, options.threads);
+  ListedEdges edges{state, sheets.field().reliable};
   Grower<ListedEdges> grower(options, edges, state, on_border);
   SeedOrder sure(state, options.threads, edges.reliable);
   for (std::size_t seed = 0; sure.next(seed);) grower.grow(seed);

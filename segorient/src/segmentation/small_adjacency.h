@@ -2,11 +2,15 @@
 // Copyright (c) 2026, the segorient authors
 #pragma once
 
+#include <algorithm>
+#include <cstdint>
 #include <cstdlib>
 #include <limits>
 #include <memory>
 #include <new>
+#include <vector>
 
+#include "common/parallel_for.h"
 #include "segmentation/growth_state.h"
 
 namespace segorient::segmentation {
@@ -37,7 +41,8 @@ class SmallAdjacency {
  public:
   static constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
 
-  SmallAdjacency(const GrowthState& state, std::size_t small_size);
+  /// \param threads see resolveThreads()
+  SmallAdjacency(const GrowthState& state, std::size_t small_size, int threads);
 
   std::uint32_t size() const { return static_cast<std::uint32_t>(points_.size()); }
   std::size_t point(std::uint32_t slot) const { return static_cast<std::size_t>(points_[slot]); }
@@ -71,42 +76,83 @@ class SmallAdjacency {
   }
 
   /// visit(point, admissible) once for each point around a small segment; `admissible` if it lies
-  /// in the surface of at least one point of the segment.
+  /// in the surface of at least one point of the segment. From several threads, each with a room of
+  /// its own.
   template <typename Visit>
-  void forEachAround(std::int32_t label, Visit&& visit) {
-    around_.clear();
-    if (first_stamp_ > kMostStamps) {
-      stamps_ = ZeroedArray(state_.nodes.size());
-      first_stamp_ = 1;
-    }
+  void forEachAround(std::int32_t label, std::vector<std::uint32_t>& room, Visit&& visit) const {
+    room.clear();
     for (std::uint32_t s = heads_[static_cast<std::size_t>(label)]; s != kNone; s = next_[s]) {
       const std::size_t p = point(s);
       forEachNeighbor(s, [&](std::size_t q) {
         if (state_.labels[q] == label) return;
-        if (stamps_[q] < first_stamp_) {
-          stamps_[q] = first_stamp_ + static_cast<std::uint32_t>(around_.size());
-          around_.push_back({q, false});
-        }
-        Around& entry = around_[stamps_[q] - first_stamp_];
-        entry.admissible = entry.admissible || state_.joins(q, p);
+        room.push_back(static_cast<std::uint32_t>(2 * q + (state_.joins(q, p) ? 0 : 1)));
       });
     }
-    first_stamp_ += static_cast<std::uint32_t>(around_.size());
-    for (const Around& a : around_) visit(a.point, a.admissible);
+    std::sort(room.begin(), room.end());
+    std::uint32_t last = kNone;
+    for (const std::uint32_t entry : room) {
+      if (entry / 2 != last) visit(std::size_t{entry / 2}, entry % 2 == 0);
+      last = entry / 2;
+    }
+  }
+
+  /// Marks the neighbours of slots' points that a condition holds for, which must not change while
+  /// they are asked for. \param condition (point, neighbour), from several threads
+  template <typename Condition>
+  void mark(int threads, const Condition& condition) {
+    constexpr double kSlotTime = 400.0;  // ns, see resolveThreads()
+    marks_.resize(words() * points_.size());
+    reverse_marks_.resize(reverse_.size());
+    parallelFor(points_.size(), threads, kSlotTime, [&](std::size_t at) {
+      const auto slot = static_cast<std::uint32_t>(at);
+      const std::size_t p = point(slot);
+      const pcl::index_t* row = state_.neighborhoods->indices(p);
+      const int count = state_.rowSize(p);
+      std::fill_n(&marks_[words() * slot], words(), 0U);
+      const auto holds = [&](pcl::index_t index) {
+        bool found = false;
+        visitNear(p, index, [&](std::size_t q) { found = condition(p, q); });
+        return found;
+      };
+      for (int j = 1; j < count; ++j) {
+        const auto bit = static_cast<std::size_t>(j - 1);
+        const std::uint32_t one = holds(row[j]) ? 1U : 0U;
+        marks_[words() * slot + bit / kBits] |= one << bit % kBits;
+      }
+      for (std::size_t i = reverse_starts_[slot]; i < reverse_starts_[slot + 1]; ++i) {
+        reverse_marks_[i] = holds(reverse_[i]) ? 1 : 0;
+      }
+    });
+  }
+  /// visit(point) for each marked one in the row of a slot's point.
+  template <typename Visit>
+  void forEachMarkedInRow(std::uint32_t slot, Visit&& visit) const {
+    const pcl::index_t* row = state_.neighborhoods->indices(point(slot)) + 1;
+    for (std::size_t w = 0; w < words(); ++w) {
+      for (std::uint32_t open = marks_[words() * slot + w]; open != 0; open &= open - 1) {
+        visit(static_cast<std::size_t>(row[kBits * w + lowestBit(open)]));
+      }
+    }
+  }
+  /// The same in both directions.
+  template <typename Visit>
+  void forEachMarked(std::uint32_t slot, Visit&& visit) const {
+    forEachMarkedInRow(slot, visit);
+    for (std::size_t i = reverse_starts_[slot]; i < reverse_starts_[slot + 1]; ++i) {
+      if (reverse_marks_[i] != 0) visit(static_cast<std::size_t>(reverse_[i]));
+    }
   }
 
   /// The points of one small segment become another one's; nothing to do for a regular one.
   void append(std::int32_t from, std::int32_t into);
 
  private:
-  /// Room above for the points around one segment.
-  static constexpr std::uint32_t kMostStamps = 1U << 31U;
+  static constexpr std::size_t kBits = 32;
 
-  struct Around {
-    std::size_t point;
-    bool admissible;
-  };
-  void listReverse();
+  std::size_t words() const {
+    return (static_cast<std::size_t>(std::max(state_.neighbors - 1, 0)) + kBits - 1) / kBits;
+  }
+  void listReverse(int threads);
   template <typename Visit>
   void visitNear(std::size_t p, pcl::index_t index, Visit&& visit) const {
     const auto q = static_cast<std::size_t>(index);
@@ -119,10 +165,8 @@ class SmallAdjacency {
   std::vector<std::uint32_t> heads_, tails_, next_;
   std::vector<std::size_t> reverse_starts_;
   std::vector<pcl::index_t> reverse_;
-  /// By point: where it is in around_, plus first_stamp_; less = not in it.
-  ZeroedArray stamps_;
-  std::uint32_t first_stamp_ = 1;
-  std::vector<Around> around_;
+  std::vector<std::uint32_t> marks_;  ///< words() a slot: bit j for the j-th of its row
+  std::vector<std::uint8_t> reverse_marks_;
 };
 
 }  // namespace segorient::segmentation
