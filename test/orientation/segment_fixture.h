@@ -26,7 +26,7 @@ struct FaceSegments {
   std::vector<float> normals;
   Neighborhoods neighborhoods;
   Segmentation segmentation;
-  SegmentLinks links;
+  SegmentGraph links;
 
   FaceSegments(LabelledCloud faces, const std::vector<bool>& turned, int k = 12)
       : cloud(std::move(faces)), normals(scrambledNormals(cloud, 7)) {

@@ -118,7 +118,7 @@ TEST(PointTree, OrientsASmoothClosedSurface) {
   const LabelledCloud cloud = test::sample("torus", {test::torus(1, 0.4)}, 5000, 25);
   const std::vector<float> normals = test::scrambledNormals(cloud, 26);
   const OrientationResult result = orientByPointTree(
-      test::pointsOf(cloud), {normals.data(), 4, cloud.size()}, neighborsOf(cloud, 12), 10);
+      test::pointsOf(cloud), {normals.data(), 4, cloud.size()}, neighborsOf(cloud, 10));
   EXPECT_EQ(countWrong(cloud, normals, result), 0U);
   ASSERT_EQ(result.components.size(), 1U);
   EXPECT_EQ(result.components[0].points, cloud.size());

@@ -9,6 +9,7 @@
 
 #include "orientation/paper/combination.h"
 #include "segment_fixture.h"
+#include "segmentation/segment_graph.h"
 
 namespace segorient {
 namespace {
@@ -22,7 +23,7 @@ struct Evidence {
   std::vector<float> cosines;
   std::vector<BoundaryVote> boundary;
   std::vector<ExtremalEvidence> extremal;
-  SegmentMethodOptions options;
+  OrientationSettings options;
 
   Evidence(const FaceSegments& faces, SegmentAngle angle) {
     cosines =
@@ -128,17 +129,12 @@ class HandMade : public testing::Test {
   // A chain of segments, link i between i and i + 1.
   void chain(std::size_t size) {
     segmentation.segments.resize(size);
-    links.offsets.push_back(0);
     for (std::size_t s = 0; s < size; ++s) {
       segmentation.segments[s].size = static_cast<std::uint32_t>(100 - s);
-      if (s > 0) links.incident.push_back(static_cast<std::uint32_t>(s - 1));
-      if (s + 1 < size) {
-        links.links.push_back(
-            {static_cast<std::int32_t>(s), static_cast<std::int32_t>(s + 1), 0, 0, false});
-        links.incident.push_back(static_cast<std::uint32_t>(s));
-      }
-      links.offsets.push_back(static_cast<std::uint32_t>(links.incident.size()));
+      const auto label = static_cast<std::int32_t>(s);
+      if (s + 1 < size) links.borders.push_back({label, label + 1, 0, 0});
     }
+    listIncident(size, links);
     cosines.assign(size - 1, 0.F);
     boundary.assign(size - 1, {});
     extremal.assign(size, {});
@@ -148,11 +144,11 @@ class HandMade : public testing::Test {
   }
 
   Segmentation segmentation;
-  SegmentLinks links;
+  SegmentGraph links;
   std::vector<float> cosines;
   std::vector<BoundaryVote> boundary;
   std::vector<ExtremalEvidence> extremal;
-  SegmentMethodOptions options;
+  OrientationSettings options;
 };
 
 TEST_F(HandMade, CombinedTakesAngleThenBoundaryThenExtremalPointsThenGuesses) {
@@ -197,9 +193,8 @@ TEST_F(HandMade, HardSegmentsAreTriedAgain) {
   // 0 - 1 unclear, 0 - 2 clear, 1 - 2 clear.
   segmentation.segments.resize(3);
   for (Segment& segment : segmentation.segments) segment.size = 100;
-  links.links = {{0, 1, 0, 0, false}, {0, 2, 0, 0, false}, {1, 2, 0, 0, false}};
-  links.offsets = {0, 2, 4, 6};
-  links.incident = {0, 1, 0, 2, 1, 2};
+  links.borders = {{0, 1, 0, 0}, {0, 2, 0, 0}, {1, 2, 0, 0}};
+  listIncident(3, links);
   cosines = {0.5F, 0.1F, 0.1F};  // the unclear link comes first
   boundary = {{0.1F, 10}, {-0.9F, 10}, {-0.9F, 10}};
   extremal.resize(3);
@@ -227,7 +222,7 @@ TEST_F(HandMade, AngleAndBoundaryAreComparedIfAsked) {
   chain(2);
   cosines[0] = 0.95F;
   boundary[0] = {-0.9F, 10};
-  options.compare_borders = false;
+  options.check_borders = false;
   const Results results = combined();
   EXPECT_EQ(results[1].sign, 1);  // the paper's: the tree goes first
   EXPECT_EQ(results[1].by, DecidedBy::PROPAGATION);
@@ -237,9 +232,8 @@ TEST_F(HandMade, AngleAndBoundaryAreComparedIfAsked) {
 TEST_F(HandMade, OtherKindsAreLeftOutAndComponentsCounted) {
   chain(3);
   segmentation.segments[1].kind = SegmentKind::CONNECTED;
-  links.links.clear();
-  links.incident.clear();
-  links.offsets = {0, 0, 0, 0};
+  links.borders.clear();
+  listIncident(3, links);
   for (const Results& results :
        {combined(), orientByBoundaries({segmentation, links, cosines, boundary, extremal}, options),
         propagateOrientation({segmentation, links, cosines, boundary, extremal}, options),

@@ -24,7 +24,7 @@ TEST(BoundaryVotes, TellEveryDihedralAngle) {
     for (const bool turned : {false, true}) {
       const FaceSegments faces(test::sample("wedge", test::wedge(degrees * kDegree), 3000, 5),
                                {false, turned});
-      ASSERT_EQ(faces.links.links.size(), 1U);
+      ASSERT_EQ(faces.links.borders.size(), 1U);
       const auto votes = localBoundaryVotes(faces.points(), faces.normalView(), faces.neighborhoods,
                                             faces.segmentation, faces.links);
       EXPECT_TRUE(votes[0].decides(0.5F)) << degrees << " degrees: " << votes[0].margin;
@@ -115,7 +115,7 @@ TEST(SegmentCosines, PairsAcrossAGapSayNothing) {
                                           test::parallelogram({0, 0, -h}, {0, 1, 0}, {1, 0, 0})},
                                          2000, 8),
                             {false, false});
-  ASSERT_EQ(sheets.links.links.size(), 1U);
+  ASSERT_EQ(sheets.links.borders.size(), 1U);
   const auto across = segmentCosines(sheets.points(), sheets.normalView(), sheets.segmentation,
                                      sheets.links, SegmentAngle::ACROSS_BORDER);
   const auto reference = segmentCosines(sheets.points(), sheets.normalView(), sheets.segmentation,
@@ -135,8 +135,8 @@ TEST(SegmentLinks, NameTheLargestNeighbourFirst) {
                             {false, false, false});
   const std::uint32_t first = strips.links.offsets[0];
   ASSERT_EQ(strips.links.offsets[1] - first, 2U);
-  EXPECT_EQ(strips.links.links[strips.links.incident[first]].other(0), 2);
-  EXPECT_EQ(strips.links.links[strips.links.incident[first + 1]].other(0), 1);
+  EXPECT_EQ(otherOf(strips.links.borders[strips.links.incident[first]], 0), 2);
+  EXPECT_EQ(otherOf(strips.links.borders[strips.links.incident[first + 1]], 0), 1);
 }
 
 TEST(SegmentLinks, BridgeAStripOfSmallSegments) {
@@ -147,14 +147,13 @@ TEST(SegmentLinks, BridgeAStripOfSmallSegments) {
                                     test::parallelogram({1.1, 0, 0}, {1, 0, 0}, {0, 1, 0})},
                                    3000, 9),
                       {false, false, true});
-  EXPECT_EQ(strips.links.links.size(), 2U);
+  EXPECT_EQ(strips.links.borders.size(), 2U);
   strips.segmentation.segments[1].kind = SegmentKind::CONNECTED;
   strips.links = linkRegularSegments(strips.segmentation,
                                      buildSegmentGraph(strips.segmentation, strips.neighborhoods),
                                      strips.neighborhoods);
-  ASSERT_EQ(strips.links.links.size(), 1U);
-  const SegmentLink& link = strips.links.links[0];
-  EXPECT_TRUE(link.bridged);
+  ASSERT_EQ(strips.links.borders.size(), 1U);
+  const SegmentBorder& link = strips.links.borders[0];
   EXPECT_EQ(link.a, 0);
   EXPECT_EQ(link.b, 2);
   EXPECT_GT(link.size, 10U);

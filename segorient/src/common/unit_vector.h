@@ -2,7 +2,9 @@
 // Copyright (c) 2026, the segorient authors
 #pragma once
 
+#include <array>
 #include <cmath>
+#include <cstddef>
 #include <limits>
 
 namespace segorient {
@@ -16,6 +18,14 @@ inline void unitVector(const float* v, float* out) {
   const double factor =
       usable ? 1.0 / std::sqrt(squares) : std::numeric_limits<double>::quiet_NaN();
   for (int a = 0; a < 3; ++a) out[a] = static_cast<float>(static_cast<double>(v[a]) * factor);
+}
+
+/// The same of doubles. \return false, and `out` as it was, where there is no direction
+inline bool unitVector(const std::array<double, 3>& v, float* out) {
+  const double length = std::sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
+  if (!(length > 0.0) || !std::isfinite(length)) return false;
+  for (std::size_t a = 0; a < 3; ++a) out[a] = static_cast<float>(v[a] / length);
+  return true;
 }
 
 }  // namespace segorient

@@ -88,9 +88,7 @@ OrientationResult orientSegments(const PointView& points, const PointView& norma
     result.components[c].contradiction = oriented.components[c].contradictingShare();
   }
   if (options.turn_outward) {
-    orientComponents(points, normals, neighborhoods,
-                     {options.gamma, options.max_box_points, options.threads}, result,
-                     oriented.extremal);
+    orientComponents(points, normals, neighborhoods, options, result, oriented.extremal);
   } else {
     sortComponents(result);
   }

@@ -7,12 +7,6 @@
 namespace segorient {
 namespace {
 
-struct LabelledPair {
-  std::int32_t a;
-  std::int32_t b;
-  BorderPair pair;
-};
-
 // Pairs of neighbours with different labels, in both directions of the table; some twice.
 std::vector<LabelledPair> collectPairs(const std::vector<std::int32_t>& labels,
                                        const Neighborhoods& neighborhoods, int row_size) {
@@ -25,12 +19,7 @@ std::vector<LabelledPair> collectPairs(const std::vector<std::int32_t>& labels,
     for (int j = 1; j < count; ++j) {
       const std::int32_t other = labels[static_cast<std::size_t>(row[j])];
       if (other == own || other < 0) continue;
-      const auto index = static_cast<pcl::index_t>(p);
-      if (own < other) {
-        pairs.push_back({own, other, {index, row[j]}});
-      } else {
-        pairs.push_back({other, own, {row[j], index}});
-      }
+      pairs.push_back(labelled(own, static_cast<pcl::index_t>(p), other, row[j]));
     }
   }
   return pairs;
@@ -49,7 +38,7 @@ void countingSort(std::vector<LabelledPair>& pairs, std::vector<LabelledPair>& o
 }
 
 // By (a, b, in_a, in_b): least significant key first, so it stays linear.
-void sortAndUnite(std::vector<LabelledPair>& pairs, std::size_t points, std::size_t segments) {
+void sort(std::vector<LabelledPair>& pairs, std::size_t points, std::size_t segments) {
   std::vector<LabelledPair> other;
   countingSort(pairs, other, points,
                [](const LabelledPair& p) { return static_cast<std::size_t>(p.pair.in_b); });
@@ -59,10 +48,20 @@ void sortAndUnite(std::vector<LabelledPair>& pairs, std::size_t points, std::siz
                [](const LabelledPair& p) { return static_cast<std::size_t>(p.b); });
   countingSort(pairs, other, segments,
                [](const LabelledPair& p) { return static_cast<std::size_t>(p.a); });
-  const auto same = [](const LabelledPair& p, const LabelledPair& q) {
-    return p.pair.in_a == q.pair.in_a && p.pair.in_b == q.pair.in_b;
-  };
-  pairs.erase(std::unique(pairs.begin(), pairs.end(), same), pairs.end());
+}
+
+}  // namespace
+
+void appendBorders(const std::vector<LabelledPair>& pairs, SegmentGraph& graph) {
+  for (const LabelledPair& p : pairs) {
+    if (graph.borders.empty() || graph.borders.back().a != p.a || graph.borders.back().b != p.b) {
+      graph.borders.push_back({p.a, p.b, static_cast<std::uint32_t>(graph.pairs.size()), 0});
+    } else if (graph.pairs.back().in_a == p.pair.in_a && graph.pairs.back().in_b == p.pair.in_b) {
+      continue;
+    }
+    graph.pairs.push_back(p.pair);
+    ++graph.borders.back().size;
+  }
 }
 
 void listIncident(std::size_t segments, SegmentGraph& graph) {
@@ -75,14 +74,11 @@ void listIncident(std::size_t segments, SegmentGraph& graph) {
   graph.incident.resize(2 * graph.borders.size());
   std::vector<std::uint32_t> next(graph.offsets.begin(), graph.offsets.end() - 1);
   for (std::size_t i = 0; i < graph.borders.size(); ++i) {
-    graph.incident[next[static_cast<std::size_t>(graph.borders[i].a)]++] =
-        static_cast<std::uint32_t>(i);
-    graph.incident[next[static_cast<std::size_t>(graph.borders[i].b)]++] =
-        static_cast<std::uint32_t>(i);
+    for (const std::int32_t s : {graph.borders[i].a, graph.borders[i].b}) {
+      graph.incident[next[static_cast<std::size_t>(s)]++] = static_cast<std::uint32_t>(i);
+    }
   }
 }
-
-}  // namespace
 
 SegmentGraph buildSegmentGraph(const Segmentation& segmentation, const Neighborhoods& neighborhoods,
                                int k) {
@@ -92,15 +88,9 @@ SegmentGraph buildSegmentGraph(const Segmentation& segmentation, const Neighborh
   if (segmentation.labels.size() != neighborhoods.size() || segments == 0) return graph;
   const int row_size = k > 0 && k < neighborhoods.k() ? k + 1 : neighborhoods.k();
   std::vector<LabelledPair> pairs = collectPairs(segmentation.labels, neighborhoods, row_size);
-  sortAndUnite(pairs, segmentation.labels.size(), segments);
+  sort(pairs, segmentation.labels.size(), segments);
   graph.pairs.reserve(pairs.size());
-  for (const LabelledPair& p : pairs) {
-    if (graph.borders.empty() || graph.borders.back().a != p.a || graph.borders.back().b != p.b) {
-      graph.borders.push_back({p.a, p.b, static_cast<std::uint32_t>(graph.pairs.size()), 0});
-    }
-    graph.pairs.push_back(p.pair);
-    ++graph.borders.back().size;
-  }
+  appendBorders(pairs, graph);
   listIncident(segments, graph);
   return graph;
 }

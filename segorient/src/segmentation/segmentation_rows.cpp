@@ -9,6 +9,7 @@
 #include <limits>
 
 #include "common/at.h"
+#include "common/dot.h"
 
 namespace segorient::segmentation {
 namespace {
@@ -77,9 +78,7 @@ Segmentation gather(const PreparedCloud& cloud, const std::vector<float>& normal
 bool isTurned(const PreparedCloud& cloud, const PointView& row_normals, std::size_t row) {
   const pcl::index_t point = cloud.pointOf(row);
   if (point < 0) return false;
-  const float* first = row_normals[cloud.rowOf(static_cast<std::size_t>(point))];
-  const float* own = row_normals[row];
-  return first[0] * own[0] + first[1] * own[1] + first[2] * own[2] < 0.F;
+  return dot(row_normals[cloud.rowOf(at(point))], row_normals[row]) < 0.F;
 }
 
 Segmentation scatter(const PreparedCloud& cloud, const Segmentation& of_points,

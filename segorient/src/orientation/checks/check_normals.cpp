@@ -5,14 +5,14 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <numeric>
 
 #include "common/at.h"
 #include "common/box.h"
-#include "common/in_double.h"
-#include "orientation/checks/fault_patches.h"
-
+#include "common/by_size.h"
 #include "common/dot.h"
+#include "common/in_double.h"
+#include "common/unit_vector.h"
+#include "orientation/checks/fault_patches.h"
 
 namespace segorient {
 namespace {
@@ -24,17 +24,6 @@ constexpr float kSameLine = 0.5F;
 constexpr float kClearlySeen = 0.2588190F;
 // Residual of the winding number: closed surfaces stay below it even with noise.
 constexpr float kClosedResidual = 0.1F;
-
-// To unit length, in double as lengths may be anything; false where there is no direction.
-bool normalize(const std::array<double, 3>& v, float* out) {
-  const double largest = std::max({std::fabs(v[0]), std::fabs(v[1]), std::fabs(v[2])});
-  if (!(largest > 0.0) || !std::isfinite(v[0] + v[1] + v[2])) return false;
-  double sum = 0.0;
-  for (const double c : v) sum += (c / largest) * (c / largest);
-  const double length = largest * std::sqrt(sum);
-  for (std::size_t a = 0; a < 3; ++a) out[a] = static_cast<float>(v[a] / length);
-  return true;
-}
 
 class Check {
  public:
@@ -106,12 +95,12 @@ bool Check::toSensor(std::size_t i, float* direction) const {
   const std::size_t r = row(i);
   const std::array<double, 3> p = inDouble(points_[r]);
   const auto towards = [&](const float* place) {
-    return normalize({static_cast<double>(place[0]) - p[0], static_cast<double>(place[1]) - p[1],
-                      static_cast<double>(place[2]) - p[2]},
-                     direction);
+    return unitVector({static_cast<double>(place[0]) - p[0], static_cast<double>(place[1]) - p[1],
+                       static_cast<double>(place[2]) - p[2]},
+                      direction);
   };
   if (3 * r + 2 < hints_.viewpoints.size() && towards(&hints_.viewpoints[3 * r])) return true;
-  if (hints_.has_direction) return normalize(inDouble(hints_.direction.data()), direction);
+  if (hints_.has_direction) return unitVector(inDouble(hints_.direction.data()), direction);
   return hints_.has_viewpoint && component(i) >= 0 && !isClosed(at(component(i))) &&
          towards(hints_.viewpoint.data());
 }
@@ -119,7 +108,7 @@ bool Check::toSensor(std::size_t i, float* direction) const {
 void Check::judge() {
   for (std::size_t i = 0; i < cloud_.size(); ++i) {
     float normal[3];
-    if (!normalize(inDouble(&normals_[3 * row(i)]), normal)) continue;
+    if (!unitVector(inDouble(&normals_[3 * row(i)]), normal)) continue;
     const float agree = dot(normal, ourNormal(i));
     if (!(std::fabs(agree) >= kSameLine)) continue;
     judgements_[i].sign = agree > 0.F ? 1 : -1;
@@ -174,7 +163,7 @@ NormalCheck Check::report() {
   out_.place_of.assign(rows, -1);
   for (std::size_t r = 0; r < rows; ++r) {
     float normal[3];
-    if (cloud_.pointOf(r) < 0 || !normalize(inDouble(&normals_[3 * r]), normal)) {
+    if (cloud_.pointOf(r) < 0 || !unitVector(inDouble(&normals_[3 * r]), normal)) {
       ++out_.without_normal;
       continue;
     }
@@ -235,19 +224,9 @@ void Check::measurePlaces() {
 }
 
 void Check::sortPlaces() {
-  std::vector<std::int32_t> order(out_.places.size());
-  std::iota(order.begin(), order.end(), 0);
-  std::stable_sort(order.begin(), order.end(), [this](std::int32_t a, std::int32_t b) {
-    return out_.places[at(a)].points > out_.places[at(b)].points;
-  });
-  std::vector<std::int32_t> rank(order.size());
-  std::vector<FaultyPlace> sorted;
-  for (const std::int32_t p : order) {
-    rank[at(p)] = static_cast<std::int32_t>(sorted.size());
-    sorted.push_back(out_.places[at(p)]);
-  }
-  out_.places = std::move(sorted);
-  for (std::int32_t& p : out_.place_of) p = p < 0 ? -1 : rank[at(p)];
+  const BySize by_size(out_.places.size(), [&](std::size_t p) { return out_.places[p].points; });
+  by_size.sort(out_.places);
+  by_size.renumber(out_.place_of);
 }
 
 }  // namespace

@@ -6,9 +6,10 @@
 #include <array>
 #include <cmath>
 #include <map>
-#include <numeric>
 
 #include "common/at.h"
+#include "common/disjoint_sets.h"
+#include "common/dot.h"
 
 namespace segorient {
 namespace {
@@ -18,26 +19,6 @@ constexpr float kSmooth = 0.70710678F;
 // Along the border of a patch that is turned over, the surface goes on smoothly but for some
 // strays.
 constexpr double kMostlySmooth = 2.0 / 3.0;
-
-// Sets of points that hang together.
-class UnionFind {
- public:
-  explicit UnionFind(std::size_t size) : parent_(size) {
-    std::iota(parent_.begin(), parent_.end(), std::size_t{0});
-  }
-  std::size_t find(std::size_t i) {
-    while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
-    return i;
-  }
-  void unite(std::size_t a, std::size_t b) {
-    a = find(a);
-    b = find(b);
-    parent_[std::max(a, b)] = std::min(a, b);
-  }
-
- private:
-  std::vector<std::size_t> parent_;
-};
 
 struct Patch {
   std::array<std::size_t, 4> faults{};  // points by NormalFault
@@ -80,7 +61,7 @@ class Patches {
   FaultPatches run() {
     unite();
     for (std::size_t i = 0; i < cloud_.size(); ++i) {
-      if (isAtFault(i)) add(i, patches_[sets_.find(i)]);
+      if (isAtFault(i)) add(i, patches_[firstOf(i)]);
     }
     return results();
   }
@@ -88,12 +69,15 @@ class Patches {
  private:
   bool isAtFault(std::size_t i) const { return judgements_[i].fault != NormalFault::NONE; }
   std::size_t neighbor(std::size_t i, int j) const { return at(table_.indices(i)[j]); }
+  std::int32_t firstOf(std::size_t i) { return sets_.find(static_cast<std::int32_t>(i)); }
   const float* ourNormal(std::size_t i) const { return &ours_.normals[4 * cloud_.rowOf(i)]; }
 
   void unite() {
     for (std::size_t i = 0; i < cloud_.size(); ++i) {
       for (int j = 1; isAtFault(i) && j < table_.count(i); ++j) {
-        if (isAtFault(neighbor(i, j))) sets_.unite(i, neighbor(i, j));
+        if (isAtFault(neighbor(i, j))) {
+          sets_.join(static_cast<std::int32_t>(i), table_.indices(i)[j]);
+        }
       }
     }
   }
@@ -118,9 +102,7 @@ class Patches {
     for (int j = 1; j < table_.count(i); ++j) {
       const std::size_t other = neighbor(i, j);
       if (isAtFault(other) || judgements_[other].sign == 0) continue;
-      const float* a = ourNormal(i);
-      const float* b = ourNormal(other);
-      const float along = a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+      const float along = dot(ourNormal(i), ourNormal(other));
       if (std::fabs(along) < kSmooth) continue;
       ++patch.border;
       if (along > 0.F) ++patch.smooth;
@@ -129,7 +111,7 @@ class Patches {
 
   FaultPatches results() {
     FaultPatches out;
-    std::map<std::size_t, std::int32_t> number;
+    std::map<std::int32_t, std::int32_t> number;
     for (const auto& [root, patch] : patches_) {
       if (!patch.provesSomething()) continue;
       FaultyPlace place;
@@ -141,7 +123,7 @@ class Patches {
     out.of_points.assign(cloud_.size(), -1);
     for (std::size_t i = 0; i < cloud_.size(); ++i) {
       if (!isAtFault(i)) continue;
-      const auto known = number.find(sets_.find(i));
+      const auto known = number.find(firstOf(i));
       if (known != number.end()) out.of_points[i] = known->second;
     }
     return out;
@@ -151,8 +133,8 @@ class Patches {
   const Neighborhoods& table_;
   const std::vector<Judgement>& judgements_;
   const OrientedCloud& ours_;
-  UnionFind sets_;
-  std::map<std::size_t, Patch> patches_;  // by the set's first point
+  detail::DisjointSets sets_;              // of points that hang together
+  std::map<std::int32_t, Patch> patches_;  // by the set's first point
 };
 
 }  // namespace

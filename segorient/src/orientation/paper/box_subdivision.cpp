@@ -3,7 +3,9 @@
 #include "orientation/paper/box_subdivision.h"
 
 #include <algorithm>
-#include <limits>
+
+#include "common/box.h"
+#include "common/in_double.h"
 
 namespace segorient {
 namespace {
@@ -36,20 +38,12 @@ BoxSubdivision::BoxSubdivision(const PointView& points, const std::vector<pcl::i
 // Puts the grid over the bounding box and the rows onto the grid.
 std::vector<BoxSubdivision::Placed> BoxSubdivision::place(const PointView& points,
                                                           const std::vector<pcl::index_t>& rows) {
-  std::array<double, 3> low{};
-  low.fill(std::numeric_limits<double>::max());
-  std::array<double, 3> high{};
-  high.fill(std::numeric_limits<double>::lowest());
-  for (const pcl::index_t row : rows) {
-    const float* p = points[static_cast<std::size_t>(row)];
-    for (std::size_t a = 0; a < 3; ++a) {
-      low[a] = std::min(low[a], static_cast<double>(p[a]));
-      high[a] = std::max(high[a], static_cast<double>(p[a]));
-    }
-  }
+  segorient::Box around;
+  for (const pcl::index_t row : rows) around.add(points[static_cast<std::size_t>(row)]);
+  const std::array<double, 3> low = inDouble(around.low.data());
   std::array<double, 3> cells_per_unit{};
   for (std::size_t a = 0; a < 3; ++a) {
-    extent_[a] = high[a] - low[a];
+    extent_[a] = static_cast<double>(around.high[a]) - low[a];
     if (extent_[a] > 0.0) cells_per_unit[a] = kCells / extent_[a];
   }
   std::vector<Placed> placed;

@@ -34,7 +34,7 @@ float weight(const ExtremalEvidence& evidence) {
 
 // Segments that nothing decided so far take the sign that their extremal points ask for, seen
 // relative to what the extremal points say about the rest of their component.
-void askExtremalPoints(const SegmentEvidence& evidence, const SegmentMethodOptions& options,
+void askExtremalPoints(const SegmentEvidence& evidence, const OrientationSettings& options,
                        SegmentSpread& spread) {
   const std::size_t segments = spread.results().size();
   std::vector<float> component_balance(segments, 0.F);
@@ -58,19 +58,19 @@ void askExtremalPoints(const SegmentEvidence& evidence, const SegmentMethodOptio
 
 }  // namespace
 
-Results propagateOrientation(const SegmentEvidence& evidence, const SegmentMethodOptions& options) {
+Results propagateOrientation(const SegmentEvidence& evidence, const OrientationSettings& options) {
   SegmentSpread spread(evidence, options, SegmentSpread::Rule::ANGLE);
   finishFromSeeds(spread);
   return spread.results();
 }
 
-Results orientByBoundaries(const SegmentEvidence& evidence, const SegmentMethodOptions& options) {
+Results orientByBoundaries(const SegmentEvidence& evidence, const OrientationSettings& options) {
   SegmentSpread spread(evidence, options, SegmentSpread::Rule::BOUNDARY);
   finishFromSeeds(spread);
   return spread.results();
 }
 
-Results orientCombined(const SegmentEvidence& evidence, const SegmentMethodOptions& options) {
+Results orientCombined(const SegmentEvidence& evidence, const OrientationSettings& options) {
   SegmentSpread spread(evidence, options, SegmentSpread::Rule::ANGLE_THEN_BOUNDARY);
   std::vector<bool> seeded(spread.results().size(), false);
   for (const std::int32_t segment : spread.bySize()) {
@@ -80,13 +80,13 @@ Results orientCombined(const SegmentEvidence& evidence, const SegmentMethodOptio
     spread.orient(segment, 1, DecidedBy::SEED, 1.F);
   }
   spread.spread();
-  if (options.use_extremal) askExtremalPoints(evidence, options, spread);
+  askExtremalPoints(evidence, options, spread);
   finishFromSeeds(spread);
   return spread.results();
 }
 
 Results orientByExtremalPoints(const SegmentEvidence& evidence,
-                               const SegmentMethodOptions& options) {
+                               const OrientationSettings& options) {
   SegmentSpread spread(evidence, options, SegmentSpread::Rule::ANGLE_THEN_BOUNDARY);
   for (std::size_t s = 0; s < spread.results().size(); ++s) {
     const ExtremalEvidence& extremal = evidence.extremal[s];

@@ -13,6 +13,7 @@
 #include <tuple>
 #include <vector>
 
+#include "common/dot.h"
 #include "common/parallel_for.h"
 
 namespace segorient {
@@ -20,8 +21,9 @@ namespace {
 
 using Eigen::Vector3f;
 
-constexpr float kSquare = 4.F;  // edge of a square, in spacings
-constexpr float kGap = 4.F;     // between two sheets, in spacings
+constexpr float kSquare = 4.F;       // edge of a square, in spacings
+constexpr float kGap = 4.F;          // between two sheets, in spacings
+constexpr float kMostDouble = 0.1F;  // of a segment's points
 
 // A point over the plane.
 struct Elevated {
@@ -89,7 +91,7 @@ bool rangesOver(const PointView& points, const Segmentation& segmentation, std::
   float high = std::numeric_limits<float>::lowest();
   for (const pcl::index_t* p = segmentation.begin(segment); p != segmentation.end(segment); ++p) {
     const float* x = points[static_cast<std::size_t>(*p)];
-    const float height = x[0] * n[0] + x[1] * n[1] + x[2] * n[2];
+    const float height = dot(x, n.data());
     low = std::min(low, height);
     high = std::max(high, height);
   }
@@ -105,7 +107,7 @@ bool isDouble(const Elevated* begin, const Elevated* end, float gap) {
 }
 
 bool isFolded(const PointView& points, const Neighborhoods& neighborhoods,
-              const Segmentation& segmentation, std::size_t s, float max_share) {
+              const Segmentation& segmentation, std::size_t s) {
   const Segment& segment = segmentation.segments[s];
   if (segment.kind != SegmentKind::REGULAR || segment.size < 4) return false;
   const float spacing = spacingOf(points, neighborhoods, segmentation, s);
@@ -123,19 +125,18 @@ bool isFolded(const PointView& points, const Neighborhoods& neighborhoods,
     if (isDouble(elevated.data() + i, elevated.data() + j, kGap * spacing)) doubled += j - i;
     i = j;
   }
-  return static_cast<float>(doubled) > max_share * static_cast<float>(segment.size);
+  return static_cast<float>(doubled) > kMostDouble * static_cast<float>(segment.size);
 }
 
 }  // namespace
 
 std::vector<std::int32_t> findFoldedSegments(const PointView& points,
                                              const Neighborhoods& neighborhoods,
-                                             const Segmentation& segmentation, int threads,
-                                             float max_share) {
+                                             const Segmentation& segmentation, int threads) {
   std::vector<std::uint8_t> folded(segmentation.segments.size());
   const double time = timeOfEach(folded.size(), segmentation.members.size(), 300.0);
   parallelFor(folded.size(), threads, time, [&](std::size_t s) {
-    folded[s] = isFolded(points, neighborhoods, segmentation, s, max_share) ? 1 : 0;
+    folded[s] = isFolded(points, neighborhoods, segmentation, s) ? 1 : 0;
   });
   std::vector<std::int32_t> out;
   for (std::size_t s = 0; s < folded.size(); ++s) {

@@ -15,14 +15,13 @@ namespace segorient {
 /// paper asks of every segment (3.2.1): growing ran over from one body to another that touches it.
 ///
 /// The plane is cut into squares of four spacings; a square is double if the heights of its points
-/// have a gap of more than four spacings, with at least two points on either side. Growing bounds
+/// have a gap of more than four spacings, with at least two points on either side. More than a
+/// tenth of a folded segment's points are in double squares. Growing bounds
 /// the slope of a sheet to beta + epsilon, so one sheet has no such gap.
 /// \param threads see resolveThreads()
-/// \param max_share segments with more than this part of their points in double squares are folded
 /// \return labels, ascending
 std::vector<std::int32_t> findFoldedSegments(const PointView& points,
                                              const Neighborhoods& neighborhoods,
-                                             const Segmentation& segmentation, int threads = 0,
-                                             float max_share = 0.1F);
+                                             const Segmentation& segmentation, int threads = 0);
 
 }  // namespace segorient

@@ -72,12 +72,11 @@ class SignedSets {
   std::vector<std::uint8_t> rank_;
 };
 
-std::vector<Edge> sortedEdges(const PointView& normals, const Neighborhoods& neighborhoods, int k) {
+std::vector<Edge> sortedEdges(const PointView& normals, const Neighborhoods& neighborhoods) {
   std::vector<Edge> edges;
   for (std::size_t i = 0; i < neighborhoods.size(); ++i) {
-    const int end = k > 0 ? std::min(k, neighborhoods.count(i) - 1) + 1 : neighborhoods.count(i);
     const pcl::index_t* row = neighborhoods.indices(i);
-    for (int j = 1; j < end; ++j) {
+    for (int j = 1; j < neighborhoods.count(i); ++j) {
       const float cosine = std::abs(dot(normals[i], normals[static_cast<std::size_t>(row[j])]));
       const float cost = 1.F - std::min(cosine, 1.F);  // rounding may exceed 1
       if (std::isfinite(cost)) edges.push_back({cost, static_cast<pcl::index_t>(i), row[j]});
@@ -113,14 +112,14 @@ void pointHighestUp(const PointView& points, const PointView& normals, Orientati
 }  // namespace
 
 OrientationResult orientByPointTree(const PointView& points, const PointView& normals,
-                                    const Neighborhoods& neighborhoods, int k) {
+                                    const Neighborhoods& neighborhoods) {
   const std::size_t n = points.size;
   SignedSets sets(n);
   OrientationResult result;
   result.point_signs.assign(n, 0);
   result.point_confidences.assign(n, 0.F);
   result.point_components.assign(n, -1);
-  for (const Edge& edge : sortedEdges(normals, neighborhoods, k)) {
+  for (const Edge& edge : sortedEdges(normals, neighborhoods)) {
     const auto a = static_cast<std::size_t>(edge.a);
     const auto b = static_cast<std::size_t>(edge.b);
     sets.join(a, b, dot(normals[a], normals[b]) < 0.F ? -1 : 1);

@@ -11,9 +11,8 @@ namespace segorient {
 /// The classical method, for comparison: a minimum spanning tree over all points, an edge between
 /// neighbours costing 1 - |n_p . n_q|, along which signs spread from the highest point of each
 /// component, whose normal points up (Hoppe et al. 1992).
-/// \param k neighbours of each row to use, the point itself not counted; 0 = all
 /// \return segments are left empty; ties go to the earlier point
 OrientationResult orientByPointTree(const PointView& points, const PointView& normals,
-                                    const Neighborhoods& neighborhoods, int k = 0);
+                                    const Neighborhoods& neighborhoods);
 
 }  // namespace segorient

@@ -25,22 +25,21 @@ struct BorderBalance {
 };
 
 /// By segment: its borders with oriented segments, each weighed by its points and its margin.
-std::vector<BorderBalance> balanceBorders(const SegmentLinks& links,
+std::vector<BorderBalance> balanceBorders(const SegmentGraph& links,
                                           const std::vector<BoundaryVote>& boundary,
                                           const std::vector<SegmentOrientationResult>& results);
 
 /// By component of `results`, each border counted once. A share that is not near 0 means that the
 /// surface is not orientable, or that segments mix two sides of it.
-std::vector<BorderBalance> balanceComponents(const SegmentLinks& links,
+std::vector<BorderBalance> balanceComponents(const SegmentGraph& links,
                                              const std::vector<BoundaryVote>& boundary,
                                              const std::vector<SegmentOrientationResult>& results);
 
-/// Segments that no sign of their own can be right for: more than `max_share` of their border is
+/// Segments that no sign of their own can be right for: more than a fifth of their border is
 /// contradicted, and no neighbour across a contradicted border is worse off. Such a segment runs
 /// from one side of the object over to another, where two bodies touch. Ascending.
-std::vector<std::int32_t> findMixedSegments(const SegmentLinks& links,
+std::vector<std::int32_t> findMixedSegments(const SegmentGraph& links,
                                             const std::vector<BoundaryVote>& boundary,
-                                            const std::vector<SegmentOrientationResult>& results,
-                                            float max_share = 0.2F);
+                                            const std::vector<SegmentOrientationResult>& results);
 
 }  // namespace segorient

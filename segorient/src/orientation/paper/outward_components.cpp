@@ -11,6 +11,7 @@
 
 #include "common/at.h"
 #include "common/box.h"
+#include "common/by_size.h"
 #include "orientation/winding/winding_number.h"
 
 namespace segorient {
@@ -169,28 +170,16 @@ void sortComponents(OrientationResult& result) {
   for (const std::int32_t c : result.point_components) {
     if (c >= 0) ++components[at(c)].points;
   }
-  std::vector<std::size_t> order(components.size());
-  std::iota(order.begin(), order.end(), std::size_t{0});
-  std::stable_sort(order.begin(), order.end(), [&](std::size_t l, std::size_t r) {
-    return components[l].points > components[r].points;
-  });
-  std::vector<std::int32_t> number(components.size());
-  std::vector<ComponentOrientationResult> sorted;
-  for (std::size_t i = 0; i < order.size(); ++i) {
-    number[order[i]] = static_cast<std::int32_t>(i);
-    sorted.push_back(components[order[i]]);
-  }
-  components.swap(sorted);
-  for (std::int32_t& c : result.point_components) {
-    if (c >= 0) c = number[at(c)];
-  }
+  const BySize by_size(components.size(), [&](std::size_t c) { return components[c].points; });
+  by_size.sort(components);
+  by_size.renumber(result.point_components);
   for (SegmentOrientationResult& segment : result.segments) {
-    if (segment.component >= 0) segment.component = number[at(segment.component)];
+    segment.component = by_size(segment.component);
   }
 }
 
 void orientComponents(const PointView& points, const PointView& normals,
-                      const Neighborhoods& neighborhoods, const ComponentSignOptions& options,
+                      const Neighborhoods& neighborhoods, const OrientationOptions& options,
                       OrientationResult& result, const std::vector<ExtremalPoint>& of_all) {
   sortComponents(result);
   const std::vector<Rows> rows = rowsByComponent(result);

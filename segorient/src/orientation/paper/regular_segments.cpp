@@ -47,19 +47,19 @@ class LinkRelations {
     meshes_ = triangulateSegments(points, segmentation, triangulation);
   }
 
-  const SegmentLinks& links() const { return links_; }
+  const SegmentGraph& links() const { return links_; }
   const std::vector<float>& cosines() const { return cosines_; }
   const std::vector<BoundaryVote>& boundary() const { return boundary_; }
 
-  void update(SegmentLinks links) {
-    std::vector<std::size_t> known(links.links.size());  // place among the old ones, or none
-    SegmentLinks unknown;                                // just those, without index by segment
+  void update(SegmentGraph links) {
+    std::vector<std::size_t> known(links.borders.size());  // place among the old ones, or none
+    SegmentGraph unknown;                                  // just those, without index by segment
     for (std::size_t l = 0; l < known.size(); ++l) {
-      const SegmentLink& link = links.links[l];
+      const SegmentBorder& link = links.borders[l];
       known[l] = findOld(links, link);
-      if (known[l] < links_.links.size()) continue;
-      unknown.links.push_back(link);
-      unknown.links.back().first = static_cast<std::uint32_t>(unknown.pairs.size());
+      if (known[l] < links_.borders.size()) continue;
+      unknown.borders.push_back(link);
+      unknown.borders.back().first = static_cast<std::uint32_t>(unknown.pairs.size());
       const auto begin = links.pairs.begin() + link.first;
       unknown.pairs.insert(unknown.pairs.end(), begin, begin + link.size);
     }
@@ -70,7 +70,7 @@ class LinkRelations {
     std::vector<BoundaryVote> boundary;
     std::size_t next = 0;
     for (const std::size_t old : known) {
-      const bool is_new = old >= links_.links.size();
+      const bool is_new = old >= links_.borders.size();
       cosines.push_back(is_new ? new_cosines[next] : cosines_[old]);
       boundary.push_back(is_new ? new_boundary[next] : boundary_[old]);
       if (is_new) ++next;
@@ -81,11 +81,11 @@ class LinkRelations {
   }
 
  private:
-  std::size_t findOld(const SegmentLinks& links, const SegmentLink& link) const {
-    const auto before = [](const SegmentLink& l, const SegmentLink& r) {
+  std::size_t findOld(const SegmentGraph& links, const SegmentBorder& link) const {
+    const auto before = [](const SegmentBorder& l, const SegmentBorder& r) {
       return std::tie(l.a, l.b) < std::tie(r.a, r.b);
     };
-    const std::vector<SegmentLink>& old = links_.links;
+    const std::vector<SegmentBorder>& old = links_.borders;
     const auto found = std::lower_bound(old.begin(), old.end(), link, before);
     if (found == old.end() || before(link, *found) || found->size != link.size) return old.size();
     const auto begin = links.pairs.begin() + link.first;
@@ -96,7 +96,7 @@ class LinkRelations {
     return same ? static_cast<std::size_t>(found - old.begin()) : old.size();
   }
 
-  std::vector<BoundaryVote> boundaryVotes(const SegmentLinks& links) const {
+  std::vector<BoundaryVote> boundaryVotes(const SegmentGraph& links) const {
     if (options_.boundary == BoundaryTest::TRIANGULATED) {
       return triangulatedBoundaryVotes(points_, segmentation_, links, meshes_);
     }
@@ -110,30 +110,26 @@ class LinkRelations {
   const Segmentation& segmentation_;
   const OrientationOptions& options_;
   std::vector<SegmentMesh> meshes_;
-  SegmentLinks links_;
+  SegmentGraph links_;
   std::vector<float> cosines_;
   std::vector<BoundaryVote> boundary_;
 };
 
 std::vector<SegmentOrientationResult> runMethod(const SegmentEvidence& evidence,
                                                 const OrientationOptions& options) {
-  SegmentMethodOptions method_options;
-  method_options.gamma = options.gamma;
-  method_options.min_margin = options.min_margin;
-  method_options.compare_borders = options.check_borders;
   switch (options.method) {
     case OrientationMethod::PROPAGATION:
-      return propagateOrientation(evidence, method_options);
+      return propagateOrientation(evidence, options);
     case OrientationMethod::BOUNDARY:
-      return orientByBoundaries(evidence, method_options);
+      return orientByBoundaries(evidence, options);
     case OrientationMethod::EXTREMAL:
-      return orientByExtremalPoints(evidence, method_options);
+      return orientByExtremalPoints(evidence, options);
     case OrientationMethod::AUTO:  // these two have their own ways, see orientSegments()
     case OrientationMethod::HOPPE:
     case OrientationMethod::COMBINED:
       break;
   }
-  return orientCombined(evidence, method_options);
+  return orientCombined(evidence, options);
 }
 
 // What the extremal points say about the signs that were found.

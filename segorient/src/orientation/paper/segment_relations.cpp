@@ -10,6 +10,7 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "common/dot.h"
 #include "common/parallel_for.h"
 #include "orientation/paper/boundary_ballot.h"
 
@@ -30,10 +31,10 @@ Vector3f segmentNormal(const PointView& normals, const Segmentation& segmentatio
          static_cast<float>(segmentation.signs[static_cast<std::size_t>(row)]);
 }
 
-float referenceCosine(const Segmentation& segmentation, const SegmentLink& link) {
+float referenceCosine(const Segmentation& segmentation, const SegmentBorder& link) {
   const auto& a = segmentation.segments[static_cast<std::size_t>(link.a)].reference_normal;
   const auto& b = segmentation.segments[static_cast<std::size_t>(link.b)].reference_normal;
-  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+  return dot(a.data(), b.data());
 }
 
 // Of two walls that face each other across a gap, or around the edge of a thin plate, normals say
@@ -42,8 +43,8 @@ float referenceCosine(const Segmentation& segmentation, const SegmentLink& link)
 constexpr float kMostOffPlane = 0.5F;
 
 float borderCosine(const PointView& points, const PointView& normals,
-                   const Segmentation& segmentation, const SegmentLinks& links,
-                   const SegmentLink& link) {
+                   const Segmentation& segmentation, const SegmentGraph& links,
+                   const SegmentBorder& link) {
   float sum = 0.F;
   for (std::uint32_t i = link.first; i < link.first + link.size; ++i) {
     const BorderPair& pair = links.pairs[i];
@@ -91,7 +92,7 @@ class LocalBoundary {
         neighborhoods_(neighborhoods),
         segmentation_(segmentation) {}
 
-  BoundaryVote vote(const SegmentLinks& links, const SegmentLink& link) const {
+  BoundaryVote vote(const SegmentGraph& links, const SegmentBorder& link) const {
     const BorderPair* begin = links.pairs.data() + link.first;
     const BorderPair* end = begin + link.size;
     const std::vector<BorderPoint> side_a = borderPoints(begin, end, &BorderPair::in_a, link.b);
@@ -163,11 +164,11 @@ class LocalBoundary {
 }  // namespace
 
 std::vector<float> segmentCosines(const PointView& points, const PointView& normals,
-                                  const Segmentation& segmentation, const SegmentLinks& links,
+                                  const Segmentation& segmentation, const SegmentGraph& links,
                                   SegmentAngle angle, int threads) {
-  std::vector<float> out(links.links.size());
+  std::vector<float> out(links.borders.size());
   parallelFor(out.size(), threads, 3000.0, [&](std::size_t i) {
-    const SegmentLink& link = links.links[i];
+    const SegmentBorder& link = links.borders[i];
     const float cosine = angle == SegmentAngle::REFERENCE_NORMALS
                              ? referenceCosine(segmentation, link)
                              : borderCosine(points, normals, segmentation, links, link);
@@ -179,11 +180,11 @@ std::vector<float> segmentCosines(const PointView& points, const PointView& norm
 std::vector<BoundaryVote> localBoundaryVotes(const PointView& points, const PointView& normals,
                                              const Neighborhoods& neighborhoods,
                                              const Segmentation& segmentation,
-                                             const SegmentLinks& links, int threads) {
+                                             const SegmentGraph& links, int threads) {
   const LocalBoundary boundary(points, normals, neighborhoods, segmentation);
-  std::vector<BoundaryVote> out(links.links.size());
+  std::vector<BoundaryVote> out(links.borders.size());
   parallelFor(out.size(), threads, 3000.0,
-              [&](std::size_t l) { out[l] = boundary.vote(links, links.links[l]); });
+              [&](std::size_t l) { out[l] = boundary.vote(links, links.borders[l]); });
   return out;
 }
 

@@ -22,7 +22,7 @@ namespace segorient {
 /// that face each other across a gap count as cosine 0.
 /// \param threads see resolveThreads()
 std::vector<float> segmentCosines(const PointView& points, const PointView& normals,
-                                  const Segmentation& segmentation, const SegmentLinks& links,
+                                  const Segmentation& segmentation, const SegmentGraph& links,
                                   SegmentAngle angle, int threads = 0);
 
 /// What the boundaries of two neighbouring segments say about their relative orientation.
@@ -48,6 +48,6 @@ struct BoundaryVote {
 std::vector<BoundaryVote> localBoundaryVotes(const PointView& points, const PointView& normals,
                                              const Neighborhoods& neighborhoods,
                                              const Segmentation& segmentation,
-                                             const SegmentLinks& links, int threads = 0);
+                                             const SegmentGraph& links, int threads = 0);
 
 }  // namespace segorient

@@ -4,9 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 #include "common/at.h"
+#include "common/by_size.h"
 
 namespace segorient {
 namespace {
@@ -25,7 +25,7 @@ int signOfValue(float value) {
 
 }  // namespace
 
-SegmentSpread::SegmentSpread(const SegmentEvidence& evidence, const SegmentMethodOptions& options,
+SegmentSpread::SegmentSpread(const SegmentEvidence& evidence, const OrientationSettings& options,
                              Rule rule)
     : evidence_(evidence), options_(options), rule_(rule) {
   results_.resize(evidence.segmentation.segments.size());
@@ -34,16 +34,13 @@ SegmentSpread::SegmentSpread(const SegmentEvidence& evidence, const SegmentMetho
 }
 
 void SegmentSpread::sortBySize() {
-  by_size_.resize(results_.size());
-  std::iota(by_size_.begin(), by_size_.end(), 0);
-  std::stable_sort(by_size_.begin(), by_size_.end(), [&](std::int32_t l, std::int32_t r) {
-    const std::vector<Segment>& segments = evidence_.segmentation.segments;
-    return segments[at(l)].size > segments[at(r)].size;
-  });
+  const std::vector<Segment>& segments = evidence_.segmentation.segments;
+  const BySize sorted(results_.size(), [&](std::size_t s) { return segments[s].size; });
+  for (const std::size_t s : sorted.order()) by_size_.push_back(static_cast<std::int32_t>(s));
 }
 
 void SegmentSpread::labelComponents() {
-  const SegmentLinks& links = evidence_.links;
+  const SegmentGraph& links = evidence_.links;
   std::int32_t components = 0;
   std::vector<std::int32_t> stack;
   for (std::size_t s = 0; s < results_.size(); ++s) {
@@ -54,8 +51,8 @@ void SegmentSpread::labelComponents() {
     while (!stack.empty()) {
       const std::int32_t top = stack.back();
       stack.pop_back();
-      for (std::uint32_t i = links.offsets[at(top)]; i < links.offsets[at(top) + 1]; ++i) {
-        const std::int32_t other = links.links[links.incident[i]].other(top);
+      for (const std::uint32_t link : LinksOf(links, top)) {
+        const std::int32_t other = otherOf(links.borders[link], top);
         if (results_[at(other)].component >= 0) continue;
         results_[at(other)].component = components;
         stack.push_back(other);
@@ -81,17 +78,16 @@ void SegmentSpread::orient(std::int32_t segment, int sign, DecidedBy by, float c
   result.by = by;
   result.confidence = confidence;
   result.hard = hard;
-  const SegmentLinks& links = evidence_.links;
-  for (std::uint32_t i = links.offsets[at(segment)]; i < links.offsets[at(segment) + 1]; ++i) {
-    const std::uint32_t link = links.incident[i];
-    const std::int32_t other = links.links[link].other(segment);
+  const SegmentGraph& links = evidence_.links;
+  for (const std::uint32_t link : LinksOf(links, segment)) {
+    const std::int32_t other = otherOf(links.borders[link], segment);
     if (isOpen(other)) front_.push({cost(link), link, other});
   }
 }
 
 // Whether angle and boundary both decide, and not the same.
 bool SegmentSpread::contradictory(std::uint32_t link) const {
-  if (!options_.compare_borders) return false;
+  if (!options_.check_borders) return false;
   const float cosine = evidence_.cosines[link];
   const BoundaryVote& vote = evidence_.boundary[link];
   return lineAngle(cosine) <= options_.gamma && vote.decides(options_.min_margin) &&
@@ -103,18 +99,17 @@ bool SegmentSpread::decideByAngle(const Step& step) {
   const float angle = lineAngle(cosine);
   const bool unreliable = angle > options_.gamma;
   if (rule_ == Rule::ANGLE_THEN_BOUNDARY && (unreliable || contradictory(step.link))) return false;
-  const std::int32_t from = evidence_.links.links[step.link].other(step.target);
+  const std::int32_t from = otherOf(evidence_.links.borders[step.link], step.target);
   orient(step.target, signOf(from) * signOfValue(cosine), DecidedBy::PROPAGATION,
          (unreliable ? kGuessConfidence : 1.F) * std::abs(cosine), unreliable);
   return true;
 }
 
-// The largest neighbour first, see SegmentLinks::incident.
+// The largest neighbour first, see linkRegularSegments().
 bool SegmentSpread::decideByBoundary(std::int32_t segment) {
-  const SegmentLinks& links = evidence_.links;
-  for (std::uint32_t i = links.offsets[at(segment)]; i < links.offsets[at(segment) + 1]; ++i) {
-    const std::uint32_t link = links.incident[i];
-    const std::int32_t other = links.links[link].other(segment);
+  const SegmentGraph& links = evidence_.links;
+  for (const std::uint32_t link : LinksOf(links, segment)) {
+    const std::int32_t other = otherOf(links.borders[link], segment);
     const BoundaryVote& vote = evidence_.boundary[link];
     if (signOf(other) == 0 || !vote.decides(options_.min_margin)) continue;
     if (rule_ == Rule::ANGLE_THEN_BOUNDARY && contradictory(link)) continue;
@@ -127,13 +122,12 @@ bool SegmentSpread::decideByBoundary(std::int32_t segment) {
 
 // Signed evidence of all oriented neighbours, in border points.
 float SegmentSpread::balance(std::int32_t segment) const {
-  const SegmentLinks& links = evidence_.links;
+  const SegmentGraph& links = evidence_.links;
   float sum = 0.F;
-  for (std::uint32_t i = links.offsets[at(segment)]; i < links.offsets[at(segment) + 1]; ++i) {
-    const std::uint32_t link = links.incident[i];
+  for (const std::uint32_t link : LinksOf(links, segment)) {
     const float vote =
         rule_ == Rule::ANGLE ? evidence_.cosines[link] : evidence_.boundary[link].margin;
-    sum += static_cast<float>(signOf(links.links[link].other(segment))) * vote *
+    sum += static_cast<float>(signOf(otherOf(links.borders[link], segment))) * vote *
            static_cast<float>(std::max(1U, evidence_.boundary[link].points));
   }
   return sum;

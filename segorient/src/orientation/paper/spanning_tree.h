@@ -18,7 +18,7 @@ class SegmentSpread {
   /// boundaries.
   enum class Rule { ANGLE, BOUNDARY, ANGLE_THEN_BOUNDARY };
 
-  SegmentSpread(const SegmentEvidence& evidence, const SegmentMethodOptions& options, Rule rule);
+  SegmentSpread(const SegmentEvidence& evidence, const OrientationSettings& options, Rule rule);
 
   const std::vector<SegmentOrientationResult>& results() const { return results_; }
   bool isOpen(std::int32_t segment) const;  ///< regular and not oriented yet
@@ -62,7 +62,7 @@ class SegmentSpread {
   }
 
   const SegmentEvidence& evidence_;
-  const SegmentMethodOptions& options_;
+  const OrientationSettings& options_;
   Rule rule_;
   std::vector<SegmentOrientationResult> results_;
   std::vector<std::int32_t> by_size_;

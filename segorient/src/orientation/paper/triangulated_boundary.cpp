@@ -57,16 +57,16 @@ class BoundaryDirections {
 
 std::vector<BoundaryVote> triangulatedBoundaryVotes(const PointView& points,
                                                     const Segmentation& segmentation,
-                                                    const SegmentLinks& links,
+                                                    const SegmentGraph& links,
                                                     const std::vector<SegmentMesh>& meshes) {
-  std::vector<BoundaryVote> out(links.links.size());
+  std::vector<BoundaryVote> out(links.borders.size());
   if (meshes.size() != segmentation.segments.size()) return out;
   const BoundaryDirections directions(points, meshes);
-  for (std::size_t l = 0; l < links.links.size(); ++l) {
+  for (std::size_t l = 0; l < links.borders.size(); ++l) {
     BoundaryBallot ballot;
     std::vector<pcl::index_t> voters_a;
     std::vector<pcl::index_t> voters_b;
-    const SegmentLink& link = links.links[l];
+    const SegmentBorder& link = links.borders[l];
     for (std::uint32_t i = link.first; i < link.first + link.size; ++i) {
       const BorderPair& pair = links.pairs[i];
       const Vector3f& in_a = directions.at(pair.in_a);

@@ -24,7 +24,7 @@ namespace segorient {
 /// \param meshes by label, see triangulateSegments(); an empty one has no votes
 std::vector<BoundaryVote> triangulatedBoundaryVotes(const PointView& points,
                                                     const Segmentation& segmentation,
-                                                    const SegmentLinks& links,
+                                                    const SegmentGraph& links,
                                                     const std::vector<SegmentMesh>& meshes);
 
 }  // namespace segorient
