@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "common/every_nth.h"
-#include "common/threads.h"
+#include "common/parallel_for.h"
 
 namespace segorient::detail {
 namespace {
@@ -21,13 +21,9 @@ constexpr int kPatchNeighbors = 12;
 constexpr std::size_t kSampledPatches = 512;
 std::vector<std::size_t> pointsAtBorders(const RecomputationScene& scene,
                                          std::vector<LookState>& state) {
-  const auto size = static_cast<std::ptrdiff_t>(scene.size());
-#pragma omp parallel for schedule(static) \
-    num_threads(resolveThreads(scene.threads, scene.size(), 20.0))
-  for (std::ptrdiff_t i = 0; i < size; ++i) {
-    const auto point = static_cast<std::size_t>(i);
-    state[point] = scene.meetsBorder(point, kFlat) ? LookState::EXAMINED : LookState::UNTOUCHED;
-  }
+  parallelFor(scene.size(), scene.threads, 20.0, [&](std::size_t i) {
+    state[i] = scene.meetsBorder(i, kFlat) ? LookState::EXAMINED : LookState::UNTOUCHED;
+  });
   std::vector<std::size_t> points;
   for (std::size_t i = 0; i < scene.size(); ++i) {
     if (state[i] == LookState::EXAMINED) points.push_back(i);

@@ -9,7 +9,7 @@
 #include <memory>
 #include <utility>
 
-#include "common/threads.h"
+#include "common/parallel_for.h"
 #include "features/one_sided_looks.h"
 #include "features/one_sided_view.h"
 #include "features/recompute_scene.h"
@@ -58,17 +58,13 @@ class Proposer {
 
   template <typename PatchAt>
   void run(std::size_t count, const PatchAt& patchAt) {
-    const auto size = static_cast<std::ptrdiff_t>(count);
-#pragma omp parallel num_threads(resolveThreads(scene_.threads, count, 20000.0))
-    {
-      OneSidedView view(scene_, options_, which_);
-#pragma omp for schedule(dynamic, 16)
-      for (std::ptrdiff_t p = 0; p < size; ++p) {
-        const std::size_t at = patchAt(static_cast<std::size_t>(p));
-        if (now_.known[at] == 0 && !takeOver(at)) propose(now_.looks.patches[at], view);
-        now_.known[at] = 1;
-      }
-    }
+    parallelFor(
+        count, scene_.threads, 20000.0, [&] { return OneSidedView(scene_, options_, which_); },
+        [&](std::size_t p, OneSidedView& view) {
+          const std::size_t at = patchAt(p);
+          if (now_.known[at] == 0 && !takeOver(at)) propose(now_.looks.patches[at], view);
+          now_.known[at] = 1;
+        });
   }
 
  private:

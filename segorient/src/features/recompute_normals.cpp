@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cstddef>
 
-#include "common/threads.h"
 #include "features/recompute_scene.h"
 
 namespace segorient {

@@ -12,7 +12,7 @@
 #include <utility>
 
 #include "common/median.h"
-#include "common/threads.h"
+#include "common/parallel_for.h"
 #include "features/grown_planes.h"
 #include "features/local_fit_job.h"
 #include "features/more_neighbors.h"
@@ -102,9 +102,8 @@ SheetNormals estimateSheetNormals(const PointView& points, const Neighborhoods& 
   out.scale = kSheetScales[smallest];
 
   std::vector<float> lopsided(n, std::numeric_limits<float>::infinity());
-  const int threads = resolveThreads(options.threads, n, 2000.0);
-#pragma omp parallel for num_threads(threads) schedule(dynamic, 1024)
-  for (std::size_t i = 0; i < n; ++i) out.spacing[i] = detail::meanDistance(points, nb, i, 6);
+  parallelFor(n, options.threads, 30.0,
+              [&](std::size_t i) { out.spacing[i] = detail::meanDistance(points, nb, i, 6); });
   out.traits.scan_scales =
       options.known
           ? options.known->scan_scales
@@ -126,26 +125,26 @@ SheetNormals estimateSheetNormals(const PointView& points, const Neighborhoods& 
   const FourFloats xyz(points);
   LocalFitJob all = jobOf(points, xyz, nb, kSheetNeighbors);
   all.same_points = true;
-#pragma omp parallel num_threads(threads)
-  {
-    LocalFitJob job = all;
-    std::vector<pcl::index_t> rows;
-    const auto planes = std::make_unique<SheetPlanes>();
-#pragma omp for schedule(dynamic, 4)
-    for (std::size_t begin = 0; begin < n; begin += GrownPlanes::kRows) {
-      rows.clear();
-      for (std::size_t i = begin; i < std::min(n, begin + GrownPlanes::kRows); ++i) {
-        if (done.empty() || done[i] == 0) rows.push_back(static_cast<pcl::index_t>(i));
-      }
-      job.rows = rows.data();
-      fitGrownPlanes(job, kSheetScales.data(), kSheetScales.size(), 0, rows.size(), planes->data());
-      for (std::size_t r = 0; r < rows.size(); ++r) {
-        const auto i = static_cast<std::size_t>(rows[r]);
-        Neighborhood of(points, nb, i, out.spacing[i], *planes, r);
-        store(fitPoint(of, smallest, noise, options), i, out, lopsided);
-      }
-    }
-  }
+  const std::size_t blocks = (n + GrownPlanes::kRows - 1) / GrownPlanes::kRows;
+  parallelFor(
+      blocks, options.threads, timeOfEach(blocks, n, 2000.0),
+      [] { return std::make_unique<SheetPlanes>(); },
+      [&](std::size_t block, std::unique_ptr<SheetPlanes>& planes) {
+        const std::size_t begin = block * GrownPlanes::kRows;
+        std::vector<pcl::index_t> rows;
+        for (std::size_t i = begin; i < std::min(n, begin + GrownPlanes::kRows); ++i) {
+          if (done.empty() || done[i] == 0) rows.push_back(static_cast<pcl::index_t>(i));
+        }
+        LocalFitJob job = all;
+        job.rows = rows.data();
+        fitGrownPlanes(job, kSheetScales.data(), kSheetScales.size(), 0, rows.size(),
+                       planes->data());
+        for (std::size_t r = 0; r < rows.size(); ++r) {
+          const auto i = static_cast<std::size_t>(rows[r]);
+          Neighborhood of(points, nb, i, out.spacing[i], *planes, r);
+          store(fitPoint(of, smallest, noise, options), i, out, lopsided);
+        }
+      });
   out.residual = options.known ? options.known->residual : medianResidual(out);
   out.traits.residual = out.residual;
   judgeReliability(lopsided, out);

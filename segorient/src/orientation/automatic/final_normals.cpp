@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "common/dot.h"
-#include "common/threads.h"
+#include "common/parallel_for.h"
 #include "features/automatic_normals.h"
 #include "features/cloud_noise.h"
 #include "features/recompute_normals.h"
@@ -63,33 +63,22 @@ class FinalNormals {
     if (known_ != nullptr) has_edges_ = known_->edges;
     traits_.edges = has_edges_;
     if (noise_ < kClean) sure_.assign(points_.size, 0);
-    const auto n = static_cast<std::ptrdiff_t>(points_.size);
-#pragma omp parallel for schedule(static) num_threads(resolveThreads(threads_, points_.size, 50.0))
-    for (std::ptrdiff_t p = 0; p < n; ++p) {
-      const auto i = static_cast<std::size_t>(p);
+    parallelFor(points_.size, threads_, 50.0, [&](std::size_t i) {
       std::array<float, 4> chosen;
       std::copy_n(filtered(i), 4, chosen.begin());
       choose(i, chosen.data());
       std::copy(chosen.begin(), chosen.end(), &fitted_[4 * i]);
-    }
+    });
     return std::move(fitted_);
   }
-  const FinalTraits& traits() const {
-    return traits_;
-  }
+  const FinalTraits& traits() const { return traits_; }
   /// See AutoNormals::sure.
-  std::vector<std::uint8_t> sure() {
-    return std::move(sure_);
-  }
+  std::vector<std::uint8_t> sure() { return std::move(sure_); }
 
  private:
-  const float* filtered(std::size_t i) const {
-    return &oriented_.normals[4 * i];
-  }
+  const float* filtered(std::size_t i) const { return &oriented_.normals[4 * i]; }
 
-  bool has(std::size_t i, Around what) const {
-    return (oriented_.around[i] & what) != 0;
-  }
+  bool has(std::size_t i, Around what) const { return (oriented_.around[i] & what) != 0; }
 
   bool tooNoisy() {
     const CloudNoise noise = known_ != nullptr
@@ -130,9 +119,7 @@ class FinalNormals {
   }
 
   // Without noise, what a surface explains needs no other one.
-  bool mayRecompute(std::size_t i) const {
-    return noise_ >= kClean || fits_[i] != Fit::EXPLAINED;
-  }
+  bool mayRecompute(std::size_t i) const { return noise_ >= kClean || fits_[i] != Fit::EXPLAINED; }
 
   void recomputeAtEdges() {
     std::vector<std::int32_t> labels = segments_.labels;

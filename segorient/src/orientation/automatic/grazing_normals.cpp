@@ -8,7 +8,7 @@
 #include <cstdint>
 
 #include "common/dot.h"
-#include "common/threads.h"
+#include "common/parallel_for.h"
 #include "features/sheet_fit.h"
 
 namespace segorient::detail {
@@ -54,19 +54,17 @@ void replaceGrazingNormals(MoreNeighbors& more, const std::vector<float>& toward
   }
   if (grazing.empty()) return;
   more.index();
-  const int t = resolveThreads(threads, grazing.size(), kQueryTime);
-#pragma omp parallel for num_threads(t) schedule(dynamic, 64)
-  for (std::size_t g = 0; g < grazing.size(); ++g) {
+  parallelFor(grazing.size(), threads, kQueryTime, [&](std::size_t g) {
     const std::size_t i = grazing[g];
     const Plane plane = planeAround(more, i);
-    if (!plane.valid) continue;
+    if (!plane.valid) return;
     float* n = filtered.normals.data() + 4 * i;
     const float seen = dot(plane.normal.data(), &toward[3 * i]);
-    if (!(std::fabs(dot(n, &toward[3 * i])) < kLessLikely * std::fabs(seen))) continue;
+    if (!(std::fabs(dot(n, &toward[3 * i])) < kLessLikely * std::fabs(seen))) return;
     for (std::size_t a = 0; a < 3; ++a) {
       n[a] = seen < 0.F ? -plane.normal.data()[a] : plane.normal.data()[a];
     }
-  }
+  });
 }
 
 }  // namespace segorient::detail

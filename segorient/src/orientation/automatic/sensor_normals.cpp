@@ -10,7 +10,7 @@
 #include <memory>
 
 #include "common/dot.h"
-#include "common/threads.h"
+#include "common/parallel_for.h"
 #include "features/grown_planes.h"
 #include "features/local_fit_job.h"
 #include "features/sheet_fit.h"
@@ -92,26 +92,21 @@ class Leaner {
     more_.index();
     leaned_ = normals_;
     tolerance_.assign(points_.size, 0.F);
-    int t = resolveThreads(threads_, points_.size, kFitTime);
-#pragma omp parallel num_threads(t)
-    {
-      const auto room = std::make_unique<Room>();
-#pragma omp for schedule(dynamic, 4)
-      for (std::size_t begin = 0; begin < points_.size; begin += GrownPlanes::kRows) {
-        leanBlock(begin, std::min(points_.size, begin + GrownPlanes::kRows), *room);
-      }
-    }
-    t = resolveThreads(threads_, points_.size, kMeanTime);
-#pragma omp parallel for num_threads(t) schedule(dynamic, 1024)
-    for (std::size_t i = 0; i < points_.size; ++i) {
+    const std::size_t blocks = (points_.size + GrownPlanes::kRows - 1) / GrownPlanes::kRows;
+    parallelFor(
+        blocks, threads_, timeOfEach(blocks, points_.size, kFitTime),
+        [] { return std::make_unique<Room>(); },
+        [&](std::size_t block, std::unique_ptr<Room>& room) {
+          const std::size_t begin = block * GrownPlanes::kRows;
+          leanBlock(begin, std::min(points_.size, begin + GrownPlanes::kRows), *room);
+        });
+    parallelFor(points_.size, threads_, kMeanTime, [&](std::size_t i) {
       if (isKnown(i)) isSure(i) ? keep(i) : followAround(i);
-    }
+    });
   }
 
  private:
-  const float* toward(std::size_t i) const {
-    return &toward_[3 * i];
-  }
+  const float* toward(std::size_t i) const { return &toward_[3 * i]; }
   bool isKnown(std::size_t i) const {
     return dot(toward(i), toward(i)) > 0.F && std::isfinite(normals_[4 * i]);
   }
@@ -128,9 +123,7 @@ class Leaner {
     store(mean, &leaned_[4 * i]);
   }
 
-  void keep(std::size_t i) {
-    std::copy_n(&leaned_[4 * i], 3, &normals_[4 * i]);
-  }
+  void keep(std::size_t i) { std::copy_n(&leaned_[4 * i], 3, &normals_[4 * i]); }
 
   // What is known of one point in the first round.
   struct Lean {
