@@ -11,6 +11,7 @@
 
 #include "feature_clouds.h"
 #include "features/automatic_normals.h"
+#include "features/cloud_noise.h"
 #include "features/local_normals.h"
 
 namespace segorient::test {
@@ -62,16 +63,17 @@ Sample noisyCube(std::size_t count, float noise) {
 // Offsets of a point from a fitted surface are noise across it only: the estimate is that of the
 // normal component, over the distance to the nearest points.
 TEST(NoiseEstimate, GrowsWithTheNoise) {
+  const auto estimateNoise = [](const Sample& sample, int k) {
+    const Neighborhoods table = neighborsOf(sample.view(), k);
+    return detail::sampleNoise(sample.view(), table, 0).in_spacings;
+  };
   for (const float noise : {0.05F, 0.1F, 0.2F}) {
-    const Sample sample = torus(20000, 1, noise * torusSpacing(20000));
-    const float estimate = estimateNoise(sample.view(), neighborsOf(sample.view(), 16)) / noise;
-    EXPECT_GT(estimate, 0.8F) << noise;
-    EXPECT_LT(estimate, 1.6F) << noise;
+    const double estimate = estimateNoise(torus(20000, 1, noise * torusSpacing(20000)), 16);
+    EXPECT_GT(estimate / static_cast<double>(noise), 0.8) << noise;
+    EXPECT_LT(estimate / static_cast<double>(noise), 1.6) << noise;
   }
-  const Sample clean = torus(20000, 1);
-  EXPECT_LT(estimateNoise(clean.view(), neighborsOf(clean.view(), 16)), 0.01F);
-  const Sample few = torus(10, 1);
-  EXPECT_EQ(estimateNoise(few.view(), neighborsOf(few.view(), 9)), 0.F);
+  EXPECT_LT(estimateNoise(torus(20000, 1), 16), 0.01);
+  EXPECT_EQ(estimateNoise(torus(10, 1), 9), 0.0);
 }
 
 TEST(AutomaticNormals, AsGoodAsTheBestSingleEstimator) {

@@ -120,10 +120,6 @@ class EstimationByRegion {
 
 }  // namespace
 
-float estimateNoise(const PointView& points, const Neighborhoods& neighborhoods, int threads) {
-  return static_cast<float>(detail::sampleNoise(points, neighborhoods, threads).in_spacings);
-}
-
 int automaticNeighbors(const PointView& points, const Neighborhoods& neighborhoods, int threads,
                        const AutomaticNormalTraits* known) {
   return neighborsFor(noiseOf(points, neighborhoods, threads, known));
@@ -149,11 +145,12 @@ AutomaticNormalReport estimateNormalsAutomatically(const PointView& points,
                                                    const AutomaticNormalTraits* known) {
   const CloudNoise noise = noiseOf(points, neighborhoods, threads, known);
   const int wanted = neighborsFor(noise);
-  const bool all = static_cast<std::size_t>(neighborhoods.k()) >= points.size;
-  if (all || neighborhoods.k() > wanted) {
-    const Surroundings of{points, points, neighborhoods};
+  const auto estimate = [&](const Neighborhoods& table) {
+    const Surroundings of{points, points, table};
     return SurfaceEstimation(of, noise, known, threads, normals, rows).run(unexplained);
-  }
+  };
+  const bool all = static_cast<std::size_t>(neighborhoods.k()) >= points.size;
+  if (all || neighborhoods.k() > wanted) return estimate(neighborhoods);
   // Where few neighbours tell something, whole tables of them are small, and steps that look at all
   // points come in between.
   if (!detail::fewTell(inSpacings(noise))) {
@@ -161,8 +158,7 @@ AutomaticNormalReport estimateNormalsAutomatically(const PointView& points,
   }
   Neighborhoods wider;
   index.nearestKAll(wanted + 1, wider, false);
-  const Surroundings of{points, points, wider};
-  return SurfaceEstimation(of, noise, known, threads, normals, rows).run(unexplained);
+  return estimate(wider);
 }
 
 std::string AutomaticNormalReport::text() const {

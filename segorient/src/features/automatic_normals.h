@@ -81,8 +81,4 @@ SEGORIENT_FEATURES_EXPORT int automaticNeighbors(const PointView& points,
                                                  int threads = 0,
                                                  const AutomaticNormalTraits* known = nullptr);
 
-/// Standard deviation of the noise over the local spacing (mean distance to the six nearest), from
-/// the residuals of quadratic surfaces at a few thousand points. 0 for fewer than 16 points.
-float estimateNoise(const PointView& points, const Neighborhoods& neighborhoods, int threads = 0);
-
 }  // namespace segorient

@@ -34,7 +34,7 @@ std::size_t decompose(SquareMatrix<N>& m, double smallest_pivot) {
 
 /// Replaces the first `order` entries of x by those of the solution of L y = x.
 template <std::size_t N>
-void substituteForward(const SquareMatrix<N>& m, VectorN<N>& x, std::size_t order = N) {
+void substituteForward(const SquareMatrix<N>& m, VectorN<N>& x, std::size_t order) {
   for (std::size_t i = 0; i < order; ++i) {
     for (std::size_t k = 0; k < i; ++k) x[i] -= m[i][k] * x[k];
   }
@@ -47,14 +47,6 @@ void substituteBackward(const SquareMatrix<N>& m, VectorN<M>& x) {
   for (std::size_t i = M; i-- > 0;) {
     for (std::size_t k = i + 1; k < M; ++k) x[i] -= m[k][i] * x[k];
   }
-}
-
-/// Replaces x by the solution for the right side x.
-template <std::size_t N>
-void solveDecomposed(const SquareMatrix<N>& m, VectorN<N>& x) {
-  substituteForward(m, x);
-  for (std::size_t i = 0; i < N; ++i) x[i] /= m[i][i];
-  substituteBackward(m, x);
 }
 
 }  // namespace segorient::detail

@@ -11,6 +11,7 @@
 #include "common/median.h"
 #include "features/local_fit_job.h"
 #include "features/local_normals.h"
+#include "features/sheet_fit.h"
 
 namespace segorient::detail {
 namespace {
@@ -25,21 +26,12 @@ constexpr std::size_t kFewestPoints = 16;
 constexpr std::size_t kSamples = 4000;
 // A residual is taken for noise up to this many of its own standard deviations.
 constexpr double kTolerance = 2.5;
+// Neighbours whose mean distance is the spacing.
+constexpr int kNearest = 6;
 
 double spacingAt(const Surroundings& of, std::size_t row) {
-  const int count = std::min(of.table.count(row), 7);
-  double sum = 0;
-  for (int j = 1; j < count; ++j) {
-    const float* p = of.at[row];
-    const float* q = of.points[static_cast<std::size_t>(of.table.indices(row)[j])];
-    double squares = 0;
-    for (int a = 0; a < 3; ++a) {
-      const double d = static_cast<double>(p[a]) - static_cast<double>(q[a]);
-      squares += d * d;
-    }
-    sum += std::sqrt(squares);
-  }
-  return count > 1 ? sum / (count - 1) : 0.0;
+  return meanDistance(of.at[row], of.points, of.table.indices(row) + 1,
+                      std::min(of.table.count(row) - 1, kNearest));
 }
 
 }  // namespace

@@ -46,15 +46,15 @@ std::vector<float> sampleResiduals(NormalEstimator estimator, const PointView& p
 /// Noise of a cloud.
 struct CloudNoise {
   double length = 0.0;       ///< standard deviation
-  double in_spacings = 0.0;  ///< the same over the local spacing
+  double in_spacings = 0.0;  ///< the same over the mean distance to the six nearest
 };
 
 /// Some thousand rows spread evenly over a table, or over some of its rows.
 std::vector<pcl::index_t> sampleRows(std::size_t size);
 std::vector<pcl::index_t> sampleRows(const std::vector<pcl::index_t>& of);
 
-/// Medians over a sample: edges and creases, where surfaces do not fit, are the minority. 0 for
-/// fewer than 16 points.
+/// From the residuals of quadratic surfaces, medians over a sample: edges and creases, where
+/// surfaces do not fit, are the minority. 0 for fewer than 16 points.
 SEGORIENT_FEATURES_EXPORT CloudNoise sampleNoise(const PointView& points,
                                                  const Neighborhoods& neighborhoods, int threads);
 

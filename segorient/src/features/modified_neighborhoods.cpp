@@ -29,13 +29,7 @@ std::vector<SymmetricEigen3> referenceNormals(const RecomputationScene& scene) {
     const float* f = &scene.normals[4 * i];
     if (label < 0 || static_cast<std::size_t>(label) >= sums.size() || !isFinite(f)) continue;
     const double n[3] = {f[0], f[1], f[2]};
-    SymmetricMatrix3& m = sums[static_cast<std::size_t>(label)];
-    m.xx += n[0] * n[0];
-    m.xy += n[0] * n[1];
-    m.xz += n[0] * n[2];
-    m.yy += n[1] * n[1];
-    m.yz += n[1] * n[2];
-    m.zz += n[2] * n[2];
+    sums[static_cast<std::size_t>(label)].add(n);
   }
   std::vector<SymmetricEigen3> result;
   for (const SymmetricMatrix3& m : sums) result.push_back(symmetricEigen(m));

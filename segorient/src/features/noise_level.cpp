@@ -19,6 +19,7 @@ namespace {
 using detail::fitPlane;
 using detail::gatherOffsets;
 using detail::Moments;
+using detail::momentsOf;
 using detail::Offsets;
 using detail::Plane;
 
@@ -29,23 +30,10 @@ float residualOf(const Moments& m) {
   return std::sqrt(p.lambda[0] * m.n / (m.n - 3.F));
 }
 
-// The same over the k nearest.
-float residualOver(const Offsets& o, int k) {
-  Moments m;
-  m.addOrigin();
-  for (std::size_t j = 0; j < static_cast<std::size_t>(std::min(k, o.n)); ++j) {
-    m.add(o.x[j], o.y[j], o.z[j]);
-  }
-  return residualOf(m);
-}
-
 // Distance from the plane over the k nearest of the point's own wall; NaN where two cannot be told
 // apart.
 float wallResidual(const Offsets& o, int k) {
-  Moments all;
-  all.addOrigin();
-  for (std::size_t j = 0; j < static_cast<std::size_t>(o.n); ++j) all.add(o.x[j], o.y[j], o.z[j]);
-  const Plane start = fitPlane(all);
+  const Plane start = fitPlane(momentsOf(o, o.n));
   if (!start.valid) return std::numeric_limits<float>::quiet_NaN();
   const auto [plane, split] = detail::fitOwnWall(o, start, detail::kThinWallsApart);
   if (!split.found) return std::numeric_limits<float>::quiet_NaN();
@@ -85,9 +73,9 @@ NoiseLevel measureNoise(const PointView& points, const Neighborhoods& nb, int th
   };
   NoiseLevel noise;
   std::size_t told = 0;
-  noise.fine = medianOver([](const Offsets& o) { return residualOver(o, kFine); }, told);
+  noise.fine = medianOver([](const Offsets& o) { return residualOf(momentsOf(o, kFine)); }, told);
   noise.coarse =
-      medianOver([](const Offsets& o) { return residualOver(o, kSheetNeighbors); }, told);
+      medianOver([](const Offsets& o) { return residualOf(momentsOf(o, kSheetNeighbors)); }, told);
   if (noise.fine < detail::kFewTellNothing) return noise;
   const float walls = medianOver([](const Offsets& o) { return wallResidual(o, kFine); }, told);
   noise.thin = static_cast<float>(told) >= kThinShare * static_cast<float>(n);

@@ -39,12 +39,7 @@ bool OneSidedFit::findFrame(const NearPoint* points, std::size_t count) {
   for (std::size_t j = 0; j < count; ++j) {
     const double d[3] = {points[j].offset[0] - mean[0], points[j].offset[1] - mean[1],
                          points[j].offset[2] - mean[2]};
-    c.xx += d[0] * d[0];
-    c.xy += d[0] * d[1];
-    c.xz += d[0] * d[2];
-    c.yy += d[1] * d[1];
-    c.yz += d[1] * d[2];
-    c.zz += d[2] * d[2];
+    c.add(d);
   }
   const SymmetricEigen3 eigen = symmetricEigen(c);
   if (!(eigen.values[1] > 1e-6 * eigen.values[2]) || !(farthest > 0.0)) return false;

@@ -28,12 +28,7 @@ bool fitPlaneExactly(const LocalFitJob& job, std::size_t row, float* normal) {
   SymmetricMatrix3 cov{};
   for (int j = 0; j < count; ++j) {
     const double d[3] = {offset(j, 0) - mean[0], offset(j, 1) - mean[1], offset(j, 2) - mean[2]};
-    cov.xx += d[0] * d[0];
-    cov.xy += d[0] * d[1];
-    cov.xz += d[0] * d[2];
-    cov.yy += d[1] * d[1];
-    cov.yz += d[1] * d[2];
-    cov.zz += d[2] * d[2];
+    cov.add(d);
   }
   const SymmetricEigen3 eigen = symmetricEigen(cov);
   // A second direction counts if it is wider than the coordinates' own rounding (a unit in the last

@@ -8,7 +8,7 @@
 #include <limits>
 
 #include "common/parallel_for.h"
-#include "features/local_normals.h"
+#include "features/local_fit_job.h"
 #include "search/prepared_cloud.h"
 
 namespace segorient {
@@ -18,17 +18,6 @@ constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
 
 bool isRow(pcl::index_t index, std::size_t size) {
   return index >= 0 && static_cast<std::size_t>(index) < size;
-}
-
-/// Coordinates in rows of 4 floats; a copy only where they are not so already.
-PointView packed(const PointView& points, std::vector<float>& copy) {
-  if (points.stride == 4) return points;
-  copy.resize(4 * points.size);
-  for (std::size_t i = 0; i < points.size; ++i) {
-    std::copy_n(points[i], 3, &copy[4 * i]);
-    copy[4 * i + 3] = 0.0F;
-  }
-  return {copy.data(), 4, points.size};
 }
 
 void setUndefined(float* normal, LocalCurvature* curvature) {
@@ -150,8 +139,8 @@ void searchAndEstimateNormals(const PointView& input, const pcl::Indices& indice
                               const PointView& surface, const NeighborSearch& search,
                               const LocalNormalOptions& options, float* normals,
                               LocalCurvature* curvatures) {
-  std::vector<float> copy;
-  const PointView points = packed(surface, copy);
+  const detail::FourFloats xyz(surface);
+  const PointView points{xyz.data(), 4, surface.size};
   LocalNormalOptions block_options = options;
   block_options.threads = 1;
   constexpr std::size_t kBlock = 256;
@@ -195,8 +184,8 @@ bool estimateNormalsFromTable(const PointView& input, const pcl::Indices& indice
     }
   }
   const bool by_index = rows == indices.size();
-  std::vector<float> copy;
-  const PointView points = packed(surface, copy);
+  const detail::FourFloats xyz(surface);
+  const PointView points{xyz.data(), 4, surface.size};
   bool identity = indices.size() == input.size;
   for (std::size_t i = 0; identity && i < indices.size(); ++i) {
     identity = static_cast<std::size_t>(indices[i]) == i;

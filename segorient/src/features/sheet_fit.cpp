@@ -7,6 +7,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "features/symmetric_eigen.h"
+
 namespace segorient::detail {
 namespace {
 
@@ -52,13 +54,7 @@ Eigen::Vector3f bestSupported(const Offsets& o, const Eigen::Vector3f& start, fl
   return best;
 }
 
-// Upper triangle of a covariance matrix.
-struct Covariance {
-  double xx, xy, xz, yy, yz, zz;
-  double trace() const { return xx + yy + zz; }
-};
-
-Covariance covarianceOf(const Moments& m, double mx, double my, double mz) {
+SymmetricMatrix3 covarianceOf(const Moments& m, double mx, double my, double mz) {
   const double w = 1.0 / static_cast<double>(m.n);
   return {static_cast<double>(m.xx) * w - mx * mx, static_cast<double>(m.xy) * w - mx * my,
           static_cast<double>(m.xz) * w - mx * mz, static_cast<double>(m.yy) * w - my * my,
@@ -85,7 +81,7 @@ double smallestEigenvalue(double trace, double minors, double determinant) {
 // Of a set of offsets.
 struct Spectrum {
   Eigen::Vector3d mean;
-  Covariance covariance;
+  SymmetricMatrix3 covariance;
   double trace, minors, smallest;
 
   // Ascending.
@@ -102,9 +98,9 @@ bool findSpectrum(const Moments& m, Spectrum& s) {
   const double w = 1.0 / static_cast<double>(m.n);
   s.mean = Eigen::Vector3d(static_cast<double>(m.x) * w, static_cast<double>(m.y) * w,
                            static_cast<double>(m.z) * w);
-  const Covariance c = covarianceOf(m, s.mean[0], s.mean[1], s.mean[2]);
+  const SymmetricMatrix3 c = covarianceOf(m, s.mean[0], s.mean[1], s.mean[2]);
   s.covariance = c;
-  s.trace = c.trace();
+  s.trace = c.xx + c.yy + c.zz;
   const double yz = c.yy * c.zz - c.yz * c.yz;
   s.minors = c.xx * (c.yy + c.zz) - c.xy * c.xy - c.xz * c.xz + yz;
   const double determinant =
@@ -114,7 +110,7 @@ bool findSpectrum(const Moments& m, Spectrum& s) {
 }
 
 // The longest row of the adjugate of c - x: all of them are multiples of the eigenvector.
-Eigen::Vector3d eigenvector(const Covariance& c, double x) {
+Eigen::Vector3d eigenvector(const SymmetricMatrix3& c, double x) {
   const Eigen::Vector3d r0(c.xx - x, c.xy, c.xz);
   const Eigen::Vector3d r1(c.xy, c.yy - x, c.yz);
   const Eigen::Vector3d r2(c.xz, c.yz, c.zz - x);
@@ -126,7 +122,7 @@ Eigen::Vector3d eigenvector(const Covariance& c, double x) {
 }
 
 // Slower, and good for eigenvalues that meet.
-void decompose(const Covariance& c, Plane& plane) {
+void decompose(const SymmetricMatrix3& c, Plane& plane) {
   Eigen::Matrix3d m;
   m << c.xx, c.xy, c.xz, c.xy, c.yy, c.yz, c.xz, c.yz, c.zz;
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(m);
@@ -154,19 +150,18 @@ Plane fitPlane(const Moments& m) {
   return plane;
 }
 
-float meanDistance(const PointView& points, std::size_t i, const pcl::index_t* others, int n) {
-  const float* p = points[i];
+double meanDistance(const float* from, const PointView& points, const pcl::index_t* others, int n) {
   double sum = 0.0;  // in double: squares of far or tiny offsets leave the range of float
   for (int j = 0; j < n; ++j) {
     const float* q = points[static_cast<std::size_t>(others[j])];
     double square = 0.0;
     for (int a = 0; a < 3; ++a) {
-      const double d = static_cast<double>(q[a]) - static_cast<double>(p[a]);
+      const double d = static_cast<double>(q[a]) - static_cast<double>(from[a]);
       square += d * d;
     }
     sum += std::sqrt(square);
   }
-  return n > 0 ? static_cast<float>(sum / n) : 0.F;
+  return n > 0 ? sum / n : 0.0;
 }
 
 float meanDistance(const PointView& points, const Neighborhoods& nb, std::size_t i, int k) {
@@ -193,6 +188,15 @@ Offsets gatherOffsets(const PointView& points, const Neighborhoods& nb, std::siz
     }
   }
   return o;
+}
+
+Moments momentsOf(const Offsets& o, int k) {
+  Moments m;
+  m.addOrigin();
+  for (std::size_t j = 0; j < static_cast<std::size_t>(std::min(k, o.n)); ++j) {
+    m.add(o.x[j], o.y[j], o.z[j]);
+  }
+  return m;
 }
 
 Plane fitDominant(const Offsets& o, const Plane& start, float tolerance) {

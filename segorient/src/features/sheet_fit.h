@@ -68,14 +68,24 @@ struct Offsets {
     return x[j] * direction.x() + y[j] * direction.y() + z[j] * direction.z();
   }
 };
+
+/// Of the point and its k nearest.
+Moments momentsOf(const Offsets& offsets, int k);
+
 Offsets gatherOffsets(const PointView& points, const Neighborhoods& neighborhoods, std::size_t i,
                       float spacing);
 
-/// Mean distance to some points; 0 without any.
-SEGORIENT_FEATURES_EXPORT float meanDistance(const PointView& points, std::size_t i,
-                                             const pcl::index_t* others, int n);
+/// Mean distance from a place to some points; 0 without any.
+SEGORIENT_FEATURES_EXPORT double meanDistance(const float* from, const PointView& points,
+                                              const pcl::index_t* others, int n);
 
-/// Mean distance to the k nearest.
+/// The same from a point.
+inline float meanDistance(const PointView& points, std::size_t i, const pcl::index_t* others,
+                          int n) {
+  return static_cast<float>(meanDistance(points[i], points, others, n));
+}
+
+/// The same to its k nearest.
 SEGORIENT_FEATURES_EXPORT float meanDistance(const PointView& points,
                                              const Neighborhoods& neighborhoods, std::size_t i,
                                              int k);

@@ -48,17 +48,8 @@ const Offsets& Neighborhood::offsets() {
 }
 
 Plane Neighborhood::planeOf(std::size_t scale) {
-  if (!planes_[scale].hasNormal(r_)) return planeInDouble(kSheetScales[scale]);
+  if (!planes_[scale].hasNormal(r_)) return fitPlane(momentsOf(offsets(), kSheetScales[scale]));
   return spacing_ > 0.F ? planes_[scale].at(r_, spacing_) : Plane{};
-}
-
-Plane Neighborhood::planeInDouble(int k) {
-  const Offsets& o = offsets();
-  Moments m;
-  m.addOrigin();
-  for (std::size_t j = 0; j < static_cast<std::size_t>(std::min(k, o.n)); ++j)
-    m.add(o.x[j], o.y[j], o.z[j]);
-  return fitPlane(m);
 }
 
 PointFit fitPoint(Neighborhood& of, std::size_t smallest, const NoiseLevel& noise,

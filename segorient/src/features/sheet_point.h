@@ -39,8 +39,6 @@ class Neighborhood {
   Plane planeOf(std::size_t scale);
 
  private:
-  Plane planeInDouble(int k);
-
   const PointView& points_;
   const Neighborhoods& nb_;
   std::size_t i_;

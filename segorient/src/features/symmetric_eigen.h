@@ -8,6 +8,16 @@ namespace segorient::detail {
 
 struct SymmetricMatrix3 {
   double xx, xy, xz, yy, yz, zz;
+
+  /// Adds the products of a vector's coordinates.
+  void add(const double* v) {
+    xx += v[0] * v[0];
+    xy += v[0] * v[1];
+    xz += v[0] * v[2];
+    yy += v[1] * v[1];
+    yz += v[1] * v[2];
+    zz += v[2] * v[2];
+  }
 };
 
 struct SymmetricEigen3 {

@@ -6,6 +6,8 @@
 #include <utility>
 #include <vector>
 
+#include "common/in_double.h"
+#include "features/symmetric_eigen.h"
 #include "segmentation/growth_state.h"
 #include "segmentation/segment_order.h"
 
@@ -16,22 +18,13 @@ namespace {
 struct Moments {
   std::array<double, 3> origin{0, 0, 0};
   std::array<double, 3> sum{0, 0, 0};
-  std::array<double, 6> products{0, 0, 0, 0, 0, 0};  ///< xx xy xz yy yz zz
+  detail::SymmetricMatrix3 products{};
   double area = 0;
 
   void add(const float* point) {
-    const double x = static_cast<double>(point[0]) - origin[0];
-    const double y = static_cast<double>(point[1]) - origin[1];
-    const double z = static_cast<double>(point[2]) - origin[2];
-    sum[0] += x;
-    sum[1] += y;
-    sum[2] += z;
-    products[0] += x * x;
-    products[1] += x * y;
-    products[2] += x * z;
-    products[3] += y * y;
-    products[4] += y * z;
-    products[5] += z * z;
+    std::array<double, 3> offset = inDouble(point);
+    for (std::size_t c = 0; c < 3; ++c) sum[c] += offset[c] -= origin[c];
+    products.add(offset.data());
   }
 };
 
@@ -43,9 +36,9 @@ void setShape(const Moments& m, Segment& segment) {
   }
   segment.area = static_cast<float>(m.area);
   if (segment.size < 4) return;  // three points lie in their plane
-  const auto& s = m.products;
+  const detail::SymmetricMatrix3& s = m.products;
   Eigen::Matrix3d covariance;
-  covariance << s[0], s[1], s[2], s[1], s[3], s[4], s[2], s[4], s[5];
+  covariance << s.xx, s.xy, s.xz, s.xy, s.yy, s.yz, s.xz, s.yz, s.zz;
   covariance = covariance / n - mean * mean.transpose();
   Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver;
   solver.computeDirect(covariance, Eigen::EigenvaluesOnly);

@@ -4,8 +4,11 @@
 #include <array>
 #include <cstring>
 #include <limits>
+#include <utility>
 
+#include "common/box.h"
 #include "common/every_nth.h"
+#include "common/median.h"
 #include "common/parallel_for.h"
 #include "common/unit_vector.h"
 #include "segmentation/growth_state.h"
@@ -26,31 +29,19 @@ struct Scaling {
   float scale = 1.F;
 };
 
-struct Bounds {
-  std::array<float, 3> low;
-  std::array<float, 3> high;
-};
-
-// NaN compares false and is left out; infinite values only where asked for.
-Bounds boundsOf(const PointView& points, bool finite_only) {
-  Bounds b;
-  b.low.fill(std::numeric_limits<float>::max());
-  b.high.fill(std::numeric_limits<float>::lowest());
+// A box leaves NaN out; infinite values only where asked for.
+Box boxAround(const PointView& points, bool finite_only) {
+  Box box;
   for (std::size_t i = 0; i < points.size; ++i) {
-    const float* p = points[i];
-    if (finite_only && !isFinite(p)) continue;
-    for (std::size_t c = 0; c < 3; ++c) {
-      b.low[c] = p[c] < b.low[c] ? p[c] : b.low[c];
-      b.high[c] = p[c] > b.high[c] ? p[c] : b.high[c];
-    }
+    if (!finite_only || isFinite(points[i])) box.add(points[i]);
   }
-  return b;
+  return box;
 }
 
 // To the unit cube: squares of coordinates then neither overflow nor vanish.
 Scaling scalingOf(const PointView& points) {
-  Bounds b = boundsOf(points, false);
-  if (!isFinite(b.low.data()) || !isFinite(b.high.data())) b = boundsOf(points, true);
+  Box b = boxAround(points, false);
+  if (!isFinite(b.low.data()) || !isFinite(b.high.data())) b = boxAround(points, true);
   Scaling scaling;
   float extent = 0.F;
   for (std::size_t c = 0; c < 3; ++c) {
@@ -164,10 +155,7 @@ float typicalOffset(const GrowthState& state) {
     std::sort(ring.begin(), ring.begin() + (count - 1));
     offsets.push_back(ring[static_cast<std::size_t>((count - 1) / 2)] / p.spacing);
   }
-  if (offsets.empty()) return 0.F;
-  const auto middle = offsets.begin() + static_cast<std::ptrdiff_t>(offsets.size() / 2);
-  std::nth_element(offsets.begin(), middle, offsets.end());
-  return kDeviationPerMedian * *middle;
+  return kDeviationPerMedian * median(std::move(offsets));
 }
 
 // Whether most points are far from their nearest neighbour in memory: then nothing that growing

@@ -27,7 +27,6 @@ SegmentationOptions growthOptions(const SheetSegmentationOptions& options, float
   out.alpha = options.alpha > 0.F ? options.alpha : automaticAlpha(residual);
   out.beta = options.beta;
   out.epsilon = options.epsilon;
-  out.small_size = options.small_size;
   out.threads = options.threads;
   return out;
 }

@@ -7,8 +7,6 @@
 #include <segorient/common/point_view.h>
 #include <segorient/segmentation/segmentation.h>
 
-#include <cstddef>
-
 #include "segmentation/sheet_edges.h"
 
 namespace segorient {
@@ -19,7 +17,6 @@ struct SheetSegmentationOptions {
   float alpha = 0.F;
   float beta = 0.5235988F;      ///< largest angle to the segment's reference normal (30 degrees)
   float epsilon = 0.1745329F;   ///< what clean-up allows beyond beta (10 degrees)
-  std::size_t small_size = 20;  ///< segments with fewer points are small
   bool require_support = true;  ///< a point joins only with several neighbours inside
   bool clean_up = true;         ///< passes 1 and 2 of the paper
   int threads = 0;              ///< see resolveThreads()

@@ -29,9 +29,8 @@ bool turnLooseParts(SheetSigns& sheets, const std::vector<std::int32_t>& part_of
   if (loose.none()) return false;
   std::vector<float> dipoles = sheets.orientedNormals(true);
   for (std::size_t i = 0; i < sheets.points.size; ++i) {
-    const std::int32_t s = sheets.segmentation.labels[i];
-    const auto sign =
-        static_cast<float>(s < 0 ? 1 : sheets.windings[at(sheets.component_of[at(s)])].sign);
+    const std::int32_t c = sheets.componentOf(i);
+    const auto sign = static_cast<float>(c < 0 ? 1 : sheets.windings[at(c)].sign);
     for (std::size_t a = 0; a < 3; ++a) dipoles[4 * i + a] *= sign;
   }
   const std::vector<float> spacing(sheets.field.spacing, sheets.field.spacing + sheets.points.size);
@@ -49,7 +48,7 @@ bool turnLooseParts(SheetSigns& sheets, const std::vector<std::int32_t>& part_of
 // turned, the sum fell by .42 and more, of others in noise and thin walls by .24 at most; where
 // less is gained, the part's own points have to tell, see TurnRule.
 void turnLooseParts(SheetSigns& sheets) {
-  std::vector<std::int32_t> part_of = sheets.clusterOf();
+  std::vector<std::int32_t> part_of = sheets.clusters.of();
   const std::vector<bool> all(sheets.windings.size(), true);
   if (turnLooseParts(sheets, part_of, all, {1.0 / 3.0, 0.2})) sheets.windComponents();
   std::vector<bool> clean(sheets.windings.size());
@@ -70,9 +69,8 @@ std::vector<std::int8_t> conventions(const SheetSigns& sheets, const std::vector
   std::vector<std::array<double, 3>> sum(count, {0.0, 0.0, 0.0});
   std::vector<double> points(count, 0.0);
   for (std::size_t i = 0; i < sheets.points.size; ++i) {
-    const std::int32_t s = sheets.segmentation.labels[i];
-    if (s < 0) continue;
-    const std::size_t c = at(sheets.component_of[at(s)]);
+    if (sheets.componentOf(i) < 0) continue;
+    const std::size_t c = at(sheets.componentOf(i));
     const auto sign = static_cast<double>(sheets.pointSign(i));
     for (std::size_t a = 0; a < 3; ++a) {
       sum[c][a] += sign * static_cast<double>(sheets.field.normals[4 * i + a]);

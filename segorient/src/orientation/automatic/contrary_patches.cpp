@@ -8,6 +8,7 @@
 #include <limits>
 #include <utility>
 
+#include "common/dot.h"
 #include "common/parallel_for.h"
 
 namespace segorient::detail {
@@ -43,20 +44,16 @@ class Patches {
         patch_(points.size, kNone) {}
 
   bool meetsContrary(std::size_t p) const {
-    bool found = false;
-    forNeighbors(
-        p, [&](std::size_t q) { found = agreement(p, q) == Agreement::CONTRARY; },
-        [&] { return found; });
-    return found;
+    const pcl::index_t* row = neighborhoods_.indices(p);
+    return std::any_of(row + 1, row + rowSize(p), [&](pcl::index_t q) {
+      return agreement(p, static_cast<std::size_t>(q)) == Agreement::CONTRARY;
+    });
   }
 
-  /// \return how many points were turned
-  std::size_t settle(std::size_t p) {
-    std::size_t turned = 0;
+  void settle(std::size_t p) {
     forNeighbors(p, [&](std::size_t q) {
-      if (agreement(p, q) == Agreement::CONTRARY) turned += settle(patchOf(p), patchOf(q));
+      if (agreement(p, q) == Agreement::CONTRARY) settle(patchOf(p), patchOf(q));
     });
-    return turned;
   }
 
  private:
@@ -67,21 +64,17 @@ class Patches {
     bool large = false;  ///< more points than are listed
   };
 
+  int rowSize(std::size_t p) const { return std::min(neighborhoods_.count(p), kReach + 1); }
   template <typename Visit>
   void forNeighbors(std::size_t p, Visit&& visit) const {
-    forNeighbors(p, visit, [] { return false; });
-  }
-  template <typename Visit, typename Stop>
-  void forNeighbors(std::size_t p, Visit&& visit, Stop&& stop) const {
     const pcl::index_t* row = neighborhoods_.indices(p);
-    const int count = std::min(neighborhoods_.count(p), kReach + 1);
-    for (int j = 1; j < count && !stop(); ++j) visit(static_cast<std::size_t>(row[j]));
+    for (int j = 1; j < rowSize(p); ++j) visit(static_cast<std::size_t>(row[j]));
   }
 
   Agreement agreement(std::size_t p, std::size_t q) const {
     const float* n = normals_.data() + 4 * p;
     const float* m = normals_.data() + 4 * q;
-    const float cosine = n[0] * m[0] + n[1] * m[1] + n[2] * m[2];
+    const float cosine = dot(n, m);
     if (!(std::fabs(cosine) > kSameFace)) return Agreement::UNKNOWN;
     float along_n = 0.F;
     float along_m = 0.F;
@@ -135,20 +128,19 @@ class Patches {
     target.large = target.large || patch.large || target.points.size() > kMostPoints;
   }
 
-  std::size_t settle(std::uint32_t a, std::uint32_t b) {
-    if (a == b) return 0;
+  void settle(std::uint32_t a, std::uint32_t b) {
+    if (a == b) return;
     const auto size = [&](std::uint32_t i) {
       return patches_[i].large ? std::numeric_limits<double>::infinity()
                                : static_cast<double>(patches_[i].points.size());
     };
     if (size(a) > size(b)) std::swap(a, b);
-    if (patches_[a].large || size(a) > kShare * size(b)) return 0;
+    if (patches_[a].large || size(a) > kShare * size(b)) return;
     const Patch turned = std::exchange(patches_[a], {});
     for (const std::size_t i : turned.points) {
       for (std::size_t c = 0; c < 3; ++c) normals_[4 * i + c] = -normals_[4 * i + c];
     }
     join(turned, b);
-    return turned.points.size();
   }
 
   const PointView& points_;
@@ -161,21 +153,19 @@ class Patches {
 
 }  // namespace
 
-std::size_t turnContraryPatches(const PointView& points, const Neighborhoods& neighborhoods,
-                                const std::vector<float>& spacing, float residual, int threads,
-                                FilteredNormals& filtered) {
-  if (!(residual < kMostResidual)) return 0;
+void turnContraryPatches(const PointView& points, const Neighborhoods& neighborhoods,
+                         const std::vector<float>& spacing, float residual, int threads,
+                         FilteredNormals& filtered) {
+  if (!(residual < kMostResidual)) return;
   Patches patches(points, neighborhoods, spacing, filtered.normals);
   std::vector<std::uint8_t> contrary(points.size);
   parallelFor(points.size, threads, 100.0, [&](std::size_t p) {
     const bool agreed = filtered.confidences[p] > kUnanimous;
     contrary[p] = !agreed && patches.meetsContrary(p) ? 1 : 0;
   });
-  std::size_t turned = 0;
   for (std::size_t p = 0; p < points.size; ++p) {
-    if (contrary[p] != 0) turned += patches.settle(p);
+    if (contrary[p] != 0) patches.settle(p);
   }
-  return turned;
 }
 
 }  // namespace segorient::detail

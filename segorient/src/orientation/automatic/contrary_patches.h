@@ -5,7 +5,6 @@
 #include <segorient/common/neighborhoods.h>
 #include <segorient/common/point_view.h>
 
-#include <cstddef>
 #include <vector>
 
 #include "orientation/automatic/sheet_filter.h"
@@ -23,9 +22,8 @@ namespace segorient::detail {
 ///        be told apart for noise, nothing is done
 /// \param filtered some normals change. Where confidences say that the normals around agree, no
 ///        contrary one is looked for.
-/// \return how many points were turned
-std::size_t turnContraryPatches(const PointView& points, const Neighborhoods& neighborhoods,
-                                const std::vector<float>& spacing, float residual, int threads,
-                                FilteredNormals& filtered);
+void turnContraryPatches(const PointView& points, const Neighborhoods& neighborhoods,
+                         const std::vector<float>& spacing, float residual, int threads,
+                         FilteredNormals& filtered);
 
 }  // namespace segorient::detail

@@ -3,11 +3,12 @@
 #include "orientation/automatic/ground_sides.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+
+#include "common/box.h"
 
 namespace segorient::detail {
 namespace {
@@ -30,17 +31,14 @@ class Columns {
  public:
   void include(const float* p) {
     ++points_;
-    for (std::size_t a = 0; a < 2; ++a) {
-      low_[a] = std::min(low_[a], p[a]);
-      high_[a] = std::max(high_[a], p[a]);
-    }
+    box_.add(p);
   }
 
   /// Once all points are included: the lowest and the highest point of each column are to be found.
   void divide() {
     if (points_ == 0) return;
-    const float width = high_[0] - low_[0];
-    const float depth = high_[1] - low_[1];
+    const float width = box_.high[0] - box_.low[0];
+    const float depth = box_.high[1] - box_.low[1];
     const double most = std::max(1.0, static_cast<double>(points_) / kPointsOfColumn);
     const float side = std::max({std::sqrt(width * depth / static_cast<float>(most)),
                                  std::max(width, depth) / static_cast<float>(most),
@@ -53,8 +51,8 @@ class Columns {
   }
 
   void add(const PointView& points, std::uint32_t i) {
-    const auto x = static_cast<std::size_t>((points[i][0] - low_[0]) / side_);
-    const auto y = static_cast<std::size_t>((points[i][1] - low_[1]) / side_);
+    const auto x = static_cast<std::size_t>((points[i][0] - box_.low[0]) / side_);
+    const auto y = static_cast<std::size_t>((points[i][1] - box_.low[1]) / side_);
     std::uint32_t& lowest = lowest_[y * across_ + x];
     std::uint32_t& highest = highest_[y * across_ + x];
     if (lowest == kNone || points[i][2] < points[lowest][2]) lowest = i;
@@ -80,9 +78,7 @@ class Columns {
 
  private:
   std::size_t points_ = 0;
-  std::array<float, 2> low_{std::numeric_limits<float>::max(), std::numeric_limits<float>::max()};
-  std::array<float, 2> high_{std::numeric_limits<float>::lowest(),
-                             std::numeric_limits<float>::lowest()};
+  Box box_;
   float side_ = 1.F;
   std::size_t across_ = 1;
   std::vector<std::uint32_t> lowest_;
@@ -95,17 +91,16 @@ std::vector<float> facingUp(const SheetSigns& sheets) {
   const std::size_t count = sheets.windings.size();
   if (sheets.hints.surface == SurfaceKind::CLOSED) return std::vector<float>(count, 0.F);
   std::vector<std::size_t> sizes(count, 0);
-  for (const std::int32_t s : sheets.segmentation.labels) {
-    if (s >= 0) ++sizes[at(sheets.component_of[at(s)])];
+  for (std::size_t i = 0; i < sheets.points.size; ++i) {
+    if (sheets.componentOf(i) >= 0) ++sizes[at(sheets.componentOf(i))];
   }
   // Each component has a sample of its own, be there one or thousands.
   std::vector<std::size_t> seen;
   const auto forEachPoint = [&](const auto& act) {
     seen.assign(count, 0);
     for (std::size_t i = 0; i < sheets.points.size; ++i) {
-      const std::int32_t s = sheets.segmentation.labels[i];
-      if (s < 0) continue;
-      const std::size_t c = at(sheets.component_of[at(s)]);
+      if (sheets.componentOf(i) < 0) continue;
+      const std::size_t c = at(sheets.componentOf(i));
       const std::size_t step = std::max<std::size_t>(1, sizes[c] / kSample);
       if (seen[c]++ % step == 0) act(c, static_cast<std::uint32_t>(i));
     }

@@ -54,8 +54,8 @@ void weighOnePlace(SheetSigns& sheets, const std::vector<Ballot>& ballots) {
     if (!own[c] || !contrary) believed += sheets.found.result.components[c].points;
   }
   for (std::size_t i = 0; i < sheets.points.size; ++i) {
-    const std::int32_t s = sheets.segmentation.labels[i];
-    if (s < 0 || !own[at(sheets.component_of[at(s)])]) continue;
+    const std::int32_t c = sheets.componentOf(i);
+    if (c < 0 || !own[at(c)]) continue;
     sheets.facing[i] = 0.F;
     std::fill_n(&sheets.sensors.toward[3 * i], 3, 0.F);
   }

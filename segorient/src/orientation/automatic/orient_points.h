@@ -28,7 +28,7 @@ enum Around : std::uint8_t {
 
 /// Oriented normals of points whose neighbours are known.
 struct AutoNormals {
-  std::vector<float> normals;            ///< 4 floats a point: oriented normal, residual
+  std::vector<float> normals;            ///< 4 floats a point: oriented normal, curvature; or NaN
   std::vector<float> confidences;        ///< of the orientation, 0 to 1
   std::vector<std::int32_t> components;  ///< -1 where there is no normal
   std::vector<std::uint8_t> around;      ///< what is around each point: bits of Around
@@ -42,7 +42,7 @@ struct AutoNormals {
   float spacing = 0.F;              ///< median
   float level = 0.F;                ///< see followCoarserLevels()
   std::vector<ScaleEnergy> scales;  ///< see PipelineReport
-  SheetTraits sheets;               ///< of the cloud
+  SheetTraits sheets;               ///< of the cloud, as measured or as told
   SheetTraits level_sheets;         ///< of the level's subset, where there is one
 };
 

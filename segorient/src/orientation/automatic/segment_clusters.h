@@ -27,6 +27,7 @@ class SegmentClusters {
   /// One more than the largest name: the number of segments.
   std::size_t size() const { return of_.size(); }
   std::int32_t of(std::size_t segment) const { return of_[segment]; }
+  const std::vector<std::int32_t>& of() const { return of_; }  ///< by segment
   /// The cluster that stands for all that borders connect with this one.
   std::int32_t root(std::int32_t cluster) const { return root_[static_cast<std::size_t>(cluster)]; }
   /// The sign of a segment, relative to others of the same root.

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <map>
 
+#include "common/dot.h"
 #include "features/scan_scale.h"
 
 namespace segorient::detail {
@@ -13,10 +14,6 @@ namespace {
 
 // Errors of a normal's angle have long tails, from edges and stray points.
 constexpr float kClear = 3.F;  // standard deviations
-
-float cosineTo(const float* normal, const float* toward) {
-  return normal[0] * toward[0] + normal[1] * toward[1] + normal[2] * toward[2];
-}
 
 }  // namespace
 
@@ -36,7 +33,7 @@ std::vector<float> facingOf(const SheetField& field, std::size_t points,
   for (std::size_t i = 0; i < points; ++i) {
     const float* n = field.normals + 4 * i;
     const float error = kBend + std::min(kPerResidual * n[3], detail::kMostNormalError);
-    const float cosine = cosineTo(n, sensors.of(i));
+    const float cosine = dot(n, sensors.of(i));
     if (std::isfinite(cosine) && std::isfinite(error)) out[i] = cosine / error;
   }
   return out;
@@ -106,7 +103,7 @@ std::vector<std::uint8_t> faceSensors(const std::vector<float>& toward, Filtered
   std::vector<std::uint8_t> decided(filtered.confidences.size(), 0);
   for (std::size_t i = 0; i < filtered.confidences.size(); ++i) {
     float* n = filtered.normals.data() + 4 * i;
-    const float cosine = cosineTo(n, &toward[3 * i]);
+    const float cosine = dot(n, &toward[3 * i]);
     const float scatter2 = 2.F * (1.F - filtered.confidences[i]);
     const float error = kBend + std::sqrt(std::max(scatter2, 0.F) / kCounting);
     if (!(std::fabs(cosine) >= std::min(kClear * error, kMost))) continue;

@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <utility>
 
+#include "common/dot.h"
 #include "common/parallel_for.h"
 
 namespace segorient::detail {
@@ -20,9 +21,7 @@ struct Sheet {
   float total = 0.F;
   int witnesses = 0;
 
-  float along(const float* n) const {
-    return normal[0] * n[0] + normal[1] * n[1] + normal[2] * n[2];
-  }
+  float along(const float* n) const { return dot(normal.data(), n); }
   float length() const { return std::sqrt(along(normal.data())); }
   float meanOffset() const { return offset / total; }
 };

@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <utility>
 
+#include "common/by_size.h"
 #include "orientation/automatic/loose_parts.h"
 #include "orientation/automatic/sheet_stages.h"
 
@@ -58,28 +60,22 @@ void findContradictions(SheetSigns& sheets) {
 void listClusters(SheetSigns& sheets) {
   std::vector<ClusterOrientationResult> all(sheets.clusters.size());
   const std::vector<float> agreement =
-      agreementOf(sheets.clusterOf(), sheets.votes, sheets.signs, 1.F);
+      agreementOf(sheets.clusters.of(), sheets.votes, sheets.signs, 1.F);
   for (std::size_t s = 0; s < sheets.clusters.size(); ++s) {
     ClusterOrientationResult& cluster = all[at(sheets.clusters.of(s))];
     cluster.points += sheets.segmentation.segments[s].size;
     cluster.component = sheets.component_of[s];
     cluster.confidence = std::clamp(agreement[at(sheets.clusters.of(s))], 0.F, 1.F);
   }
-  std::vector<std::int32_t> order;
-  for (std::size_t c = 0; c < all.size(); ++c) {
-    if (all[c].points > 0) order.push_back(static_cast<std::int32_t>(c));
+  const BySize by_size(all.size(), [&](std::size_t c) { return all[c].points; });
+  by_size.sort(all);
+  while (!all.empty() && all.back().points == 0) all.pop_back();
+  sheets.found.clusters = std::move(all);
+  sheets.found.cluster_of = sheets.clusters.of();
+  by_size.renumber(sheets.found.cluster_of);
+  for (std::int32_t& c : sheets.found.cluster_of) {
+    if (at(c) >= sheets.found.clusters.size()) c = -1;
   }
-  std::stable_sort(order.begin(), order.end(), [&](std::int32_t a, std::int32_t b) {
-    return all[at(a)].points > all[at(b)].points;
-  });
-  std::vector<std::int32_t> rank(all.size(), -1);
-  for (std::size_t k = 0; k < order.size(); ++k) {
-    rank[at(order[k])] = static_cast<std::int32_t>(k);
-    sheets.found.clusters.push_back(all[at(order[k])]);
-  }
-  sheets.found.cluster_of.resize(sheets.clusters.size());
-  for (std::size_t s = 0; s < sheets.clusters.size(); ++s)
-    sheets.found.cluster_of[s] = rank[at(sheets.clusters.of(s))];
 }
 
 }  // namespace

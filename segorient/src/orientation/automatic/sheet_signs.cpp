@@ -6,6 +6,7 @@
 #include <numeric>
 #include <utility>
 
+#include "common/by_size.h"
 #include "common/parallel_for.h"
 #include "orientation/automatic/loose_parts.h"
 
@@ -41,22 +42,22 @@ void SheetSigns::numberComponents() {
     signs[s] = clusters.sign(s);
   }
   // Segments without points are components of their own, too.
-  std::vector<std::int32_t> order;
+  std::vector<std::int32_t> roots;
   for (std::size_t s = 0; s < n; ++s) {
-    if (is_root[s]) order.push_back(static_cast<std::int32_t>(s));
+    if (is_root[s]) roots.push_back(static_cast<std::int32_t>(s));
   }
-  std::stable_sort(order.begin(), order.end(),
-                   [&](std::int32_t a, std::int32_t b) { return size[at(a)] > size[at(b)]; });
-  std::vector<std::int32_t> rank(n, -1);
-  for (std::size_t c = 0; c < order.size(); ++c) rank[at(order[c])] = static_cast<std::int32_t>(c);
-  component_of.resize(n);
-  for (std::size_t s = 0; s < n; ++s) component_of[s] = rank[at(clusters.root(clusters.of(s)))];
-  windings.assign(order.size(), ComponentWinding{});
-  ground.assign(order.size(), false);
-  found.result.components.resize(order.size());
-  for (std::size_t c = 0; c < order.size(); ++c) {
-    found.result.components[c].points = size[at(order[c])];
+  const BySize by_size(roots.size(), [&](std::size_t c) { return size[at(roots[c])]; });
+  by_size.sort(roots);
+  std::vector<std::int32_t> number(n, -1);
+  for (const std::int32_t root : roots) {
+    number[at(root)] = static_cast<std::int32_t>(found.result.components.size());
+    found.result.components.emplace_back().points = size[at(root)];
   }
+  for (std::size_t s = 0; s < n; ++s) {
+    component_of.push_back(number[at(clusters.root(clusters.of(s)))]);
+  }
+  windings.assign(roots.size(), ComponentWinding{});
+  ground.assign(roots.size(), false);
 }
 
 std::vector<float> SheetSigns::orientedNormals(bool dipoles) const {
@@ -74,12 +75,6 @@ std::vector<float> SheetSigns::orientedNormals(bool dipoles) const {
     for (std::size_t a = 0; a < 3; ++a) out[4 * i + a] = sign * area * field.normals[4 * i + a];
     out[4 * i + 3] = area;
   });
-  return out;
-}
-
-std::vector<std::int32_t> SheetSigns::clusterOf() const {
-  std::vector<std::int32_t> out;
-  for (std::size_t s = 0; s < clusters.size(); ++s) out.push_back(clusters.of(s));
   return out;
 }
 
@@ -104,7 +99,7 @@ bool SheetSigns::isClosed(std::size_t component, float residual) const {
 
 std::vector<bool> SheetSigns::outvoted(const std::vector<Ballot>& ballots,
                                        float sure_borders) const {
-  const std::vector<float> agreement = agreementOf(clusterOf(), votes, signs, 0.F);
+  const std::vector<float> agreement = agreementOf(clusters.of(), votes, signs, 0.F);
   std::vector<bool> out(clusters.size());
   for (std::size_t c = 0; c < out.size(); ++c) {
     out[c] = agreement[c] <= sure_borders && ballots[c].share() < -kClearly;

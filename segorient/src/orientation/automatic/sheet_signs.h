@@ -54,10 +54,13 @@ struct SheetSigns {
     return s < 0 ? 0.F
                  : static_cast<float>(segmentation.signs[i] * signs[static_cast<std::size_t>(s)]);
   }
+  /// The component of a point, -1 without a segment.
+  std::int32_t componentOf(std::size_t i) const {
+    const std::int32_t s = segmentation.labels[i];
+    return s < 0 ? -1 : component_of[at(s)];
+  }
   /// 4 floats a point: normal and 1, or, as dipoles, normal times area and area; 0 without one.
   std::vector<float> orientedNormals(bool dipoles) const;
-  /// The cluster of each segment.
-  std::vector<std::int32_t> clusterOf() const;
   /// What is known of segments, one a point; -1 without a segment.
   std::vector<std::int32_t> ofPoints(const std::vector<std::int32_t>& of_segments) const;
   /// Whether a component is told or known to be closed. \param residual most of the winding

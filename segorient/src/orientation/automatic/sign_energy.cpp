@@ -8,6 +8,7 @@
 #include <cmath>
 #include <cstddef>
 
+#include "common/dot.h"
 #include "common/every_nth.h"
 #include "common/median.h"
 #include "common/parallel_for.h"
@@ -50,18 +51,13 @@ struct PairSums {
 
   void add(const float* p, const float* n, const float* q, const float* m) {
     ++pairs;
-    const float opposed = -dotOf(n, m);
+    const float opposed = -dot(n, m);
     if (!(opposed > 0.F)) return;
     const float d[3] = {q[0] - p[0], q[1] - p[1], q[2] - p[2]};
-    const float q_over_p = dotOf(d, n);
-    const float p_over_q = -dotOf(d, m);
+    const float q_over_p = dot(d, n);
+    const float p_over_q = -dot(d, m);
     if (q_over_p > 0.F && p_over_q > 0.F) facing += opposed;
     if (q_over_p < 0.F && p_over_q < 0.F) backs += opposed;
-  }
-
- private:
-  static float dotOf(const float* a, const float* b) {
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
   }
 };
 

@@ -53,7 +53,7 @@ void findNeighbors(PreparedCloud& cloud, const PipelineOptions& options, const S
 }
 
 // Turns the segments as most of their points are.
-void turnSegments(const AutoNormals& oriented, int threads, AutoStages& out) {
+void turnSegments(int threads, AutoStages& out) {
   Segmentation& segmentation = out.segmentation;
   segmentation::collectMembers(segmentation);
   out.segments.resize(segmentation.segments.size());
@@ -64,10 +64,10 @@ void turnSegments(const AutoNormals& oriented, int threads, AutoStages& out) {
     double confidence = 0.0;
     for (const auto* p = segmentation.begin(s); p != segmentation.end(s); ++p) {
       const auto i = static_cast<std::size_t>(*p);
-      const bool agrees = dot(&oriented.normals[4 * i], segment.reference_normal.data()) >= 0.F;
+      const bool agrees = dot(&out.normals[4 * i], segment.reference_normal.data()) >= 0.F;
       segmentation.signs[i] = agrees ? std::int8_t{1} : std::int8_t{-1};
       balance += segmentation.signs[i];
-      confidence += static_cast<double>(oriented.confidences[i]);
+      confidence += static_cast<double>(out.confidences[i]);
     }
     if (balance < 0) {
       for (const auto* p = segmentation.begin(s); p != segmentation.end(s); ++p) {
@@ -82,7 +82,7 @@ void turnSegments(const AutoNormals& oriented, int threads, AutoStages& out) {
     result.sign = 1;
     result.by = DecidedBy::GLOBAL;
     result.confidence = static_cast<float>(confidence / size * unanimous);
-    result.component = oriented.components[static_cast<std::size_t>(*segmentation.begin(s))];
+    result.component = out.components[static_cast<std::size_t>(*segmentation.begin(s))];
     result.hard = confidence <= 0.0;
   });
 }
@@ -106,53 +106,43 @@ AutoStages runAutoStages(PreparedCloud& cloud, const PipelineOptions& options,
   finished.options = segmentation::inUnitOf(cloud, {options.segmentation});
   finished.options.threads = options.threads;
   MoreNeighbors more(points, options.threads);
-  AutoNormals oriented =
+  static_cast<AutoNormals&>(out) =
       orientPoints(more, table, settings, hints, options.threads, begin, record, &finished);
   out.segmentation = std::move(finished.segmentation);
   // What sensors or the user know is better than what the field tells.
   if (record != nullptr) {
-    if (record->field) record->field(points, oriented);
+    if (record->field) record->field(points, out);
   } else if (settings.winding_normals && hints.nothing()) {
     const bool noisy = out.noise >= kFieldNoise;
-    if (noisy || oriented.level > 0.F) {
-      NoiseField field = findNoiseField(cloud.points(), cloud.neighborhoods(), oriented.normals,
-                                        options.threads, oriented.confidences);
+    if (noisy || out.level > 0.F) {
+      NoiseField field = findNoiseField(cloud.points(), cloud.neighborhoods(), out.normals,
+                                        options.threads, out.confidences);
       if (!noisy) field.averaged_below = kAcross;
       out.consistent = field.consistent;
-      takeNoiseField(cloud.points(), cloud.neighborhoods(), field, options.threads, oriented);
-    } else if (oriented.orientation.toward.empty()) {
+      takeNoiseField(cloud.points(), cloud.neighborhoods(), field, options.threads, out);
+    } else if (out.orientation.toward.empty()) {
       takeCellSigns(points,
-                    findCellSigns(points, oriented.normals, oriented.spacing,
-                                  oriented.orientation.result.components, options.threads),
-                    oriented);
+                    findCellSigns(points, out.normals, out.spacing,
+                                  out.orientation.result.components, options.threads),
+                    out);
       // Judged scales: signs contradict each other somewhere.
-      if (!oriented.scales.empty()) takeFineField(points, table, options.threads, oriented);
+      if (!out.scales.empty()) takeFineField(points, table, options.threads, out);
     }
   }
-  labelTheRest(table, oriented.normals, out.segmentation);
-  const NoiseLevel& noise = oriented.sheets.noise;
-  const bool few_tell = !oriented.scan_scales || noise.coarse < kSeenByFew * noise.fine;
+  labelTheRest(table, out.normals, out.segmentation);
+  const NoiseLevel& noise = out.sheets.noise;
+  const bool few_tell = !out.scan_scales || noise.coarse < kSeenByFew * noise.fine;
   if (settings.fit_normals && !out.denoised && few_tell) {
     begin("recomputation", 0.88);
     out.final_traits =
         fitFinalNormals(cloud, more, out.segmentation, options.k > 0, options.threads,
-                        record != nullptr ? &record->final_traits : nullptr, oriented);
+                        record != nullptr ? &record->final_traits : nullptr, out);
   }
-  if (!oriented.orientation.toward.empty()) {
-    leanToSensors(more, table, oriented.orientation.toward, oriented.sure, options.threads,
-                  oriented.normals);
+  if (!out.orientation.toward.empty()) {
+    leanToSensors(more, table, out.orientation.toward, out.sure, options.threads, out.normals);
   }
-  followFinalNormals(table, oriented.normals, options.threads, out.segmentation);
-  turnSegments(oriented, options.threads, out);
-  out.normals = std::move(oriented.normals);
-  out.confidences = std::move(oriented.confidences);
-  out.components = std::move(oriented.components);
-  out.orientation = std::move(oriented.orientation);
-  out.spacing = oriented.spacing;
-  out.level = oriented.level;
-  out.scales = std::move(oriented.scales);
-  out.sheets = oriented.sheets;
-  out.level_sheets = oriented.level_sheets;
+  followFinalNormals(table, out.normals, options.threads, out.segmentation);
+  turnSegments(options.threads, out);
   if (record != nullptr) record->smoothed = std::move(smoothed);
   return out;
 }

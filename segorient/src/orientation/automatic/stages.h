@@ -14,22 +14,13 @@
 namespace segorient::detail {
 
 /// What the default method found out about the distinct points of a cloud.
-struct AutoStages {
-  std::vector<float> normals;      ///< 4 floats a point: oriented normal, curvature; NaN where none
-  std::vector<float> confidences;  ///< of the orientation, 0 to 1
-  std::vector<std::int32_t> components;            ///< -1 where there is no normal
+struct AutoStages : AutoNormals {
   Segmentation segmentation;                       ///< reference normals and signs oriented
   std::vector<SegmentOrientationResult> segments;  ///< by label of `segmentation`
-  AutoOrientation orientation;                     ///< of the sheets' segments
   int k = 0;
-  float spacing = 0.F;              ///< median
-  float noise = 0.F;                ///< see NoiseLevel::fine
-  bool denoised = false;            ///< whether positions were smoothed first
-  bool consistent = false;          ///< see NoiseField
-  float level = 0.F;                ///< see AutoNormals::level
-  std::vector<ScaleEnergy> scales;  ///< see PipelineReport
-  SheetTraits sheets;               ///< of the cloud, as measured or as told
-  SheetTraits level_sheets;         ///< of the level's subset
+  float noise = 0.F;        ///< see NoiseLevel::fine
+  bool denoised = false;    ///< whether positions were smoothed first
+  bool consistent = false;  ///< see NoiseField
   FinalTraits final_traits;
 };
 

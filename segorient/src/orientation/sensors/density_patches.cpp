@@ -46,12 +46,7 @@ Piece pieceOf(const PointView& points, const float* origin, const pcl::index_t* 
                          static_cast<double>(q[1]) - static_cast<double>(origin[1]),
                          static_cast<double>(q[2]) - static_cast<double>(origin[2])};
     for (int a = 0; a < 3; ++a) sum[a] += d[a];
-    m.xx += d[0] * d[0];
-    m.xy += d[0] * d[1];
-    m.xz += d[0] * d[2];
-    m.yy += d[1] * d[1];
-    m.yz += d[1] * d[2];
-    m.zz += d[2] * d[2];
+    m.add(d);
   }
   const double n = count;
   const double c[3] = {sum[0] / n, sum[1] / n, sum[2] / n};

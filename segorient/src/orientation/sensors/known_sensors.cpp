@@ -8,6 +8,8 @@
 #include <limits>
 #include <numeric>
 
+#include "common/in_double.h"
+#include "common/unit_vector.h"
 #include "orientation/sensors/number_places.h"
 #include "orientation/sensors/scan_checks.h"
 
@@ -119,16 +121,9 @@ class Finder {
     out_.toward.assign(3 * points_.size, 0.F);
     for (std::size_t i = 0; i < points_.size; ++i) {
       if (out_.scan[i] < 0) continue;
-      double v[3];
-      double square = 0.0;
-      for (std::size_t a = 0; a < 3; ++a) {
-        v[a] = static_cast<double>(sensors[3 * i + a]) - static_cast<double>(points_[i][a]);
-        square += v[a] * v[a];
-      }
-      const double length = std::sqrt(square);
-      if (!(length > 0.0)) continue;
-      for (std::size_t a = 0; a < 3; ++a)
-        out_.toward[3 * i + a] = static_cast<float>(v[a] / length);
+      std::array<double, 3> v = inDouble(&sensors[3 * i]);
+      for (std::size_t a = 0; a < 3; ++a) v[a] -= static_cast<double>(points_[i][a]);
+      unitVector(v, &out_.toward[3 * i]);
     }
   }
 

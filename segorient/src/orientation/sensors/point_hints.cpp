@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "common/in_double.h"
+#include "common/unit_vector.h"
 
 namespace segorient {
 namespace {
@@ -16,14 +17,6 @@ using Vector = std::array<float, 3>;
 // In the cloud's unit, where its extent is about 1: so far that all points see it in one direction,
 // and its square is still a number.
 constexpr double kFar = 1e15;
-
-// In double: viewpoints may be far away.
-bool normalize(const double* v, Vector& out) {
-  const double length = std::sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
-  if (!(length > 0.0) || !std::isfinite(length)) return false;
-  for (std::size_t a = 0; a < 3; ++a) out[a] = static_cast<float>(v[a] / length);
-  return true;
-}
 
 // In the unit of a PreparedCloud; what is farther than floats can square is brought nearer.
 Vector scaled(const Vector& v, float unit) {
@@ -53,7 +46,7 @@ void addDirections(const OrientationHints& hints, const PreparedCloud& cloud,
   for (std::size_t row = 0; row < std::min(cloud.rows(), rowsOf(hints.normals)); ++row) {
     if (cloud.pointOf(row) < 0) continue;
     Vector unit_vector{};
-    if (normalize(inDouble(&hints.normals[3 * row]).data(), unit_vector)) {
+    if (unitVector(inDouble(&hints.normals[3 * row]), unit_vector.data())) {
       add(unit_vector, &directions[3 * static_cast<std::size_t>(cloud.pointOf(row))]);
     }
   }
@@ -61,7 +54,7 @@ void addDirections(const OrientationHints& hints, const PreparedCloud& cloud,
 
 // What was seen along one direction was seen from so far away that no point tells the difference.
 bool farPlace(const OrientationHints& hints, Vector& out) {
-  if (!hints.has_direction || !normalize(inDouble(hints.direction.data()).data(), out))
+  if (!hints.has_direction || !unitVector(inDouble(hints.direction.data()), out.data()))
     return false;
   for (float& v : out) v *= static_cast<float>(kFar);
   return true;
@@ -103,7 +96,8 @@ void addSeeds(const OrientationHints& hints, PreparedCloud& cloud,
   for (const OrientationHints::Seed& given : hints.seeds) {
     PointHints::Seed seed;
     const Vector position = scaled(given.position, cloud.unit());
-    if (!normalize(inDouble(given.normal.data()).data(), seed.normal) || !isFinite(position.data()))
+    if (!unitVector(inDouble(given.normal.data()), seed.normal.data()) ||
+        !isFinite(position.data()))
       continue;
     pcl::index_t nearest = 0;
     float distance = 0.F;
