@@ -26,12 +26,10 @@ constexpr std::size_t kFewestPoints = 16;
 constexpr std::size_t kSamples = 4000;
 // A residual is taken for noise up to this many of its own standard deviations.
 constexpr double kTolerance = 2.5;
-// Neighbours whose mean distance is the spacing.
-constexpr int kNearest = 6;
 
 double spacingAt(const Surroundings& of, std::size_t row) {
   return meanDistance(of.at[row], of.points, of.table.indices(row) + 1,
-                      std::min(of.table.count(row) - 1, kNearest));
+                      std::min(of.table.count(row) - 1, kFirstRing));
 }
 
 }  // namespace

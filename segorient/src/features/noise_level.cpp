@@ -18,6 +18,8 @@ namespace {
 
 using detail::fitPlane;
 using detail::gatherOffsets;
+using detail::kFirstRing;
+using detail::meanDistance;
 using detail::Moments;
 using detail::momentsOf;
 using detail::Offsets;
@@ -63,7 +65,7 @@ NoiseLevel measureNoise(const PointView& points, const Neighborhoods& nb, int th
     std::vector<float> found(n);
     parallelFor(n, threads, 2000.0, [&](std::size_t s) {
       const std::size_t i = samples[s];
-      found[s] = residual(gatherOffsets(points, nb, i, detail::meanDistance(points, nb, i, 6)));
+      found[s] = residual(gatherOffsets(points, nb, i, meanDistance(points, nb, i, kFirstRing)));
     });
     found.erase(
         std::remove_if(found.begin(), found.end(), [](float r) { return !std::isfinite(r); }),

@@ -17,8 +17,6 @@ constexpr double kWorse = 1.2;
 constexpr double kFarthestOff = 3.0;
 // Beyond this a surface's height at the point is extrapolated guesswork.
 constexpr double kLargestLeverage = 30.0;
-// Whose mean distance is the spacing.
-constexpr int kNearest = 6;
 
 double logNormalCdf(double x) {
   return std::log(std::max(0.5 * std::erfc(-x * M_SQRT1_2), 1e-30));
@@ -63,7 +61,7 @@ void OneSidedView::propose(std::size_t i, Proposal& proposal) {
       edge && proposal.off <= kFarthestOff * best->sigma && oneSurfaceFitsWorse(best->side->fit);
   noteBorders(*best, proposal);
   if (edge && which_ == OneSidedNormal::EXPECTED) {
-    const float spacing = meanDistance(scene_.points, scene_.neighborhoods, i, kNearest);
+    const float spacing = meanDistance(scene_.points, scene_.neighborhoods, i, kFirstRing);
     proposal.to_other_face = distanceToOtherFace(*best) / static_cast<double>(spacing);
   }
   if (!proposal.result.accepted) return;

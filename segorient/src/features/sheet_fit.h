@@ -75,6 +75,9 @@ Moments momentsOf(const Offsets& offsets, int k);
 Offsets gatherOffsets(const PointView& points, const Neighborhoods& neighborhoods, std::size_t i,
                       float spacing);
 
+/// Neighbours whose mean distance is the spacing.
+constexpr int kFirstRing = 6;
+
 /// Mean distance from a place to some points; 0 without any.
 SEGORIENT_FEATURES_EXPORT double meanDistance(const float* from, const PointView& points,
                                               const pcl::index_t* others, int n);

@@ -102,8 +102,9 @@ SheetNormals estimateSheetNormals(const PointView& points, const Neighborhoods& 
   out.scale = kSheetScales[smallest];
 
   std::vector<float> lopsided(n, std::numeric_limits<float>::infinity());
-  parallelFor(n, options.threads, 30.0,
-              [&](std::size_t i) { out.spacing[i] = detail::meanDistance(points, nb, i, 6); });
+  parallelFor(n, options.threads, 30.0, [&](std::size_t i) {
+    out.spacing[i] = detail::meanDistance(points, nb, i, detail::kFirstRing);
+  });
   out.traits.scan_scales =
       options.known
           ? options.known->scan_scales

@@ -16,7 +16,6 @@
 namespace segorient::detail {
 namespace {
 
-constexpr int kSix = 6;     // neighbours of the spacing
 constexpr int kAround = 9;  // the cell itself and eight neighbours
 // Area per square of the mean distance to the six nearest of a blue-noise subset (measured; .866 of
 // a hexagonal grid).
@@ -25,7 +24,7 @@ constexpr float kAreaPerSquare = 0.92F;
 }  // namespace
 
 float cellArea(const PointView& cells, const Neighborhoods& around, std::size_t cell) {
-  const float h = meanDistance(cells, around, cell, kSix);
+  const float h = meanDistance(cells, around, cell, kFirstRing);
   return kAreaPerSquare * h * h;
 }
 

@@ -217,7 +217,7 @@ class Leaner {
 
   void finishLean(Lean& of_point) {
     const std::size_t i = of_point.i;
-    const float h = meanDistance(points_, nb_, i, 6);
+    const float h = meanDistance(points_, nb_, i, kFirstRing);
     if (!(h > 0.F)) return;
     tolerance_[i] =
         h * h * kOffset * kOffset + (std::isfinite(of_point.variance) ? of_point.variance : 0.F);

@@ -27,9 +27,6 @@ constexpr double kRayTime = 2000.0;
 constexpr double kPairTime = 1000.0;
 constexpr double kSpacingTime = 20.0;
 
-// Of those whose mean distance is the spacing.
-constexpr int kSpacing = 6;
-
 Plane planeOf(const PointView& points, const Neighborhoods& nb, std::size_t i, int k) {
   return detail::planeOf(points, i, nb.indices(i), std::min(nb.count(i), k + 1));
 }
@@ -48,7 +45,7 @@ Plane planeOf(const PointView& points, std::size_t i, const pcl::index_t* row, i
   Moments m;
   m.addOrigin();
   const float* p = points[i];
-  const float h = meanDistance(points, i, row + 1, std::min(count - 1, kSpacing));
+  const float h = meanDistance(points, i, row + 1, std::min(count - 1, kFirstRing));
   const float scale = h > 0.F ? 1.F / h : 0.F;
   for (int j = 1; j < count; ++j) {
     const float* q = points[static_cast<std::size_t>(row[j])];
@@ -98,7 +95,7 @@ void Scan::nearest(std::size_t i, int entries, Row& out) const {
 float Scan::spacingOf(std::size_t i) const {
   if (!spacing_.empty()) return spacing_[i];
   Row row;
-  nearest(i, kSpacing + 1, row);
+  nearest(i, kFirstRing + 1, row);
   return meanDistance(view_, i, row.indices + 1, row.count - 1);
 }
 
@@ -180,7 +177,7 @@ Scan::Density Scan::density() const {
     const Plane plane = planeOf(view_, i, row.indices, row.count);
     const Eigen::Vector3f& l = plane.lambda;
     const float spacing =
-        meanDistance(view_, i, row.indices + 1, std::min(row.count - 1, kSpacing));
+        meanDistance(view_, i, row.indices + 1, std::min(row.count - 1, kFirstRing));
     if (!plane.valid || !(l[0] < kFlat * l[1]) || !(l[1] > kWide * l[2])) continue;
     if (!(seen_.distance[i] > 0.F) || !(spacing > 0.F)) continue;
     const float* u = &seen_.direction[4 * i];

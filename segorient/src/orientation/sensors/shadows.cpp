@@ -28,9 +28,8 @@ namespace {
 constexpr std::size_t kMostPoints = 40000;
 // Enough for shares of a hundredth.
 constexpr std::size_t kSamples = 1500;
-// The least that a plane shows a surface by, and those whose mean distance is the spacing.
+// The least that a plane shows a surface by.
 constexpr int kPlane = 12;
-constexpr int kSpacing = 6;
 // In direction: in a thinned cloud what is near has fewer points to an angle than what is far, at a
 // fifth of its distance one of 25.
 constexpr int kAround = 256;
@@ -177,7 +176,7 @@ class ShadowSearch {
     parallelFor(n, threads_, kPlaneTime, [&](std::size_t i) {
       const pcl::index_t* row = near.indices(i);
       const int count = near.count(i);
-      const float h = meanDistance(view(), i, row + 1, std::min(count - 1, kSpacing));
+      const float h = meanDistance(view(), i, row + 1, std::min(count - 1, kFirstRing));
       width_[i] = h;
       if (!(h > 0.F)) return;
       const Plane plane = planeOf(view(), i, row, count);
