@@ -96,23 +96,29 @@ void fitGrown(const LocalFitJob& job, const int* sizes, std::size_t count, std::
   }
 }
 
-/// See findMedians().
-void mediansOf(const float* values, std::size_t count, float* medians) {
+/// See findMedians(). \param order what to compare, two by two, so that all are sorted then
+void mediansOf(const float* values, std::size_t count, const SortingPairs& order, float* medians) {
+  Lanes sorted[kMostSorted];
   for (std::size_t i = 0; i < GrownPlanes::kRows; i += kWidth) {
-    const float* column = values + i;
-    const auto at = [&](std::size_t j)
-                        SEGORIENT_INLINED { return load(column + j * GrownPlanes::kRows); };
+    // What is missing comes last.
     Mask present{};
-    for (std::size_t j = 0; j < count; ++j) present -= at(j) == at(j);
-    // What is missing is less than nothing, and nothing is less than it.
-    const Mask half = present / 2;
-    Lanes median = all(-std::numeric_limits<float>::infinity());
     for (std::size_t j = 0; j < count; ++j) {
-      const Lanes v = at(j);
-      Mask less{};
-      for (std::size_t other = 0; other < count; ++other) less -= at(other) < v;
-      median = select((v == v) & (less <= half), larger(v, median), median);
+      const Lanes v = load(values + j * GrownPlanes::kRows + i);
+      present -= v == v;
+      sorted[j] = select(v == v, v, all(std::numeric_limits<float>::infinity()));
     }
-    store(medians + i, select(present > 0, median, all(std::numeric_limits<float>::quiet_NaN())));
+    for (const auto& [first, second] : order) {
+      const Lanes a = sorted[first];
+      const Lanes b = sorted[second];
+      sorted[first] = smaller(a, b);
+      sorted[second] = larger(a, b);
+    }
+    const Mask half = present / 2;
+    Lanes median = all(std::numeric_limits<float>::quiet_NaN());
+    for (std::size_t j = 0; j <= count / 2; ++j) {
+      const Mask here = (half == static_cast<std::int32_t>(j)) & (present > 0);
+      median = select(here, sorted[j], median);
+    }
+    store(medians + i, median);
   }
 }

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <utility>
 #include <vector>
 
 #include "common/compiler.h"
@@ -13,6 +14,34 @@
 #include "common/vectors.h"
 
 namespace segorient::detail {
+namespace {
+
+// Most values that medians are taken of: as many as there are wide registers.
+constexpr std::size_t kMostSorted = 32;
+using SortingPairs = std::vector<std::pair<std::uint8_t, std::uint8_t>>;
+
+// Merging by odd and even places (Knuth, The Art of Computer Programming, vol. 3,
+// algorithm 5.2.2M).
+SortingPairs sortingPairs(std::size_t count) {
+  SortingPairs out;
+  std::size_t half = 1;
+  while (2 * half < count) half *= 2;
+  for (std::size_t p = half; p > 0; p /= 2) {
+    std::size_t q = half;
+    std::size_t r = 0;
+    for (std::size_t d = p;; d = q - p, q /= 2, r = p) {
+      for (std::size_t i = 0; i + d < count; ++i) {
+        if ((i & p) == r) {
+          out.emplace_back(static_cast<std::uint8_t>(i), static_cast<std::uint8_t>(i + d));
+        }
+      }
+      if (q == p) break;
+    }
+  }
+  return out;
+}
+
+}  // namespace
 
 #define SEGORIENT_KERNELS "features/grown_lanes.inl"
 #include "features/each_width.inl"
@@ -51,7 +80,7 @@ void fitGrownPlanes(const LocalFitJob& job, const int* sizes, std::size_t count,
 }
 
 void findMedians(const float* values, std::size_t count, float* medians) {
-  chooseKernels().medians_of(values, count, medians);
+  chooseKernels().medians_of(values, count, sortingPairs(count), medians);
 }
 
 }  // namespace segorient::detail

@@ -42,8 +42,8 @@ SEGORIENT_FEATURES_EXPORT void fitGrownPlanes(const LocalFitJob& job, const int*
 
 /// Medians of several values of each of GrownPlanes::kRows points: of an even number the larger of
 /// the two in the middle.
-/// \param values the j-th of point i at [j * kRows + i]; NaN where there is none
-/// \param medians one a point; NaN where there is no value
+/// \param count 32 at most \param values the j-th of point i at [j * kRows + i]; NaN where there is
+/// none \param medians one a point; NaN where there is no value
 void findMedians(const float* values, std::size_t count, float* medians);
 
 }  // namespace segorient::detail
