@@ -5,10 +5,12 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 #include <utility>
 
 #include "common/every_nth.h"
 #include "common/parallel_for.h"
+#include "common/sort_all.h"
 
 namespace segorient::detail {
 namespace {
@@ -34,13 +36,12 @@ std::vector<std::size_t> pointsAtBorders(const RecomputationScene& scene,
 /// By coordinates, so that nothing depends on the order of the points.
 std::vector<std::size_t> inOrderOfPlace(const RecomputationScene& scene,
                                         const std::vector<std::size_t>& points) {
-  std::vector<std::pair<std::array<float, 3>, std::size_t>> places;
-  places.reserve(points.size());
-  for (const std::size_t i : points) {
-    const float* p = scene.points[i];
-    places.push_back({{p[0], p[1], p[2]}, i});
-  }
-  std::sort(places.begin(), places.end());
+  std::vector<std::pair<std::array<float, 3>, std::size_t>> places(points.size());
+  parallelFor(points.size(), scene.threads, 10.0, [&](std::size_t at) {
+    const float* p = scene.points[points[at]];
+    places[at] = {{p[0], p[1], p[2]}, points[at]};
+  });
+  sortAll(places, scene.threads, std::less<>());
   std::vector<std::size_t> out;
   out.reserve(places.size());
   for (const auto& [place, i] : places) out.push_back(i);
@@ -64,10 +65,11 @@ Looks layPatches(const RecomputationScene& scene, std::vector<LookState>& state)
     state[i] = LookState::MIDDLE;
     middles.push_back(i);
   }
-  std::vector<std::uint64_t> pairs;  // middle above, point below
-  pairs.reserve(examined.size());
-  for (const std::size_t i : examined) pairs.push_back(std::uint64_t{middleNear(i)} << 32U | i);
-  std::sort(pairs.begin(), pairs.end());
+  std::vector<std::uint64_t> pairs(examined.size());  // middle above, point below
+  parallelFor(examined.size(), scene.threads, 50.0, [&](std::size_t e) {
+    pairs[e] = std::uint64_t{middleNear(examined[e])} << 32U | examined[e];
+  });
+  sortAll(pairs, scene.threads, std::less<>());
 
   Looks looks;
   looks.points.reserve(pairs.size());

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "common/parallel_for.h"
+#include "common/sort_all.h"
 #include "orientation/automatic/border_groups.h"
 #include "orientation/automatic/wide_votes.h"
 
@@ -139,7 +140,7 @@ std::vector<RawVote> castVotes(const Voter& voter, std::size_t n, int threads) {
     votes.insert(votes.end(), part.begin(), part.end());
     std::vector<RawVote>().swap(part);
   }
-  std::sort(votes.begin(), votes.end(), [](const RawVote& x, const RawVote& y) {
+  sortAll(votes, threads, [](const RawVote& x, const RawVote& y) {
     if (x.a != y.a) return x.a < y.a;
     if (x.b != y.b) return x.b < y.b;
     if (x.point != y.point) return x.point < y.point;
