@@ -13,7 +13,14 @@ const search::MedianHashIndex& MoreNeighbors::index() {
     index_ = search::indexOf(points_, threads_);
     indexed_ = true;
   }
+  asked_ = true;
   return index_;
+}
+
+void MoreNeighbors::dropUnasked() {
+  if (asked_) return;
+  index_ = search::MedianHashIndex();
+  indexed_ = false;
 }
 
 int MoreNeighbors::nearest(std::size_t i, int entries, pcl::index_t* row) const {

@@ -7,6 +7,7 @@
 #include <segorient/search/median_hash_index.h>
 
 #include <cstddef>
+#include <utility>
 
 namespace segorient::detail {
 
@@ -16,11 +17,16 @@ class SEGORIENT_FEATURES_EXPORT MoreNeighbors {
  public:
   /// \param points must outlive this; \param threads see resolveThreads()
   MoreNeighbors(const PointView& points, int threads) : points_(points), threads_(threads) {}
+  /// \param index of the points, or an empty one
+  MoreNeighbors(const PointView& points, int threads, search::MedianHashIndex index)
+      : points_(points), threads_(threads), indexed_(index.size() > 0), index_(std::move(index)) {}
 
   const PointView& points() const { return points_; }
 
   /// Of the points, built when first asked for: not from several threads.
   const search::MedianHashIndex& index();
+  /// Gives the index's memory back unless somebody asked for it; it is built anew when asked for.
+  void dropUnasked();
 
   /// Most neighbours of a single point, itself not counted.
   static constexpr int kMost = 60;
@@ -33,6 +39,7 @@ class SEGORIENT_FEATURES_EXPORT MoreNeighbors {
   PointView points_;
   int threads_;
   bool indexed_ = false;
+  bool asked_ = false;
   search::MedianHashIndex index_;
 };
 

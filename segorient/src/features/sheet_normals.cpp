@@ -88,23 +88,12 @@ SheetNormals estimateSheetNormals(const PointView& points, const Neighborhoods& 
                                   const SheetNormalOptions& options, detail::MoreNeighbors* more) {
   SheetNormals out;
   const std::size_t n = points.size;
-  out.normals.resize(4 * n);
-  out.spacing.resize(n);
-  out.curvature.resize(n);
-  out.below.resize(n);
-  out.above.resize(n);
-  out.reliable.resize(n);
   const NoiseLevel noise =
       options.known ? options.known->noise : measureNoise(points, nb, options.threads);
   out.traits.noise = noise;
   out.noise = noise.fine;
   const std::size_t smallest = smallestScale(noise.fine);
   out.scale = kSheetScales[smallest];
-
-  std::vector<float> lopsided(n, std::numeric_limits<float>::infinity());
-  parallelFor(n, options.threads, 30.0, [&](std::size_t i) {
-    out.spacing[i] = detail::meanDistance(points, nb, i, detail::kFirstRing);
-  });
   out.traits.scan_scales =
       options.known
           ? options.known->scan_scales
@@ -112,6 +101,17 @@ SheetNormals estimateSheetNormals(const PointView& points, const Neighborhoods& 
                 (options.scan_scales ||
                  (options.scan_lines && detail::showsScanLines(points, nb, options.threads))) &&
                 detail::needsScanScales(points, nb, out.scale, options.threads);
+  if (more != nullptr && !out.traits.scan_scales) more->dropUnasked();
+  out.normals.resize(4 * n);
+  out.spacing.resize(n);
+  out.curvature.resize(n);
+  out.below.resize(n);
+  out.above.resize(n);
+  out.reliable.resize(n);
+  std::vector<float> lopsided(n, std::numeric_limits<float>::infinity());
+  parallelFor(n, options.threads, 30.0, [&](std::size_t i) {
+    out.spacing[i] = detail::meanDistance(points, nb, i, detail::kFirstRing);
+  });
   std::vector<std::uint8_t> done;
   if (out.traits.scan_scales) {
     done.resize(n);

@@ -65,8 +65,12 @@ const search::MedianHashIndex& PreparedCloud::index() {
 }
 
 void PreparedCloud::dropIndex() {
-  index_ = search::MedianHashIndex();
+  takeIndex();
+}
+
+search::MedianHashIndex PreparedCloud::takeIndex() {
   indexed_ = false;
+  return std::exchange(index_, search::MedianHashIndex());
 }
 
 int PreparedCloud::findNeighbors(int k, bool with_distances) {

@@ -60,6 +60,8 @@ class SEGORIENT_SEARCH_EXPORT PreparedCloud {
   const search::MedianHashIndex& index();
   /// Gives the index's memory back; it is built anew if it is asked for again.
   void dropIndex();
+  /// The same, for somebody else to keep; empty if it was not asked for before.
+  search::MedianHashIndex takeIndex();
 
   /// Fills the table of neighbours. \param k of each point, itself not counted; fewer where there
   /// are fewer points \return how many there are

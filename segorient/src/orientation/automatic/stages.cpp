@@ -48,8 +48,8 @@ void findNeighbors(PreparedCloud& cloud, const PipelineOptions& options, const S
     smoothed = projectOnPlanes(cloud.points(), cloud.index(), kDenoisingNeighbors, options.threads);
     search::indexOf({smoothed.data(), 4, cloud.size()}, options.threads)
         .nearestKAll(out.k + 1, of_smoothed, false);
+    cloud.dropIndex();
   }
-  cloud.dropIndex();
 }
 
 // Turns the segments as most of their points are.
@@ -105,7 +105,7 @@ AutoStages runAutoStages(PreparedCloud& cloud, const PipelineOptions& options,
   FinishedSegments finished;
   finished.options = segmentation::inUnitOf(cloud, {options.segmentation});
   finished.options.threads = options.threads;
-  MoreNeighbors more(points, options.threads);
+  MoreNeighbors more(points, options.threads, cloud.takeIndex());
   static_cast<AutoNormals&>(out) =
       orientPoints(more, table, settings, hints, options.threads, begin, record, &finished);
   out.segmentation = std::move(finished.segmentation);
