@@ -120,10 +120,13 @@ struct Around {
   const pcl::index_t* row;
   std::size_t count;
   std::size_t used = std::min(count, kAround);
+  std::size_t step = used > 0 && count % used == 0 ? count / used : 0;  // 0 = not always the same
 
   Around(const Neighborhoods& nb, std::size_t i)
       : row(nb.indices(i)), count(static_cast<std::size_t>(std::max(nb.count(i) - 1, 0))) {}
-  pcl::index_t operator()(std::size_t j) const { return row[1 + j * count / used]; }
+  pcl::index_t operator()(std::size_t j) const {
+    return row[1 + (step > 0 ? j * step : j * count / used)];
+  }
 };
 
 /// Of some points, the points around each, these themselves first.

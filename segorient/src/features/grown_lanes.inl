@@ -96,26 +96,35 @@ void fitGrown(const LocalFitJob& job, const int* sizes, std::size_t count, std::
   }
 }
 
-/// See findMedians(). \param order what to compare, two by two, so that all are sorted then
-void mediansOf(const float* values, std::size_t count, const SortingPairs& order, float* medians) {
-  Lanes sorted[kMostSorted];
+inline void exchange(Lanes& less, Lanes& more) {
+  const Lanes a = less;
+  less = smaller(a, more);
+  more = larger(a, more);
+}
+
+/// Whatever is compared is known when this is compiled, so that all values stay in registers.
+template <std::size_t... kPair>
+SEGORIENT_INLINED inline void sortLanes(Lanes* values, std::index_sequence<kPair...> /*pairs*/) {
+  (exchange(values[kSortingPairs[kPair].first], values[kSortingPairs[kPair].second]), ...);
+}
+
+/// See findMedians().
+void mediansOf(const float* values, std::size_t count, float* medians) {
   for (std::size_t i = 0; i < GrownPlanes::kRows; i += kWidth) {
     // What is missing comes last.
+    Lanes sorted[kMostMedian];
     Mask present{};
-    for (std::size_t j = 0; j < count; ++j) {
+    for (std::size_t j = 0; j < kMostMedian; ++j) {
+      sorted[j] = all(std::numeric_limits<float>::infinity());
+      if (j >= count) continue;
       const Lanes v = load(values + j * GrownPlanes::kRows + i);
       present -= v == v;
-      sorted[j] = select(v == v, v, all(std::numeric_limits<float>::infinity()));
+      sorted[j] = select(v == v, v, sorted[j]);
     }
-    for (const auto& [first, second] : order) {
-      const Lanes a = sorted[first];
-      const Lanes b = sorted[second];
-      sorted[first] = smaller(a, b);
-      sorted[second] = larger(a, b);
-    }
+    sortLanes(sorted, std::make_index_sequence<kSortingPairs.size()>());
     const Mask half = present / 2;
     Lanes median = all(std::numeric_limits<float>::quiet_NaN());
-    for (std::size_t j = 0; j <= count / 2; ++j) {
+    for (std::size_t j = 0; j <= kMostMedian / 2; ++j) {
       const Mask here = (half == static_cast<std::int32_t>(j)) & (present > 0);
       median = select(here, sorted[j], median);
     }

@@ -3,6 +3,7 @@
 #include "features/grown_planes.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <limits>
@@ -16,30 +17,48 @@
 namespace segorient::detail {
 namespace {
 
-// Most values that medians are taken of: as many as there are wide registers.
-constexpr std::size_t kMostSorted = 32;
-using SortingPairs = std::vector<std::pair<std::uint8_t, std::uint8_t>>;
-
-// Merging by odd and even places (Knuth, The Art of Computer Programming, vol. 3,
-// algorithm 5.2.2M).
-SortingPairs sortingPairs(std::size_t count) {
-  SortingPairs out;
+// What to compare, two by two, so that all are sorted then: merging by odd and even places (Knuth,
+// The Art of Computer Programming, vol. 3, algorithm 5.2.2M).
+// \param take gets each pair
+template <typename Take>
+constexpr void forEachSortingPair(std::size_t count, Take&& take) {
   std::size_t half = 1;
   while (2 * half < count) half *= 2;
   for (std::size_t p = half; p > 0; p /= 2) {
-    std::size_t q = half;
     std::size_t r = 0;
-    for (std::size_t d = p;; d = q - p, q /= 2, r = p) {
+    std::size_t d = p;
+    for (std::size_t q = half; q >= p; q /= 2) {
       for (std::size_t i = 0; i + d < count; ++i) {
-        if ((i & p) == r) {
-          out.emplace_back(static_cast<std::uint8_t>(i), static_cast<std::uint8_t>(i + d));
-        }
+        if ((i & p) == r) take(i, i + d);
       }
-      if (q == p) break;
+      d = q - p;
+      r = p;
     }
   }
+}
+
+constexpr std::size_t countSortingPairs() {
+  std::size_t pairs = 0;
+  forEachSortingPair(kMostMedian, [&pairs](std::size_t, std::size_t) { ++pairs; });
+  return pairs;
+}
+
+struct SortingPair {
+  std::size_t first = 0, second = 0;
+};
+
+constexpr auto listSortingPairs() {
+  std::array<SortingPair, countSortingPairs()> out{};
+  std::size_t size = 0;
+  forEachSortingPair(kMostMedian, [&](std::size_t first, std::size_t second) {
+    out[size].first = first;
+    out[size++].second = second;
+  });
   return out;
 }
+
+// By the algorithm above.
+constexpr auto kSortingPairs = listSortingPairs();
 
 }  // namespace
 
@@ -80,7 +99,7 @@ void fitGrownPlanes(const LocalFitJob& job, const int* sizes, std::size_t count,
 }
 
 void findMedians(const float* values, std::size_t count, float* medians) {
-  chooseKernels().medians_of(values, count, sortingPairs(count), medians);
+  chooseKernels().medians_of(values, count, medians);
 }
 
 }  // namespace segorient::detail

@@ -40,10 +40,13 @@ SEGORIENT_FEATURES_EXPORT void fitGrownPlanes(const LocalFitJob& job, const int*
                                               std::size_t count, std::size_t begin, std::size_t end,
                                               GrownPlanes* planes);
 
+/// Most values that findMedians() takes: a point and 22 around it.
+constexpr std::size_t kMostMedian = 23;
+
 /// Medians of several values of each of GrownPlanes::kRows points: of an even number the larger of
 /// the two in the middle.
-/// \param count 32 at most \param values the j-th of point i at [j * kRows + i]; NaN where there is
-/// none \param medians one a point; NaN where there is no value
+/// \param count kMostMedian at most \param values the j-th of point i at [j * kRows + i]; NaN where
+/// there is none \param medians one a point; NaN where there is no value
 void findMedians(const float* values, std::size_t count, float* medians);
 
 }  // namespace segorient::detail

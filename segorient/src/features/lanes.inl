@@ -44,11 +44,22 @@ inline Lanes all(float value) {
 inline Lanes select(Mask condition, Lanes yes, Lanes no) {
   return SEGORIENT_CHOSEN(condition, yes, no);
 }
+// The second one where they are equal or not numbers.
 inline Lanes larger(Lanes a, Lanes b) {
+#if SEGORIENT_LANES == 16
+  return SEGORIENT_BITS_AS(
+      Lanes, _mm512_maskz_max_ps(0xffff, reinterpret_cast<__m512>(a), reinterpret_cast<__m512>(b)));
+#else
   return SEGORIENT_CHOSEN(a > b, a, b);
+#endif
 }
 inline Lanes smaller(Lanes a, Lanes b) {
+#if SEGORIENT_LANES == 16
+  return SEGORIENT_BITS_AS(
+      Lanes, _mm512_maskz_min_ps(0xffff, reinterpret_cast<__m512>(a), reinterpret_cast<__m512>(b)));
+#else
   return SEGORIENT_CHOSEN(a < b, a, b);
+#endif
 }
 inline Lanes absolute(Lanes a) {
   return SEGORIENT_BITS_AS(Lanes, SEGORIENT_BITS_AS(Mask, a) & 0x7fffffff);

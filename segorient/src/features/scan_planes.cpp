@@ -50,19 +50,20 @@ class FittedPoints {
   std::size_t size() const { return size_; }
   bool full() const { return size_ == GrownPlanes::kRows; }
 
-  // \param row of the table, whose planes are at [i] of some
-  // \return the variances, which others ask for
-  Scales<6>::Values add(pcl::index_t point, const Neighborhoods& table, std::size_t row,
-                        const Scales<6>::Planes& planes, std::size_t i) {
-    const Around around(table, row);
-    around_.set(size_, point, around.used, around);
-    const Scales<6>::Fits fits = Scales<6>::fitsAt(planes, i);
-    width2_[size_] = fits.width2;
-    for (std::size_t s = 0; s < planes_.size(); ++s) {
-      copyRow(planes[first_ + s], i, planes_[s], size_);
+  // Points [begin, end) of a region in place of those that there were.
+  // \param table of the region \param planes of these points \param noise2 gets their variances
+  void assign(const std::vector<pcl::index_t>& points, const Neighborhoods& table,
+              std::size_t begin, std::size_t end, const Scales<6>::Planes& planes,
+              FastVector<Scales<6>::Values>& noise2) {
+    clear();
+    std::copy(planes.begin() + static_cast<std::ptrdiff_t>(first_), planes.end(), planes_.begin());
+    for (std::size_t at = begin; at < end; ++at, ++size_) {
+      const Around around(table, at);
+      around_.set(size_, points[at], around.used, around);
+      const Scales<6>::Fits fits = Scales<6>::fitsAt(planes, size_);
+      width2_[size_] = fits.width2;
+      noise2[static_cast<std::size_t>(points[at])] = fits.noise2;
     }
-    ++size_;
-    return fits.noise2;
   }
   // Takes point i of some others out of these.
   void take(FittedPoints& others, std::size_t i) {
@@ -177,10 +178,9 @@ class ScanPlanes {
       const std::size_t end = std::min(rows.size(), begin + GrownPlanes::kRows);
       fitGrownPlanes(job, kMany.sizes.data(), kMany.sizes.size(), begin, end, planes->data());
       Block block = emptyBlock();
+      block->assign(rows, table, begin, end, *planes, noise2_);
       for (std::size_t i = begin; i < end; ++i) {
-        const auto point = static_cast<std::size_t>(rows[i]);
-        noise2_[point] = block->add(rows[i], table, i, *planes, i - begin);
-        fitted_[point].store(true, std::memory_order_release);
+        fitted_[static_cast<std::size_t>(rows[i])].store(true, std::memory_order_release);
       }
       blocks.push_back(std::move(block));
     }
