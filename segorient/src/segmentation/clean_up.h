@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "features/point_set.h"
 #include "segmentation/growth_state.h"
 #include "segmentation/region_growing.h"
 #include "segmentation/small_adjacency.h"
@@ -40,6 +41,10 @@ class CleanUp {
     std::int32_t label;
     std::uint32_t points;
   };
+  struct Room {
+    detail::PointSet seen;      ///< all points around
+    detail::PointSet admitted;  ///< that lie in the surface of one of the segment's points
+  };
   struct Hosts {
     std::vector<Count> counts;
     std::uint32_t total = 0;  ///< points around, in its surface or not
@@ -50,7 +55,7 @@ class CleanUp {
   }
   bool isFace(std::int32_t label) const { return state_.isFace(label, small_size_); }
   static void add(std::int32_t label, std::uint32_t points, std::vector<Count>& counts);
-  void listHosts(std::int32_t label, std::vector<std::uint32_t>& room, Hosts& hosts) const;
+  void listHosts(std::int32_t label, Room& room, Hosts& hosts) const;
   std::int32_t bestHost(std::int32_t label, const Hosts& hosts);
   std::int32_t joinedTo(std::int32_t label);
   void join(std::int32_t from, std::int32_t into);

@@ -39,12 +39,15 @@ void CleanUp::add(std::int32_t label, std::uint32_t points, std::vector<Count>& 
   }
 }
 
-void CleanUp::listHosts(std::int32_t label, std::vector<std::uint32_t>& room, Hosts& hosts) const {
+void CleanUp::listHosts(std::int32_t label, Room& room, Hosts& hosts) const {
   hosts.counts.clear();
   hosts.total = 0;
-  adjacency_.forEachAround(label, room, [&](std::size_t q, bool admissible) {
-    ++hosts.total;
-    if (admissible) add(state_.labels[q], 1, hosts.counts);
+  room.seen.clear();
+  room.admitted.clear();
+  adjacency_.forEachAround(label, [&](std::size_t p, std::size_t q) {
+    if (room.seen.insert(q)) ++hosts.total;
+    if (!state_.joins(q, p) || !room.admitted.insert(q)) return;
+    add(state_.labels[q], 1, hosts.counts);
   });
 }
 
@@ -114,7 +117,7 @@ std::size_t CleanUp::absorbSmall() {
     first_turns[size] = by_size[size].size();
   }
   std::vector<Hosts> listed(std::min(kListed, order.size()));
-  std::vector<std::uint32_t> room;
+  Room room;
   Hosts own;
   std::size_t turn = 0;
   for (std::uint32_t size = 1; size < small_size_; ++size) {
@@ -123,8 +126,8 @@ std::size_t CleanUp::absorbSmall() {
         const std::size_t count = std::min(kListed, order.size() - turn);
         parallelFor(
             count, options_.threads, timeOfEach(order.size(), adjacency_.size(), kPointTime),
-            [] { return std::vector<std::uint32_t>(); },
-            [&](std::size_t h, std::vector<std::uint32_t>& of_thread) {
+            [] { return Room(); },
+            [&](std::size_t h, Room& of_thread) {
               listHosts(order[turn + h], of_thread, listed[h]);
             });
       }

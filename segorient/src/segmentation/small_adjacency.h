@@ -75,24 +75,14 @@ class SmallAdjacency {
     }
   }
 
-  /// visit(point, admissible) once for each point around a small segment; `admissible` if it lies
-  /// in the surface of at least one point of the segment. From several threads, each with a room of
-  /// its own.
+  /// visit(point, neighbour) for each neighbour of a small segment's points in another segment.
   template <typename Visit>
-  void forEachAround(std::int32_t label, std::vector<std::uint32_t>& room, Visit&& visit) const {
-    room.clear();
+  void forEachAround(std::int32_t label, Visit&& visit) const {
     for (std::uint32_t s = heads_[static_cast<std::size_t>(label)]; s != kNone; s = next_[s]) {
       const std::size_t p = point(s);
       forEachNeighbor(s, [&](std::size_t q) {
-        if (state_.labels[q] == label) return;
-        room.push_back(static_cast<std::uint32_t>(2 * q + (state_.joins(q, p) ? 0 : 1)));
+        if (state_.labels[q] != label) visit(p, q);
       });
-    }
-    std::sort(room.begin(), room.end());
-    std::uint32_t last = kNone;
-    for (const std::uint32_t entry : room) {
-      if (entry / 2 != last) visit(std::size_t{entry / 2}, entry % 2 == 0);
-      last = entry / 2;
     }
   }
 
