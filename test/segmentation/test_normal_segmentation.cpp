@@ -285,15 +285,50 @@ TEST(NormalSegmentation, ColorsAreOfTheLabel) {
 }
 
 /// A quarter of a cylinder of radius 1, points in a grid, true normals.
-void cylinder(pcl::PointCloud<pcl::PointXYZ>& cloud, pcl::PointCloud<pcl::Normal>& normals) {
-  for (int i = 0; i < 60; ++i) {
-    for (int j = 0; j < 40; ++j) {
-      const float angle = 1.5F * static_cast<float>(i) / 59.F;
-      cloud.push_back({std::cos(angle), std::sin(angle), 0.025F * static_cast<float>(j)});
-      normals.push_back({std::cos(angle), std::sin(angle), 0.F});
+class OnACylinder : public testing::Test {
+ protected:
+  OnACylinder() {
+    for (int i = 0; i < 60; ++i) {
+      for (int j = 0; j < 40; ++j) {
+        const float angle = 1.5F * static_cast<float>(i) / 59.F;
+        cloud->push_back({std::cos(angle), std::sin(angle), 0.025F * static_cast<float>(j)});
+        normals->push_back({std::cos(angle), std::sin(angle), 0.F});
+      }
+    }
+    s.setInputCloud(cloud);
+    s.setInputNormals(normals);
+  }
+  void growByAlphaAlone() {
+    s.setReferenceThreshold(2.F);
+    s.setSmoothnessThreshold(0.3F);
+    s.setUniteSmooth(false);
+  }
+  void leaveAsGrown() {
+    s.setAbsorbSmall(false);
+    s.setExtractEdges(false);
+    s.setConnectSmall(false);
+    s.setSettleEdges(false);
+  }
+  void expectFacesWithinAlphaOfTheirSeeds() {
+    std::vector<pcl::PointIndices> clusters;
+    s.extract(clusters);
+    EXPECT_GE(clusters.size(), 3U) << "1.5 in parts of at most .6";
+    for (const pcl::PointIndices& cluster : clusters) {
+      float low = 9.F;
+      float high = -9.F;
+      for (const pcl::index_t i : cluster.indices) {
+        const auto& p = (*cloud)[static_cast<std::size_t>(i)];
+        low = std::min(low, std::atan2(p.y, p.x));
+        high = std::max(high, std::atan2(p.y, p.x));
+      }
+      EXPECT_LE(high - low, 2.F * 0.3F + 1e-3F);
     }
   }
-}
+
+  const pcl::PointCloud<pcl::PointXYZ>::Ptr cloud{new pcl::PointCloud<pcl::PointXYZ>};
+  const pcl::PointCloud<pcl::Normal>::Ptr normals{new pcl::PointCloud<pcl::Normal>};
+  Segmenter s;
+};
 
 std::size_t facesOf(Segmenter& s) {
   std::vector<pcl::PointIndices> clusters;
@@ -301,71 +336,30 @@ std::size_t facesOf(Segmenter& s) {
   return clusters.size();
 }
 
-TEST(NormalSegmentation, SmoothModeAndResidualAsInRegionGrowing) {
-  const auto cloud = pcl::make_shared<pcl::PointCloud<pcl::PointXYZ>>();
-  const auto normals = pcl::make_shared<pcl::PointCloud<pcl::Normal>>();
-  cylinder(*cloud, *normals);
-  Segmenter s;
-  s.setInputCloud(cloud);
-  s.setInputNormals(normals);
-  s.setReferenceThreshold(2.F);  // alpha alone
-  s.setSmoothnessThreshold(0.3F);
-  s.setUniteSmooth(false);
+TEST_F(OnACylinder, SmoothModeAndResidualAsInRegionGrowing) {
+  growByAlphaAlone();
   EXPECT_EQ(facesOf(s), 1U) << "from neighbour to neighbour it is one face";
   s.setSmoothModeFlag(false);
-  std::vector<pcl::PointIndices> clusters;
-  s.extract(clusters);
-  EXPECT_GE(clusters.size(), 3U) << "1.5 in parts of at most .6";
-  for (const pcl::PointIndices& cluster : clusters) {
-    float low = 9.F;
-    float high = -9.F;
-    for (const pcl::index_t i : cluster.indices) {
-      const auto& p = (*cloud)[static_cast<std::size_t>(i)];
-      low = std::min(low, std::atan2(p.y, p.x));
-      high = std::max(high, std::atan2(p.y, p.x));
-    }
-    EXPECT_LE(high - low, 2.F * 0.3F + 1e-3F);
-  }
+  expectFacesWithinAlphaOfTheirSeeds();
   s.setSmoothModeFlag(true);
   s.setResidualTestFlag(true);  // a neighbour is off the tangent plane by .0003 to .003
   s.setResidualThreshold(0.1F);
   EXPECT_EQ(facesOf(s), 1U);
-  s.setAbsorbSmall(false);
-  s.setExtractEdges(false);
-  s.setConnectSmall(false);
-  s.setSettleEdges(false);
+  leaveAsGrown();
   s.setResidualThreshold(1e-5F);
   EXPECT_GE(facesOf(s), 12U) << "no farther than to the next columns";
 }
 
 // What a test parted must not be united again because its border is smooth.
-TEST(NormalSegmentation, UnitingHeedsTheTests) {
-  const auto cloud = pcl::make_shared<pcl::PointCloud<pcl::PointXYZ>>();
-  const auto normals = pcl::make_shared<pcl::PointCloud<pcl::Normal>>();
-  cylinder(*cloud, *normals);
+TEST_F(OnACylinder, UnitingHeedsTheTests) {
   for (std::size_t i = 0; i < cloud->size(); ++i) {  // three columns in the middle are rough
     const float angle = std::atan2((*cloud)[i].y, (*cloud)[i].x);
     (*normals)[i].curvature = angle > 0.7F && angle < 0.77F ? 0.2F : 0.01F;
   }
-  Segmenter s;
-  s.setInputCloud(cloud);
-  s.setInputNormals(normals);
   EXPECT_EQ(facesOf(s), 1U) << "parted by beta alone";
   s.setSmoothModeFlag(false);
   s.setSmoothnessThreshold(0.3F);
-  std::vector<pcl::PointIndices> clusters;
-  s.extract(clusters);
-  EXPECT_GE(clusters.size(), 3U);
-  for (const pcl::PointIndices& cluster : clusters) {
-    float low = 9.F;
-    float high = -9.F;
-    for (const pcl::index_t i : cluster.indices) {
-      const auto& p = (*cloud)[static_cast<std::size_t>(i)];
-      low = std::min(low, std::atan2(p.y, p.x));
-      high = std::max(high, std::atan2(p.y, p.x));
-    }
-    EXPECT_LE(high - low, 2.F * 0.3F + 1e-3F);
-  }
+  expectFacesWithinAlphaOfTheirSeeds();
   s.setSmoothModeFlag(true);
   s.setCurvatureThreshold(0.1F);
   EXPECT_GE(facesOf(s), 2U);
@@ -430,26 +424,16 @@ TEST(NormalSegmentation, BareGrowingIsThatOfRegionGrowing) {
   EXPECT_GE(sizes.size(), 4U) << "the settings make a difference";
 }
 
-TEST(NormalSegmentation, ResidualIsInTheUnitOfTheCloud) {
-  const auto cloud = pcl::make_shared<pcl::PointCloud<pcl::PointXYZ>>();
-  const auto normals = pcl::make_shared<pcl::PointCloud<pcl::Normal>>();
-  cylinder(*cloud, *normals);
+TEST_F(OnACylinder, ResidualIsInTheUnitOfTheCloud) {
+  growByAlphaAlone();
+  leaveAsGrown();
+  s.setResidualTestFlag(true);
   for (const float unit : {1e-3F, 1.F, 1e3F}) {
     const auto scaled = pcl::make_shared<pcl::PointCloud<pcl::PointXYZ>>(*cloud);
     for (pcl::PointXYZ& p : *scaled) {
       for (float* v : {&p.x, &p.y, &p.z}) *v *= unit;
     }
-    Segmenter s;
     s.setInputCloud(scaled);
-    s.setInputNormals(normals);
-    s.setReferenceThreshold(2.F);  // alpha alone
-    s.setSmoothnessThreshold(0.3F);
-    s.setUniteSmooth(false);
-    s.setAbsorbSmall(false);
-    s.setExtractEdges(false);
-    s.setConnectSmall(false);
-    s.setSettleEdges(false);
-    s.setResidualTestFlag(true);
     s.setResidualThreshold(0.1F * unit);
     EXPECT_EQ(facesOf(s), 1U) << unit;
     s.setResidualThreshold(1e-5F * unit);
@@ -457,13 +441,7 @@ TEST(NormalSegmentation, ResidualIsInTheUnitOfTheCloud) {
   }
 }
 
-TEST(NormalSegmentation, SettingsWithoutAMeaningGiveNoSegments) {
-  const auto cloud = pcl::make_shared<pcl::PointCloud<pcl::PointXYZ>>();
-  const auto normals = pcl::make_shared<pcl::PointCloud<pcl::Normal>>();
-  cylinder(*cloud, *normals);
-  Segmenter s;
-  s.setInputCloud(cloud);
-  s.setInputNormals(normals);
+TEST_F(OnACylinder, SettingsWithoutAMeaningGiveNoSegments) {
   s.setNumberOfNeighbours(0);
   EXPECT_EQ(s.getNumberOfNeighbours(), 0U);
   EXPECT_EQ(facesOf(s), 0U);
@@ -478,13 +456,7 @@ TEST(NormalSegmentation, SettingsWithoutAMeaningGiveNoSegments) {
   EXPECT_GE(facesOf(s), 1U);
 }
 
-TEST(NormalSegmentation, ExtractSeesWhatChangedInPlace) {
-  const auto cloud = pcl::make_shared<pcl::PointCloud<pcl::PointXYZ>>();
-  const auto normals = pcl::make_shared<pcl::PointCloud<pcl::Normal>>();
-  cylinder(*cloud, *normals);
-  Segmenter s;
-  s.setInputCloud(cloud);
-  s.setInputNormals(normals);
+TEST_F(OnACylinder, ExtractSeesWhatChangedInPlace) {
   EXPECT_GE(facesOf(s), 1U);
   for (auto& n : *normals) n.normal_x = std::numeric_limits<float>::quiet_NaN();
   EXPECT_EQ(facesOf(s), 0U);

@@ -65,12 +65,12 @@ class NormalSegmentation : public pcl::PCLBase<PointT> {
                   std::size_t nb_cols) override;
 
   /// Unit normals with curvature, one a point of the cloud; signs do not matter.
-  void setInputNormals(const NormalConstPtr& normals);
+  void setInputNormals(const NormalConstPtr& normals) { set(normals_, normals); }
   NormalConstPtr getInputNormals() const { return normals_; }
 
   /// Search to take neighbours from; null (default) for the all-points search of
   /// search::MedianHash.
-  void setSearchMethod(const KdTreePtr& search);
+  void setSearchMethod(const KdTreePtr& search) { set(search_, search); }
   KdTreePtr getSearchMethod() const { return search_; }
 
   /// Ready neighbourhoods of the whole cloud (row = point), so that neighbours are found once; null
@@ -84,83 +84,83 @@ class NormalSegmentation : public pcl::PCLBase<PointT> {
   unsigned int getNumberOfNeighbours() const { return neighbors_; }
 
   /// Alpha: largest angle between the normals of two neighbours; default 20 degrees, in radians.
-  void setSmoothnessThreshold(float alpha);
+  void setSmoothnessThreshold(float alpha) { set(options_.alpha, alpha); }
   float getSmoothnessThreshold() const { return options_.alpha; }
 
   /// Beta: largest angle between a point's normal and the segment's reference normal; default 30
   /// degrees. A right angle or more: no such limit.
-  void setReferenceThreshold(float beta);
+  void setReferenceThreshold(float beta) { set(options_.beta, beta); }
   float getReferenceThreshold() const { return options_.beta; }
 
   /// Epsilon: by how much the clean-up may exceed beta; default 10 degrees.
-  void setReferenceTolerance(float epsilon);
+  void setReferenceTolerance(float epsilon) { set(options_.epsilon, epsilon); }
   float getReferenceTolerance() const { return options_.epsilon; }
 
   /// Points of higher curvature join a segment but do not pass it on, nor are segments united
   /// across them; default: no limit.
-  void setCurvatureThreshold(float curvature);
+  void setCurvatureThreshold(float curvature) { set(options_.max_curvature, curvature); }
   float getCurvatureThreshold() const { return options_.max_curvature; }
 
   /// Whether the curvature threshold is used; default true. Unlike in PCL, this does not switch the
   /// residual test on when it is switched off, nor the other way round.
-  void setCurvatureTestFlag(bool value);
+  void setCurvatureTestFlag(bool value) { set(curvature_test_, value); }
   bool getCurvatureTestFlag() const { return curvature_test_; }
 
   /// Points farther than this off the tangent plane of the point that they are reached from join a
   /// segment but do not pass it on, nor are segments united there; in the cloud's unit of length,
   /// default 0.05. Not above 0 while the test is on: no segments, as in PCL.
-  void setResidualThreshold(float residual);
+  void setResidualThreshold(float residual) { set(residual_, residual); }
   float getResidualThreshold() const { return residual_; }
 
   /// Whether the residual threshold is used; default false.
-  void setResidualTestFlag(bool value);
+  void setResidualTestFlag(bool value) { set(residual_test_, value); }
   bool getResidualTestFlag() const { return residual_test_; }
 
   /// True (default): a normal is compared with that of the neighbour that it is reached from,
   /// false: with that of the segment's first point; segments are then not united. Beta is looked at
   /// in any case.
-  void setSmoothModeFlag(bool value);
+  void setSmoothModeFlag(bool value) { set(options_.compare_with_seed, !value); }
   bool getSmoothModeFlag() const { return !options_.compare_with_seed; }
 
   /// Segments with fewer points are small: the clean-up works on them; default 20.
-  void setSmallSegmentSize(std::size_t points);
+  void setSmallSegmentSize(std::size_t points) { set(options_.small_size, points); }
   std::size_t getSmallSegmentSize() const { return options_.small_size; }
 
   /// Pass 1: share of the surrounding points that a segment must hold to take a small one in;
   /// default 0.4.
-  void setNeighborShare(float share);
+  void setNeighborShare(float share) { set(options_.neighbor_share, share); }
   float getNeighborShare() const { return options_.neighbor_share; }
 
   /// Neighbours farther apart than this many local spacings are none; default 2.5, 0 = no limit.
-  void setMaximumGap(float spacings);
+  void setMaximumGap(float spacings) { set(options_.max_gap, spacings); }
   float getMaximumGap() const { return options_.max_gap; }
 
   /// Points farther than this many local spacings off the tangent plane are not reached; default
   /// 0.5, 0 = no limit. Raised by itself on noisy clouds, see SegmentationOptions::max_offset.
-  void setMaximumOffset(float spacings);
+  void setMaximumOffset(float spacings) { set(options_.max_offset, spacings); }
   float getMaximumOffset() const { return options_.max_offset; }
 
   /// Points along sharp edges go to the segment whose flat part, continued, passes nearest; default
   /// true.
-  void setSettleEdges(bool value);
+  void setSettleEdges(bool value) { set(options_.settle_edges, value); }
   bool getSettleEdges() const { return options_.settle_edges; }
 
   /// Clean-up pass 1: a small segment joins the neighbouring one that agrees with it best; default
   /// true. What it did: getReport().absorbed.
-  void setAbsorbSmall(bool value);
+  void setAbsorbSmall(bool value) { set(options_.absorb_small, value); }
   bool getAbsorbSmall() const { return options_.absorb_small; }
   /// Pass 2: points of small segments join regular ones one by one; default true. What it did:
   /// getReport().extracted.
-  void setExtractEdges(bool value);
+  void setExtractEdges(bool value) { set(options_.extract_edges, value); }
   bool getExtractEdges() const { return options_.extract_edges; }
   /// Pass 3: small segments that touch become connected ones; without it they stay isolated.
   /// Default true. What it did: getReport().connected.
-  void setConnectSmall(bool value);
+  void setConnectSmall(bool value) { set(options_.connect_small, value); }
   bool getConnectSmall() const { return options_.connect_small; }
 
   /// Whether segments that only beta parted become one face again; default true. What it did:
   /// getReport().united.
-  void setUniteSmooth(bool value);
+  void setUniteSmooth(bool value) { set(unite_smooth_, value); }
   bool getUniteSmooth() const { return unite_smooth_; }
 
   /// Segments that extract() leaves out: those of fewer points (default 1) or more (default: no
@@ -224,7 +224,17 @@ class NormalSegmentation : public pcl::PCLBase<PointT> {
  private:
   bool segment();
   bool settingsAreGood() const;
-  void outdated();
+  void outdated() {
+    if (!done_) return;
+    result_.clear();
+    done_ = false;
+  }
+  /// Changes what segments depend on.
+  template <typename T>
+  void set(T& setting, const T& value) {
+    setting = value;
+    outdated();
+  }
   CloudSegmentation::Search searchFunction();
   template <typename ColoredT>
   typename pcl::PointCloud<ColoredT>::Ptr colored() const;

@@ -13,13 +13,6 @@
 namespace segorient {
 
 template <typename PointT, typename NormalT>
-void NormalSegmentation<PointT, NormalT>::outdated() {
-  if (!done_) return;
-  result_.clear();
-  done_ = false;
-}
-
-template <typename PointT, typename NormalT>
 void NormalSegmentation<PointT, NormalT>::setInputCloud(const PointCloudConstPtr& cloud) {
   Base::setInputCloud(cloud);
   outdated();
@@ -53,18 +46,6 @@ void NormalSegmentation<PointT, NormalT>::setIndices(std::size_t row_start, std:
 }
 
 template <typename PointT, typename NormalT>
-void NormalSegmentation<PointT, NormalT>::setInputNormals(const NormalConstPtr& normals) {
-  normals_ = normals;
-  outdated();
-}
-
-template <typename PointT, typename NormalT>
-void NormalSegmentation<PointT, NormalT>::setSearchMethod(const KdTreePtr& search) {
-  search_ = search;
-  outdated();
-}
-
-template <typename PointT, typename NormalT>
 void NormalSegmentation<PointT, NormalT>::setNeighborhoods(
     const std::shared_ptr<const Neighborhoods>& neighborhoods) {
   result_.clear();  // it may refer to the old table
@@ -76,108 +57,6 @@ template <typename PointT, typename NormalT>
 void NormalSegmentation<PointT, NormalT>::setNumberOfNeighbours(unsigned int neighbors) {
   constexpr auto kMost = static_cast<unsigned int>(std::numeric_limits<int>::max() - 1);
   neighbors_ = std::min(neighbors, kMost);
-  outdated();
-}
-
-template <typename PointT, typename NormalT>
-void NormalSegmentation<PointT, NormalT>::setSmoothnessThreshold(float alpha) {
-  options_.alpha = alpha;
-  outdated();
-}
-
-template <typename PointT, typename NormalT>
-void NormalSegmentation<PointT, NormalT>::setReferenceThreshold(float beta) {
-  options_.beta = beta;
-  outdated();
-}
-
-template <typename PointT, typename NormalT>
-void NormalSegmentation<PointT, NormalT>::setReferenceTolerance(float epsilon) {
-  options_.epsilon = epsilon;
-  outdated();
-}
-
-template <typename PointT, typename NormalT>
-void NormalSegmentation<PointT, NormalT>::setCurvatureThreshold(float curvature) {
-  options_.max_curvature = curvature;
-  outdated();
-}
-
-template <typename PointT, typename NormalT>
-void NormalSegmentation<PointT, NormalT>::setCurvatureTestFlag(bool value) {
-  curvature_test_ = value;
-  outdated();
-}
-
-template <typename PointT, typename NormalT>
-void NormalSegmentation<PointT, NormalT>::setResidualThreshold(float residual) {
-  residual_ = residual;
-  outdated();
-}
-
-template <typename PointT, typename NormalT>
-void NormalSegmentation<PointT, NormalT>::setResidualTestFlag(bool value) {
-  residual_test_ = value;
-  outdated();
-}
-
-template <typename PointT, typename NormalT>
-void NormalSegmentation<PointT, NormalT>::setSmoothModeFlag(bool value) {
-  options_.compare_with_seed = !value;
-  outdated();
-}
-
-template <typename PointT, typename NormalT>
-void NormalSegmentation<PointT, NormalT>::setSmallSegmentSize(std::size_t points) {
-  options_.small_size = points;
-  outdated();
-}
-
-template <typename PointT, typename NormalT>
-void NormalSegmentation<PointT, NormalT>::setNeighborShare(float share) {
-  options_.neighbor_share = share;
-  outdated();
-}
-
-template <typename PointT, typename NormalT>
-void NormalSegmentation<PointT, NormalT>::setMaximumGap(float spacings) {
-  options_.max_gap = spacings;
-  outdated();
-}
-
-template <typename PointT, typename NormalT>
-void NormalSegmentation<PointT, NormalT>::setMaximumOffset(float spacings) {
-  options_.max_offset = spacings;
-  outdated();
-}
-
-template <typename PointT, typename NormalT>
-void NormalSegmentation<PointT, NormalT>::setAbsorbSmall(bool value) {
-  options_.absorb_small = value;
-  outdated();
-}
-
-template <typename PointT, typename NormalT>
-void NormalSegmentation<PointT, NormalT>::setExtractEdges(bool value) {
-  options_.extract_edges = value;
-  outdated();
-}
-
-template <typename PointT, typename NormalT>
-void NormalSegmentation<PointT, NormalT>::setConnectSmall(bool value) {
-  options_.connect_small = value;
-  outdated();
-}
-
-template <typename PointT, typename NormalT>
-void NormalSegmentation<PointT, NormalT>::setSettleEdges(bool value) {
-  options_.settle_edges = value;
-  outdated();
-}
-
-template <typename PointT, typename NormalT>
-void NormalSegmentation<PointT, NormalT>::setUniteSmooth(bool value) {
-  unite_smooth_ = value;
   outdated();
 }
 
