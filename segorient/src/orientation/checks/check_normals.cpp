@@ -231,19 +231,6 @@ void Check::sortPlaces() {
 
 }  // namespace
 
-const char* toString(NormalFault fault) {
-  switch (fault) {
-    case NormalFault::SENSOR:
-      return "sensor";
-    case NormalFault::SURFACE:
-      return "surface";
-    case NormalFault::INSIDE_OUT:
-      return "inside_out";
-    default:
-      return "none";
-  }
-}
-
 NormalCheck checkNormals(const PointView& points, const std::vector<float>& normals,
                          const OrientedCloud& ours, const OrientationHints& hints, int threads) {
   if (normals.size() != 3 * points.size || ours.normals.size() != 4 * points.size ||

@@ -180,6 +180,10 @@ SensorReport detail::sensorsOf(const PointView& points, PreparedCloud& cloud,
   return out;
 }
 
+bool SensorReport::sure() const {
+  return std::any_of(sensors.begin(), sensors.end(), [](const FoundSensor& s) { return s.sure; });
+}
+
 SensorReport findSensors(const PointView& points, const SensorOptions& options) {
   PreparedCloud cloud(points, nullptr, options.threads);
   detail::SeenShadows shadows;

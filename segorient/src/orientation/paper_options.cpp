@@ -2,30 +2,7 @@
 // Copyright (c) 2026, the segorient authors
 #include <segorient/orientation/pipeline.h>
 
-#include <array>
-
 namespace segorient {
-namespace {
-
-constexpr std::array<const char*, 6> kNames{"auto",     "propagation", "boundary",
-                                            "combined", "extremal",    "hoppe"};
-
-}  // namespace
-
-const char* toString(OrientationMethod method) {
-  const auto i = static_cast<std::size_t>(method);
-  return i < kNames.size() ? kNames[i] : "unknown";
-}
-
-bool fromString(const std::string& name, OrientationMethod& method) {
-  for (std::size_t i = 0; i < kNames.size(); ++i) {
-    if (name == kNames[i]) {
-      method = static_cast<OrientationMethod>(i);
-      return true;
-    }
-  }
-  return false;
-}
 
 OrientationOptions paperOptions(OrientationMethod method) {
   OrientationOptions options;
