@@ -2,6 +2,7 @@
 // Copyright (c) 2026, the segorient authors
 // Votes across borders at all dihedral angles, and the contraction of what they say.
 #include <gtest/gtest.h>
+#include <array>
 #include <random>
 
 #include "orientation/automatic/border_votes.h"
@@ -216,17 +217,21 @@ TEST(ClusterGraph, JoinsOnlyWhatTheRuleAllows) {
   EXPECT_EQ(graph.clusters().size(), 2U) << "both clusters are larger than 50 points";
 }
 
-// 0-1 and 1-2 meet on one sheet, 0-2 only across a wall, as the turns of a roll do.
-TEST(ClusterGraph, WallsHaveNoSayWhereClustersMeet) {
+// Of the borders 0-1, 0-2 and 1-2.
+std::vector<BorderVote> unanimousVotes(const std::array<float, 3>& weights) {
   std::vector<BorderVote> votes(3);
-  const std::int32_t ends[3][2] = {{0, 1}, {0, 2}, {1, 2}};
-  const float weights[3] = {20.F, -9.F, 60.F};
+  votes[1].b = votes[2].b = 2;
+  votes[0].b = votes[2].a = 1;
   for (std::size_t e = 0; e < 3; ++e) {
-    votes[e].a = ends[e][0];
-    votes[e].b = ends[e][1];
     votes[e].weight = weights[e];
     votes[e].absolute = votes[e].reliable = std::fabs(weights[e]);
   }
+  return votes;
+}
+
+// 0-1 and 1-2 meet on one sheet, 0-2 only across a wall, as the turns of a roll do.
+TEST(ClusterGraph, WallsHaveNoSayWhereClustersMeet) {
+  std::vector<BorderVote> votes = unanimousVotes({20.F, -9.F, 60.F});
   ClusterGraph::Rule rule;
   rule.unanimity = 0.9F;
   rule.weight = 15.F;
@@ -247,17 +252,9 @@ TEST(ClusterGraph, WallsHaveNoSayWhereClustersMeet) {
 
 TEST(ClusterGraph, OneRuleOfSeveralSuffices) {
   // 0-1 and 1-2 are long and of one mind, but of few reliable points; 0-2 is short and lies.
-  std::vector<BorderVote> votes(3);
-  const std::int32_t ends[3][2] = {{0, 1}, {0, 2}, {1, 2}};
-  const float weights[3] = {40.F, -7.F, 60.F};
-  const float reliable[3] = {16.F, 7.F, 20.F};
-  for (std::size_t e = 0; e < 3; ++e) {
-    votes[e].a = ends[e][0];
-    votes[e].b = ends[e][1];
-    votes[e].weight = weights[e];
-    votes[e].absolute = std::fabs(weights[e]);
-    votes[e].reliable = reliable[e];
-  }
+  std::vector<BorderVote> votes = unanimousVotes({40.F, -7.F, 60.F});
+  votes[0].reliable = 16.F;
+  votes[2].reliable = 20.F;
   ClusterGraph::Rule sure;
   sure.weight = 4.F;
   sure.reliable = 0.5F;
@@ -284,16 +281,7 @@ TEST(ClusterGraph, OneRuleOfSeveralSuffices) {
 
 TEST(ClusterGraph, ParallelBordersAddUpWithTheirSigns) {
   // 0-1 is sure; 2 agrees with 0 by 3 and disagrees with 1 by 5.
-  std::vector<BorderVote> votes(3);
-  const std::int32_t ends[3][2] = {{0, 1}, {0, 2}, {1, 2}};
-  const float weights[3] = {20.F, 3.F, -5.F};
-  for (std::size_t e = 0; e < 3; ++e) {
-    votes[e].a = ends[e][0];
-    votes[e].b = ends[e][1];
-    votes[e].weight = weights[e];
-    votes[e].absolute = std::fabs(weights[e]);
-  }
-  ClusterGraph graph({1, 1, 1}, votes);
+  ClusterGraph graph({1, 1, 1}, unanimousVotes({20.F, 3.F, -5.F}));
   ClusterGraph::Rule sure;
   sure.weight = 10.F;
   graph.contract({sure});

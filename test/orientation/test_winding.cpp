@@ -256,7 +256,9 @@ TEST(LooseParts, AreFoundByTheirBorders) {
     AutomaticOptions options;
     options.turn_loose_parts = by_winding;
     const AutoOrientation out =
-        orientSheets(viewOf(bands.ball.xyz), table, field, segmentation, options);
+        orientSheets(viewOf(bands.ball.xyz), table, field, segmentation,
+                     borderVotes(viewOf(bands.ball.xyz), table, field, segmentation),
+                     bands.ball.xyz.size() / 3, options);
     EXPECT_EQ(out.result.segments[0].sign, 1);
     EXPECT_EQ(out.result.segments[1].sign, 1);
     EXPECT_EQ(out.result.segments[2].sign, by_winding ? 1 : -1);
@@ -294,7 +296,9 @@ TEST(LooseParts, MayBeTheLargest) {
   for (const bool by_winding : {false, true}) {
     AutomaticOptions options;
     options.turn_loose_parts = by_winding;
-    const AutoOrientation out = orientSheets(viewOf(ball.xyz), table, field, segmentation, options);
+    const AutoOrientation out = orientSheets(
+        viewOf(ball.xyz), table, field, segmentation,
+        borderVotes(viewOf(ball.xyz), table, field, segmentation), ball.xyz.size() / 3, options);
     for (std::size_t s = 0; s < 4; ++s) {
       EXPECT_EQ(out.result.segments[s].sign, s == 2 && !by_winding ? -1 : 1) << s << by_winding;
     }

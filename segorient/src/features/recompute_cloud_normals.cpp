@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "common/refers_to.h"
 #include "features/recompute_normals.h"
 #include "search/prepared_cloud.h"
 
@@ -25,18 +26,6 @@ RecomputationReport repeat(const PointView& points, const Neighborhoods& neighbo
   return sum;
 }
 
-bool refersTo(const Neighborhoods& neighborhoods, std::size_t size) {
-  if (neighborhoods.size() != size) return false;
-  for (std::size_t r = 0; r < size; ++r) {
-    const pcl::index_t* row = neighborhoods.indices(r);
-    const bool good = std::all_of(row, row + neighborhoods.count(r), [&](pcl::index_t q) {
-      return q >= 0 && static_cast<std::size_t>(q) < size;
-    });
-    if (!good) return false;
-  }
-  return true;
-}
-
 }  // namespace
 
 RecomputationReport recomputeCloudNormals(const PointView& points,
@@ -48,7 +37,7 @@ RecomputationReport recomputeCloudNormals(const PointView& points,
                                           std::vector<float>& normals) {
   if (labels.size() != points.size || normals.size() != 4 * points.size) return {};
   if (neighborhoods) {
-    if (!refersTo(*neighborhoods, points.size)) return {};
+    if (neighborhoods->size() != points.size || !refersTo(*neighborhoods, points.size)) return {};
     return repeat(points, *neighborhoods, regular, options, rounds, labels, normals);
   }
   PreparedCloud cloud(points, &indices, options.threads);

@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "common/parallel_for.h"
+#include "common/refers_to.h"
 #include "features/local_fit_job.h"
 #include "search/prepared_cloud.h"
 
@@ -177,12 +178,7 @@ bool estimateNormalsFromTable(const PointView& input, const pcl::Indices& indice
                               LocalCurvature* curvatures) {
   const std::size_t rows = neighborhoods.size();
   if (rows != indices.size() && rows != input.size) return false;
-  for (std::size_t r = 0; r < rows; ++r) {
-    const pcl::index_t* row = neighborhoods.indices(r);
-    for (int j = 0; j < neighborhoods.count(r); ++j) {
-      if (!isRow(row[j], surface.size)) return false;
-    }
-  }
+  if (!refersTo(neighborhoods, surface.size)) return false;
   const bool by_index = rows == indices.size();
   const detail::FourFloats xyz(surface);
   const PointView points{xyz.data(), 4, surface.size};

@@ -91,16 +91,15 @@ SheetNormals estimateSheetNormals(const PointView& points, const Neighborhoods& 
   const NoiseLevel noise =
       options.known ? options.known->noise : measureNoise(points, nb, options.threads);
   out.traits.noise = noise;
-  out.noise = noise.fine;
   const std::size_t smallest = smallestScale(noise.fine);
-  out.scale = kSheetScales[smallest];
+  const int scale = kSheetScales[smallest];
   out.traits.scan_scales =
       options.known
           ? options.known->scan_scales
           : !noise.thin &&
                 (options.scan_scales ||
                  (options.scan_lines && detail::showsScanLines(points, nb, options.threads))) &&
-                detail::needsScanScales(points, nb, out.scale, options.threads);
+                detail::needsScanScales(points, nb, scale, options.threads);
   if (more != nullptr && !out.traits.scan_scales) more->dropUnasked();
   out.normals.resize(4 * n);
   out.spacing.resize(n);
@@ -116,7 +115,7 @@ SheetNormals estimateSheetNormals(const PointView& points, const Neighborhoods& 
   if (out.traits.scan_scales) {
     done.resize(n);
     detail::MoreNeighbors own(points, options.threads);
-    detail::fitScanPlanes(more != nullptr ? *more : own, out.scale, options.threads,
+    detail::fitScanPlanes(more != nullptr ? *more : own, scale, options.threads,
                           [&](std::size_t i, const GrownPlanes& planes, std::size_t r) {
                             const Plane p = planes.at(r, out.spacing[i]);
                             store({p, p.variation(), {}, false}, i, out, lopsided);

@@ -66,9 +66,7 @@ struct SheetNormals {
                              ///< -infinity where there is no wall below
   std::vector<float> above;  ///< upper end; infinity where there is none above
   std::vector<std::uint8_t> reliable;  ///< 1 where the fit is central and as good as most
-  float noise = 0.F;                   ///< see NoiseLevel::fine
   float residual = 0.F;                ///< median residual of the final fits, in spacings
-  int scale = 0;                       ///< smallest neighbourhood that the noise allowed
   SheetTraits traits;                  ///< as measured, or as told
 };
 

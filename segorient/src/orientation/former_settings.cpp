@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026, the segorient authors
-#include "orientation/former_settings.h"
-
 #include <segorient/common/export.h>
+
+#include "orientation/pipeline_stages.h"
 
 SEGORIENT_DEPRECATED_BEGIN
 namespace segorient {

@@ -20,19 +20,11 @@
 namespace segorient {
 namespace {
 
+// More neighbours cost time and memory and say nothing more about who borders whom.
+constexpr int kMostNeighbors = 128;
+
 int defaultNeighbors(const OrientationOptions& options) {
   return options.method == OrientationMethod::AUTO ? kSheetNeighbors : 12;
-}
-
-void findNeighbors(PreparedCloud& cloud, int wanted, const PointSearch& search) {
-  // More neighbours cost time and memory and say nothing more about who borders whom.
-  constexpr int kMostNeighbors = 128;
-  const int k = std::min(kMostNeighbors, wanted);
-  if (search) {
-    cloud.findNeighbors(k, search);
-  } else {
-    cloud.findNeighbors(k);
-  }
 }
 
 bool labelsInRange(const Segmentation& segmentation, std::size_t rows) {
@@ -96,7 +88,7 @@ OrientedSegmentation orientSegmentation(const PointView& points, const NormalVie
     unitVector(&point_normals[4 * i], &point_normals[4 * i]);
   }
   const NormalView normal_view{point_normals.data(), 4, cloud.size()};
-  findNeighbors(cloud, k > 0 ? k : defaultNeighbors(options), search);
+  cloud.findNeighbors(std::min(kMostNeighbors, k > 0 ? k : defaultNeighbors(options)), search);
   const Neighborhoods& neighborhoods = cloud.neighborhoods();
 
   const bool automatic = options.method == OrientationMethod::AUTO;

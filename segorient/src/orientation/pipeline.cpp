@@ -12,7 +12,6 @@
 #include "common/peak_memory.h"
 #include "features/automatic_normals.h"
 #include "features/sheet_normals.h"
-#include "orientation/former_settings.h"
 #include "orientation/pipeline_stages.h"
 #include "orientation/sensors/sensor_hints.h"
 #include "orientation/stage_clock.h"

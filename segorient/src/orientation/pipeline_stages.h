@@ -11,6 +11,9 @@
 
 namespace segorient::detail {
 
+/// The options with those of version 1.0 that were set in the places that they have now.
+PipelineOptions withFormerSettings(const PipelineOptions& options);
+
 /// What the stages of orientCloud() find out about the distinct points of a cloud: normals and
 /// segments oriented, and how.
 struct OrientedStages {

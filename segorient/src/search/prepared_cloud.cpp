@@ -82,6 +82,7 @@ int PreparedCloud::findNeighbors(int k, bool with_distances) {
 }
 
 int PreparedCloud::findNeighbors(int k, const PointSearch& search) {
+  if (!search) return findNeighbors(k);
   const std::size_t others = size() > 0 ? size() - 1 : 0;
   const int most = static_cast<int>(std::min(static_cast<std::size_t>(std::max(k, 0)), others));
   searchNeighborhoods(cloud_, search, most + 1, table_);

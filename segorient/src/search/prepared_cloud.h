@@ -66,8 +66,8 @@ class SEGORIENT_SEARCH_EXPORT PreparedCloud {
   /// Fills the table of neighbours. \param k of each point, itself not counted; fewer where there
   /// are fewer points \return how many there are
   int findNeighbors(int k, bool with_distances = true);
-  /// The same by a user's search on the input, asked for first rows. Repeated points are one
-  /// neighbour.
+  /// The same by a user's search on the input, if there is one, asked for first rows. Repeated
+  /// points are one neighbour.
   int findNeighbors(int k, const PointSearch& search);
   /// One row a point, the point itself first; empty before findNeighbors().
   const Neighborhoods& neighborhoods() const { return table_; }

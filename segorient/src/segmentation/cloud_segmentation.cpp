@@ -5,9 +5,9 @@
 #include <algorithm>
 #include <array>
 #include <limits>
-#include <type_traits>
 
 #include "common/bulk_bounds.h"
+#include "common/refers_to.h"
 #include "search/prepared_cloud.h"
 #include "segmentation/region_growing.h"
 #include "segmentation/segment_graph.h"
@@ -15,28 +15,6 @@
 
 namespace segorient {
 namespace {
-
-// Whether every entry is a point of the cloud: a table of another cloud may not lead out of this
-// one.
-bool fits(const Neighborhoods& table, std::size_t points) {
-  if (table.size() != points) return false;
-  // Negative ones are too large as well.
-  using Unsigned = std::make_unsigned_t<pcl::index_t>;
-  const auto outside = [&](const pcl::index_t* entries, std::size_t count) {
-    bool any = false;
-    for (std::size_t i = 0; i < count; ++i)
-      any |= static_cast<Unsigned>(entries[i]) >= static_cast<Unsigned>(points);
-    return any;
-  };
-  bool full = true;
-  for (std::size_t row = 0; row < points && full; ++row) full = table.count(row) == table.k();
-  // Nearly always all rows are full, so that the entries follow one another.
-  if (full) return !outside(table.indices(0), points * static_cast<std::size_t>(table.k()));
-  for (std::size_t row = 0; row < points; ++row) {
-    if (outside(table.indices(row), static_cast<std::size_t>(table.count(row)))) return false;
-  }
-  return true;
-}
 
 void copyNormal(const NormalView& normals, std::size_t i, float* to) {
   std::copy_n(normals[i], 3, to);
@@ -85,8 +63,8 @@ bool CloudSegmentation::compute(const Input& input, const SegmentationOptions& o
 }
 
 bool CloudSegmentation::computeWithTable(const Input& input, const SegmentationOptions& options) {
-  if (!fits(*input.table, input.points.size)) return false;
   const std::size_t size = input.points.size;
+  if (input.table->size() != size || !refersTo(*input.table, size)) return false;
   std::vector<bool> chosen(size, input.indices == nullptr);
   for (std::size_t i = 0; input.indices != nullptr && i < input.indices->size(); ++i) {
     const pcl::index_t row = (*input.indices)[i];
@@ -114,12 +92,8 @@ bool CloudSegmentation::computeWithTable(const Input& input, const SegmentationO
 
 void CloudSegmentation::computePrepared(const Input& input, const SegmentationOptions& options) {
   cloud_ = std::make_shared<PreparedCloud>(input.points, input.indices, options.threads);
-  if (input.search) {
-    cloud_->findNeighbors(neighbors_, input.search);
-  } else {
-    cloud_->findNeighbors(neighbors_);
-    cloud_->dropIndex();
-  }
+  cloud_->findNeighbors(neighbors_, input.search);
+  cloud_->dropIndex();
   const std::vector<float> normals = segmentation::gatherNormals(*cloud_, input.normals);
   SegmentationOptions used = segmentation::inUnitOf(*cloud_, options);
   used.neighbors = neighbors_;

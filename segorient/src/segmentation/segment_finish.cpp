@@ -69,16 +69,12 @@ void measure(const PointView& points, const GrowthState& state, Segmentation& re
 
 Segmentation rank(const GrowthState& state, std::vector<std::int32_t> labels,
                   std::vector<std::int8_t> signs) {
-  std::size_t count = 0;
   std::vector<std::uint32_t> sizes;
   sizes.reserve(state.clusters.size());
   for (const Cluster& cluster : state.clusters) sizes.push_back(cluster.size);
-  const std::vector<std::int32_t> ranks = rankLabels(labels, sizes, count);
   Segmentation result;
-  result.segments.resize(count);
-  for (std::size_t s = 0; s < ranks.size(); ++s) {
-    if (ranks[s] < 0) continue;
-    Segment& segment = result.segments[static_cast<std::size_t>(ranks[s])];
+  for (const std::size_t s : rankLabels(sizes, labels)) {
+    Segment& segment = result.segments.emplace_back();
     const NormalSum& n = state.clusters[s].normal;
     const double length = std::sqrt(n.squaredNorm());
     if (length > 0.0) {
@@ -88,9 +84,6 @@ Segmentation rank(const GrowthState& state, std::vector<std::int32_t> labels,
     }
     segment.kind = state.kinds[s];
     segment.size = state.clusters[s].size;
-  }
-  for (std::int32_t& label : labels) {
-    if (label >= 0) label = ranks[static_cast<std::size_t>(label)];
   }
   result.labels = std::move(labels);
   result.signs = std::move(signs);

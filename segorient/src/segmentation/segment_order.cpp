@@ -6,8 +6,8 @@
 
 namespace segorient::segmentation {
 
-std::vector<std::int32_t> rankLabels(const std::vector<std::int32_t>& labels,
-                                     const std::vector<std::uint32_t>& sizes, std::size_t& count) {
+std::vector<std::size_t> rankLabels(const std::vector<std::uint32_t>& sizes,
+                                    std::vector<std::int32_t>& labels) {
   std::vector<std::size_t> smallest(sizes.size(), labels.size());
   for (std::size_t p = labels.size(); p-- > 0;) {
     if (labels[p] >= 0) smallest[static_cast<std::size_t>(labels[p])] = p;
@@ -21,8 +21,10 @@ std::vector<std::int32_t> rankLabels(const std::vector<std::int32_t>& labels,
   });
   std::vector<std::int32_t> rank(sizes.size(), -1);
   for (std::size_t r = 0; r < order.size(); ++r) rank[order[r]] = static_cast<std::int32_t>(r);
-  count = order.size();
-  return rank;
+  for (std::int32_t& label : labels) {
+    if (label >= 0) label = rank[static_cast<std::size_t>(label)];
+  }
+  return order;
 }
 
 }  // namespace segorient::segmentation

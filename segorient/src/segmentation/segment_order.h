@@ -10,10 +10,9 @@
 
 namespace segorient::segmentation {
 
-/// Final label of each provisional one, -1 for those without points: descending size, equal sizes
-/// by smallest member.
-SEGORIENT_SEGMENTATION_EXPORT std::vector<std::int32_t> rankLabels(
-    const std::vector<std::int32_t>& labels, const std::vector<std::uint32_t>& sizes,
-    std::size_t& count);
+/// Makes provisional labels final ones: by descending size, equal sizes by smallest member.
+/// \return the provisional label of each final one
+SEGORIENT_SEGMENTATION_EXPORT std::vector<std::size_t> rankLabels(
+    const std::vector<std::uint32_t>& sizes, std::vector<std::int32_t>& labels);
 
 }  // namespace segorient::segmentation

@@ -108,4 +108,18 @@ BlueNoise thinOut(const PointView& points, float radius) {
   return out;
 }
 
+std::vector<float> meanPlaces(const PointView& points, const BlueNoise& cells) {
+  std::vector<float> places(4 * cells.kept.size(), 0.F);
+  std::vector<float> counts(cells.kept.size(), 0.F);
+  for (std::size_t i = 0; i < points.size; ++i) {
+    const std::size_t c = cells.cell_of[i];
+    for (std::size_t a = 0; a < 3; ++a) places[4 * c + a] += points[i][a];
+    counts[c] += 1.F;
+  }
+  for (std::size_t c = 0; c < counts.size(); ++c) {
+    for (std::size_t a = 0; a < 3; ++a) places[4 * c + a] /= counts[c];
+  }
+  return places;
+}
+
 }  // namespace segorient::detail

@@ -23,4 +23,7 @@ struct BlueNoise {
 /// \param radius nothing is kept if it is not above 1e-12, as floats cannot tell then
 BlueNoise thinOut(const PointView& points, float radius);
 
+/// Of each cell, where its points are in the mean: 4 floats, the last is 0.
+std::vector<float> meanPlaces(const PointView& points, const BlueNoise& cells);
+
 }  // namespace segorient::detail

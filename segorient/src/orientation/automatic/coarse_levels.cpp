@@ -148,15 +148,7 @@ CoarseLevel makeLevel(const PointView& points, float radius, int threads, const 
   CoarseLevel level;
   const BlueNoise even = thinOut(points, radius);
   if (even.kept.empty()) return level;
-  std::vector<float> places(4 * even.kept.size(), 0.F);
-  for (std::size_t i = 0; i < points.size; ++i) {
-    float* place = &places[std::size_t{4} * even.cell_of[i]];
-    for (std::size_t a = 0; a < 3; ++a) place[a] += points[i][a];
-    place[3] += 1.F;
-  }
-  for (std::size_t c = 0; c < even.kept.size(); ++c) {
-    for (std::size_t a = 0; a < 3; ++a) places[4 * c + a] /= places[4 * c + 3];
-  }
+  const std::vector<float> places = meanPlaces(points, even);
   const Bounds of_points = frame != nullptr ? *frame : bulkBounds(points, threads);
   level.cloud = PreparedCloud({places.data(), 4, places.size() / 4}, nullptr, threads, &of_points);
   if (level.cloud.size() == 0) return level;

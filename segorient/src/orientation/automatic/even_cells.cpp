@@ -34,24 +34,18 @@ EvenCells gatherCells(const PointView& points, const std::vector<float>& normals
   BlueNoise cells = thinOut(points, radius);
   const std::size_t n = cells.kept.size();
   if (n == 0) return out;
+  out.places = meanPlaces(points, cells);
   out.cell_of = std::move(cells.cell_of);
-  out.places.assign(4 * n, 0.F);
   out.normals.assign(4 * n, 0.F);
-  std::vector<float> counts(n, 0.F);
   for (std::size_t i = 0; i < points.size; ++i) {
-    const std::size_t c = out.cell_of[i];
-    counts[c] += 1.F;
-    for (std::size_t a = 0; a < 3; ++a) out.places[4 * c + a] += points[i][a];
     if (!isFinite(&normals[4 * i])) continue;
-    for (std::size_t a = 0; a < 3; ++a) out.normals[4 * c + a] += normals[4 * i + a];
+    float* sum = &out.normals[std::size_t{4} * out.cell_of[i]];
+    for (std::size_t a = 0; a < 3; ++a) sum[a] += normals[4 * i + a];
   }
   for (std::size_t c = 0; c < n; ++c) {
     float* m = &out.normals[4 * c];
     const float length = std::sqrt(dot(m, m));
-    for (std::size_t a = 0; a < 3; ++a) {
-      out.places[4 * c + a] /= counts[c];
-      m[a] = length > 0.F ? m[a] / length : 0.F;
-    }
+    for (std::size_t a = 0; a < 3; ++a) m[a] = length > 0.F ? m[a] / length : 0.F;
   }
   search::indexOf(out.points(), threads).nearestKAll(kAround, out.around, false);
   for (std::size_t c = 0; c < n; ++c) out.areas.push_back(cellArea(out.points(), out.around, c));

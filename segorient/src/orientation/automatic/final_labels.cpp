@@ -94,20 +94,12 @@ void rankAgain(Segmentation& segmentation) {
   for (const std::int32_t label : segmentation.labels) {
     if (label >= 0) ++sizes[static_cast<std::size_t>(label)];
   }
-  std::size_t count = 0;
-  const std::vector<std::int32_t> ranks =
-      segmentation::rankLabels(segmentation.labels, sizes, count);
-  std::vector<Segment> segments(count);
-  for (std::size_t s = 0; s < ranks.size(); ++s) {
-    if (ranks[s] < 0) continue;
-    Segment& segment = segments[static_cast<std::size_t>(ranks[s])];
-    segment = segmentation.segments[s];
-    segment.size = sizes[s];
+  std::vector<Segment> segments;
+  for (const std::size_t s : segmentation::rankLabels(sizes, segmentation.labels)) {
+    segments.push_back(segmentation.segments[s]);
+    segments.back().size = sizes[s];
   }
   segmentation.segments = std::move(segments);
-  for (std::int32_t& label : segmentation.labels) {
-    if (label >= 0) label = ranks[static_cast<std::size_t>(label)];
-  }
 }
 
 }  // namespace

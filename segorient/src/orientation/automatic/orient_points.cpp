@@ -82,7 +82,9 @@ AutoNormals orientAtOneScale(MoreNeighbors& more, const Neighborhoods& neighborh
     out.orientation =
         record != nullptr && record->known
             ? record->known(segments)
-            : orientSheets(points, neighborhoods, field, segments, settings, hints, threads);
+            : orientSheets(points, neighborhoods, field, segments,
+                           borderVotes(points, neighborhoods, field, segments, threads),
+                           points.size, settings, hints, threads);
     if (record != nullptr) {
       if (!record->known) {
         record->votes =

@@ -11,15 +11,6 @@ namespace segorient {
 
 AutoOrientation orientSheets(const PointView& points, const Neighborhoods& neighborhoods,
                              const SheetField& field, const Segmentation& segmentation,
-                             const AutomaticOptions& options, const PointHints& hints,
-                             int threads) {
-  return orientSheets(points, neighborhoods, field, segmentation,
-                      borderVotes(points, neighborhoods, field, segmentation, threads), points.size,
-                      options, hints, threads);
-}
-
-AutoOrientation orientSheets(const PointView& points, const Neighborhoods& neighborhoods,
-                             const SheetField& field, const Segmentation& segmentation,
                              std::vector<BorderVote> votes, std::size_t count,
                              const AutomaticOptions& options, const PointHints& hints,
                              int threads) {

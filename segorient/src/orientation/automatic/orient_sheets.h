@@ -47,18 +47,14 @@ struct AutoOrientation {
 /// turned outward by the winding number, and where that says nothing (a plane), to +z; parts whose
 /// borders hardly tell are turned over where the winding number says so clearly; hints then go
 /// before all that as OrientationHints says.
-AutoOrientation orientSheets(const PointView& points, const Neighborhoods& neighborhoods,
-                             const SheetField& field, const Segmentation& segmentation,
-                             const AutomaticOptions& options = {}, const PointHints& hints = {},
-                             int threads = 0);
-
-/// The same where the votes are known already, as they are of a cloud that was worked on in parts.
+///
 /// \param points each may stand for several of the cloud's, of one segment
 /// \param neighborhoods needed only if hints name sensors
+/// \param votes see borderVotes()
 /// \param count how many points the cloud has; sizes of segments are counted in these
 SEGORIENT_ORIENTATION_EXPORT AutoOrientation
 orientSheets(const PointView& points, const Neighborhoods& neighborhoods, const SheetField& field,
              const Segmentation& segmentation, std::vector<BorderVote> votes, std::size_t count,
-             const AutomaticOptions& options, const PointHints& hints, int threads = 0);
+             const AutomaticOptions& options = {}, const PointHints& hints = {}, int threads = 0);
 
 }  // namespace segorient

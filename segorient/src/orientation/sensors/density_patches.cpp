@@ -108,14 +108,7 @@ DensityPatches atScale(const PointView& points, const search::MedianHashIndex& i
   for (std::size_t i = 0; i < pieces.size(); ++i) {
     const Piece& piece = pieces[i];
     if (!piece.flat || !std::isfinite(piece.log_density)) continue;
-    out.x.push_back(piece.center[0]);
-    out.y.push_back(piece.center[1]);
-    out.z.push_back(piece.center[2]);
-    out.nx.push_back(piece.normal[0]);
-    out.ny.push_back(piece.normal[1]);
-    out.nz.push_back(piece.normal[2]);
-    out.log_density.push_back(piece.log_density);
-    out.point.push_back(sample.rows[i]);
+    out.add(piece.center.data(), piece.normal.data(), piece.log_density, sample.rows[i]);
   }
   out.setSparsity();
   out.flat = static_cast<float>(out.size()) / static_cast<float>(pieces.size());
@@ -128,6 +121,18 @@ DensityPatches atScale(const PointView& points, const search::MedianHashIndex& i
 }
 
 }  // namespace
+
+void DensityPatches::add(const float* center, const float* normal, float density,
+                         std::size_t of_point) {
+  x.push_back(center[0]);
+  y.push_back(center[1]);
+  z.push_back(center[2]);
+  nx.push_back(normal[0]);
+  ny.push_back(normal[1]);
+  nz.push_back(normal[2]);
+  log_density.push_back(density);
+  point.push_back(of_point);
+}
 
 void DensityPatches::setSparsity() {
   const float middle = median(log_density);
@@ -142,15 +147,10 @@ DensityPatches DensityPatches::thinned(std::size_t count) const {
   out.spacing = spacing;
   out.reach = reach;
   for (const std::size_t i : EveryNth(size(), std::max<std::size_t>(1, count))) {
-    out.x.push_back(x[i]);
-    out.y.push_back(y[i]);
-    out.z.push_back(z[i]);
-    out.nx.push_back(nx[i]);
-    out.ny.push_back(ny[i]);
-    out.nz.push_back(nz[i]);
-    out.log_density.push_back(log_density[i]);
+    const float center[3] = {x[i], y[i], z[i]};
+    const float normal[3] = {nx[i], ny[i], nz[i]};
+    out.add(center, normal, log_density[i], point[i]);
     out.sparsity.push_back(sparsity[i]);
-    out.point.push_back(point[i]);
   }
   return out;
 }

@@ -25,6 +25,9 @@ struct DensityPatches {
 
   std::size_t size() const { return x.size(); }
 
+  /// Appends a piece, without its sparsity.
+  void add(const float* center, const float* normal, float density, std::size_t of_point);
+
   /// Fills `sparsity` from `log_density`.
   void setSparsity();
 

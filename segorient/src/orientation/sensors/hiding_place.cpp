@@ -27,9 +27,8 @@ HidingPlace lookFrom(const PointView& points, const std::array<float, 3>& place,
   std::iota(rows.begin(), rows.end(), 0U);
   Scan scan(points, rows, place, nullptr, threads);
   const std::vector<std::uint8_t> hidden = scan.hidden(false);
-  const auto count = std::accumulate(hidden.begin(), hidden.end(), std::size_t{0});
   HidingPlace out;
-  out.report.hidden = static_cast<float>(count) / static_cast<float>(hidden.size());
+  out.report.hidden = shareOf(hidden);
   out.report.position = place;
   out.report.points = points.size;
   out.report.density = scan.density().ratio;

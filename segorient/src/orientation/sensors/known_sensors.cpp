@@ -135,11 +135,7 @@ class Finder {
     const Scan::Density density = scan.density();
     report.density = density.ratio;
     std::vector<std::uint8_t> hidden = scan.hidden(false);
-    const auto share = [](const std::vector<std::uint8_t>& flags) {
-      const auto count = std::accumulate(flags.begin(), flags.end(), std::size_t{0});
-      return static_cast<float>(count) / static_cast<float>(flags.size());
-    };
-    report.hidden = share(hidden);
+    report.hidden = shareOf(hidden);
     // Of what was not seen from one place, the part nearest to it may have such a density, too.
     const bool hides = report.hidden > kMostHidden;
     if (report.density < kConfirmed && !(out_.common && hides && !hints_.place_found)) {
@@ -260,7 +256,6 @@ KnownSensors findKnownSensors(const PointView& points, const Neighborhoods& neig
     believed.toward = hints.toward;
     return believed;
   }
-  if (hints.sensors.empty() && !hints.has_viewpoint) return {};
   return Finder(points, neighborhoods, spacing, hints, threads).run();
 }
 

@@ -9,6 +9,7 @@
 #include <numeric>
 #include <utility>
 
+#include "common/median.h"
 #include "common/parallel_for.h"
 #include "orientation/sensors/sampling_law.h"
 #include "orientation/sensors/shares.h"
@@ -113,14 +114,12 @@ class TrackModel {
     }
     logs_ = mixed_;
     takeLogs(logs_);
-    order_ = logs_;
-    const auto middle = order_.begin() + static_cast<std::ptrdiff_t>(n / 2);
-    std::nth_element(order_.begin(), middle, order_.end());
+    const float middle = median(logs_);
     inverse_.resize(n);
     lacking_.resize(n);
     for (std::size_t i = 0; i < n; ++i) {
       inverse_[i] = 1.F / mixed_[i];
-      lacking_[i] = std::clamp(*middle - logs_[i], -kDeviationCut, kDeviationCut);
+      lacking_[i] = std::clamp(middle - logs_[i], -kDeviationCut, kDeviationCut);
     }
   }
 
@@ -147,7 +146,6 @@ class TrackModel {
   std::vector<float> beams_;
   std::vector<float> mixed_;
   std::vector<float> logs_;
-  std::vector<float> order_;
   std::vector<float> inverse_;
   std::vector<float> lacking_;
 };

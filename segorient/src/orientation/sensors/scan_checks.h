@@ -6,6 +6,7 @@
 #include <segorient/common/point_view.h>
 #include <segorient/search/median_hash_index.h>
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -21,6 +22,12 @@ namespace segorient::detail {
 /// The plane of a point and others, in units of the mean distance to the six nearest.
 /// \param row indices, the point itself first, by distance
 Plane planeOf(const PointView& points, std::size_t i, const pcl::index_t* row, int count);
+
+/// Share of flags that are set.
+inline float shareOf(const std::vector<std::uint8_t>& flags) {
+  const auto count = std::count(flags.begin(), flags.end(), std::uint8_t{1});
+  return static_cast<float>(count) / static_cast<float>(flags.size());
+}
 
 /// Points that one sensor is said to have seen. Neighbours are those among themselves.
 class Scan {
