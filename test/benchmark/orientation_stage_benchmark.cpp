@@ -136,8 +136,7 @@ void timeStage(const std::string& name, const Cloud& cloud, int threads) {
       OrientationOptions options = all[m].options;
       options.threads = threads;
       times[m].push_back(seconds([&] {
-        const auto graph = segorient::buildSegmentGraph(segmentation, neighborhoods);
-        segorient::orientSegments(compact.view(), normal_view, neighborhoods, segmentation, graph,
+        segorient::orientSegments(compact.view(), normal_view, neighborhoods, segmentation,
                                   options);
       }));
     }

@@ -32,7 +32,7 @@ OrientationOptions paper(OrientationMethod method) {
 
 OrientationResult orient(const FaceSegments& faces, const OrientationOptions& options) {
   return orientSegments(faces.points(), faces.normalView(), faces.neighborhoods, faces.segmentation,
-                        buildSegmentGraph(faces.segmentation, faces.neighborhoods), options);
+                        options);
 }
 
 std::size_t countHard(const OrientationResult& result) {

@@ -59,16 +59,9 @@ void summarizeSegments(const Segmentation& segmentation, DecidedBy by, Orientati
 
 OrientationResult orientSegments(const PointView& points, const PointView& normals,
                                  const Neighborhoods& neighborhoods,
-                                 const Segmentation& segmentation, const SegmentGraph& graph,
+                                 const Segmentation& segmentation,
                                  const OrientationOptions& options) {
   OrientationResult result;
-  if (normals.size != points.size || neighborhoods.size() != points.size ||
-      segmentation.labels.size() != points.size) {
-    result.point_signs.assign(points.size, 0);
-    result.point_confidences.assign(points.size, 0.F);
-    result.point_components.assign(points.size, -1);
-    return result;
-  }
   if (options.method == OrientationMethod::HOPPE) {
     result = orientByPointTree(points, normals, neighborhoods);
     summarizeSegments(segmentation, DecidedBy::PROPAGATION, result);
@@ -76,7 +69,7 @@ OrientationResult orientSegments(const PointView& points, const PointView& norma
   }
 
   OrientedRegularSegments oriented =
-      orientRegularSegments(points, normals, neighborhoods, segmentation, graph, options);
+      orientRegularSegments(points, normals, neighborhoods, segmentation, options);
   result.segments = std::move(oriented.results);
 
   spreadToPoints(segmentation, result);

@@ -16,11 +16,9 @@ namespace segorient {
 ///
 /// \param normals 4 floats a row; the sign of each is arbitrary
 /// \param neighborhoods of every point
-/// \param graph of the segmentation, see buildSegmentGraph()
-/// \return all signs 0 if the sizes do not agree
 OrientationResult orientSegments(const PointView& points, const PointView& normals,
                                  const Neighborhoods& neighborhoods,
-                                 const Segmentation& segmentation, const SegmentGraph& graph,
+                                 const Segmentation& segmentation,
                                  const OrientationOptions& options);
 
 /// Results of those segments that have none: the sign that most of a segment's points have.

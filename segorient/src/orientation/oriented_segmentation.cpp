@@ -14,7 +14,6 @@
 #include "orientation/orient_segments.h"
 #include "search/prepared_cloud.h"
 #include "segmentation/region_growing.h"
-#include "segmentation/segment_graph.h"
 #include "segmentation/segmentation_rows.h"
 
 namespace segorient {
@@ -117,8 +116,7 @@ OrientedSegmentation orientSegmentation(const PointView& points, const NormalVie
   const OrientationResult of_distinct =
       automatic ? followNormals(cloud.points(), normal_view, neighborhoods, of_points,
                                 options.turn_outward, stages)
-                : orientSegments(cloud.points(), normal_view, neighborhoods, of_points,
-                                 buildSegmentGraph(of_points, neighborhoods), options);
+                : orientSegments(cloud.points(), normal_view, neighborhoods, of_points, options);
   out.orientation = scatter(cloud, normals, of_distinct);
   out.segmentation =
       segmentation != nullptr ? *segmentation : segmentation::scatter(cloud, of_points, &normals);

@@ -6,7 +6,6 @@
 #include "orientation/cloud_scale.h"
 #include "orientation/orient_segments.h"
 #include "orientation/pipeline_stages.h"
-#include "segmentation/segment_graph.h"
 
 namespace segorient::detail {
 namespace {
@@ -58,9 +57,8 @@ void runPaper(const PipelineOptions& options, StageClock& clock, OrientedStages&
   clock.begin("orientation", 0.8);
   const OrientationOptions how{options.orientation, options.threads};
   const Neighborhoods& neighborhoods = surface.cloud.neighborhoods();
-  const SegmentGraph graph = buildSegmentGraph(surface.segmentation, neighborhoods);
   work.orientation = orientSegments(surface.cloud.points(), surface.normalView(), neighborhoods,
-                                    surface.segmentation, graph, how);
+                                    surface.segmentation, how);
   applyOrientation(work);
 }
 

@@ -14,6 +14,7 @@
 #include "orientation/paper/segment_links.h"
 #include "orientation/paper/segment_relations.h"
 #include "orientation/paper/triangulated_boundary.h"
+#include "segmentation/segment_graph.h"
 
 namespace segorient {
 namespace {
@@ -146,7 +147,6 @@ void checkByExtremalPoints(const std::vector<ExtremalEvidence>& extremal,
 OrientedRegularSegments orientRegularSegments(const PointView& points, const PointView& normals,
                                               const Neighborhoods& neighborhoods,
                                               const Segmentation& segmentation,
-                                              const SegmentGraph& graph,
                                               const OrientationOptions& options) {
   const bool asks_extremal = options.method == OrientationMethod::COMBINED ||
                              options.method == OrientationMethod::EXTREMAL;
@@ -157,6 +157,7 @@ OrientedRegularSegments orientRegularSegments(const PointView& points, const Poi
   }
   // Propagation knows no borders to check by.
   const bool check = options.check_borders && options.method != OrientationMethod::PROPAGATION;
+  const SegmentGraph graph = buildSegmentGraph(segmentation, neighborhoods);
   Segmentation current = segmentation;  // mixed segments become connected ones here
   std::vector<std::int32_t> mixed;
   if (check) {

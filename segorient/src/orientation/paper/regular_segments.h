@@ -30,7 +30,6 @@ struct OrientedRegularSegments {
 OrientedRegularSegments orientRegularSegments(const PointView& points, const PointView& normals,
                                               const Neighborhoods& neighborhoods,
                                               const Segmentation& segmentation,
-                                              const SegmentGraph& graph,
                                               const OrientationOptions& options);
 
 }  // namespace segorient

@@ -72,6 +72,13 @@ std::optional<FittedPlace> trySuggestions(const DensityPatches& patches, float c
   return best;
 }
 
+// The one that saw all points.
+void setOnly(const FoundSensor& sensor, const char* why, SensorReport& out) {
+  out.sensors = {sensor};
+  std::fill(out.sensor_of.begin(), out.sensor_of.end(), 0);
+  out.why = why;
+}
+
 FoundSensor findStation(const DensityPatches& patches, float constant,
                         const SensorOptions& options) {
   const std::optional<FittedPlace> suggested = trySuggestions(patches, constant, options);
@@ -119,11 +126,10 @@ SensorReport searchSensors(PreparedCloud& cloud, const SensorOptions& options) {
     }
     return out;
   }
-  sensor.points = cloud.size();
-  out.sensor_of.assign(cloud.size(), 0);
-  out.why = sensor.suggested ? "the suggested place explains the densities"
-                             : "one place explains the densities";
-  out.sensors.push_back(sensor);
+  setOnly(sensor,
+          sensor.suggested ? "the suggested place explains the densities"
+                           : "one place explains the densities",
+          out);
   return out;
 }
 
@@ -135,19 +141,16 @@ void trySuggestedShadows(PreparedCloud& cloud, const SensorOptions& options,
   for (const std::array<float, 3>& suggestion : options.suggestions) {
     if (suggestion == seen.nothing_at) continue;
     const std::array<float, 3> s = cloud.inUnit(suggestion);
-    const auto shadows = detail::revealingShadows(cloud.points(), s, options.threads);
-    if (!shadows) continue;
-    seen.of_sensor = *shadows;
+    const detail::Shadows shadows = detail::findShadows(cloud.points(), s, options.threads, true);
+    if (!shadows.reveal()) continue;
+    seen.of_sensor = shadows;
     FoundSensor sensor;
     sensor.evidence = SensorEvidence::SHADOWS;
     sensor.position = s;
     sensor.suggested = true;
-    sensor.cost_ratio = shadows->coveredOfSteps();
+    sensor.cost_ratio = shadows.coveredOfSteps();
     sensor.sure = true;
-    sensor.points = cloud.size();
-    out.sensors = {sensor};
-    out.sensor_of.assign(cloud.size(), 0);
-    out.why = "surfaces end at the shadows that the suggested place casts";
+    setOnly(sensor, "surfaces end at the shadows that the suggested place casts", out);
     return;
   }
 }
@@ -160,9 +163,8 @@ SensorReport detail::sensorsOf(const PointView& points, PreparedCloud& cloud,
   std::optional<FoundSensor> camera;
   if (options.image_width > 0) camera = cameraOfImage(points, options.image_width);
   if (camera) {
-    out.sensors.push_back(*camera);
-    out.sensor_of.assign(cloud.size(), 0);
-    out.why = "the rays of the image meet in one place";
+    out.sensor_of.resize(cloud.size());
+    setOnly(*camera, "the rays of the image meet in one place", out);
   } else {
     SensorOptions scaled = options;
     for (std::array<float, 3>& s : scaled.suggestions) s = cloud.inUnit(s);

@@ -138,7 +138,6 @@ std::optional<FoundSensor> cameraOfImage(const PointView& points, std::size_t wi
     out.position[static_cast<std::size_t>(a)] = static_cast<float>(position[a]);
     out.axis[static_cast<std::size_t>(a)] = static_cast<float>(axis[a]);
   }
-  for (std::size_t i = 0; i < points.size; ++i) out.points += isFinite(points[i]) ? 1 : 0;
   // Of normalised pixels half are farther from the middle than 1.
   out.cost_ratio = static_cast<float>(errors.median);
   out.sure = true;

@@ -291,16 +291,10 @@ bool Shadows::allow() const {
   return steps > kFewSteps && covered < kAllowed * steps;
 }
 
-Shadows findShadows(const PointView& points, const std::array<float, 3>& place, int threads) {
+Shadows findShadows(const PointView& points, const std::array<float, 3>& place, int threads,
+                    bool to_reveal) {
   if (points.size == 0) return {};
-  return ShadowSearch(points, threads).run(place, 0.F);
-}
-
-std::optional<Shadows> revealingShadows(const PointView& points, const std::array<float, 3>& place,
-                                        int threads) {
-  if (points.size == 0) return std::nullopt;
-  const Shadows found = ShadowSearch(points, threads).run(place, kOpen);
-  return found.reveal() ? std::optional(found) : std::nullopt;
+  return ShadowSearch(points, threads).run(place, to_reveal ? kOpen : 0.F);
 }
 
 }  // namespace segorient::detail

@@ -6,7 +6,6 @@
 #include <segorient/common/point_view.h>
 
 #include <array>
-#include <optional>
 
 namespace segorient::detail {
 
@@ -40,12 +39,10 @@ struct Shadows {
 };
 
 /// \param place in the points' unit
+/// \param to_reveal whether it only matters that they reveal a sensor: of places that are enclosed,
+///        as most in bodies are, it is known without a look at any step that they do not
 SEGORIENT_ORIENTATION_EXPORT Shadows findShadows(const PointView& points,
-                                                 const std::array<float, 3>& place, int threads);
-
-/// The same, if they reveal a sensor. Of places that are enclosed, as most in bodies are, that is
-/// known without a look at any step.
-std::optional<Shadows> revealingShadows(const PointView& points, const std::array<float, 3>& place,
-                                        int threads);
+                                                 const std::array<float, 3>& place, int threads,
+                                                 bool to_reveal = false);
 
 }  // namespace segorient::detail
