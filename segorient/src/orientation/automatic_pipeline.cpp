@@ -38,38 +38,24 @@ std::string sheetChoice(const AutoStages& stages) {
   return text.str();
 }
 
-const OrientationHints& givenHints(const PipelineOptions& options) {
-  static const OrientationHints kNone;
-  return options.orientation.hints ? *options.orientation.hints : kNone;
-}
-
-PipelineOptions withHints(const PipelineOptions& options, OrientationHints hints) {
-  PipelineOptions out = options;
-  out.orientation.hints = std::make_shared<OrientationHints>(std::move(hints));
+// A column of unknown places, as some files have it, says no more than none.
+std::shared_ptr<const OrientationHints> givenHints(const PipelineOptions& options) {
+  const auto& given = options.orientation.hints;
+  if (!given) return std::make_shared<OrientationHints>();
+  const auto known = [](float v) { return std::isfinite(v); };
+  if (given->viewpoints.empty() ||
+      std::any_of(given->viewpoints.begin(), given->viewpoints.end(), known)) {
+    return given;
+  }
+  auto out = std::make_shared<OrientationHints>(*given);
+  out->viewpoints.clear();
   return out;
 }
 
-// As if no place had been given.
-PipelineOptions asIfUnseen(const PipelineOptions& options) {
-  return withHints(options, withoutPlaces(givenHints(options)));
-}
-
-// A column of unknown places, as some files have it, says no more than none.
-PipelineOptions withoutUnknownPlaces(const PipelineOptions& options) {
-  const std::vector<float>& places = givenHints(options).viewpoints;
-  if (places.empty() ||
-      std::any_of(places.begin(), places.end(), [](float v) { return std::isfinite(v); })) {
-    return options;
-  }
-  OrientationHints hints = givenHints(options);
-  hints.viewpoints.clear();
-  return withHints(options, std::move(hints));
-}
-
 // \param hiding the place, where it is only to be compared with what is found without it
-PointHints findHints(const PointView& points, const PipelineOptions& options, PreparedCloud& cloud,
-                     PipelineReport& report, std::optional<HidingPlace>& hiding) {
-  const OrientationHints& given = givenHints(options);
+PointHints findHints(const PointView& points, const OrientationHints& given,
+                     const PipelineOptions& options, PreparedCloud& cloud, PipelineReport& report,
+                     std::optional<HidingPlace>& hiding) {
   PlaceChoice choice = choosePlaces(points, given, options.orientation.automatic.find_sensors,
                                     cloud, options.threads);
   PointHints known = resolveHints(choice.hints ? *choice.hints : given, cloud);
@@ -83,28 +69,28 @@ PointHints findHints(const PointView& points, const PipelineOptions& options, Pr
 
 }  // namespace
 
-void runAutomatic(const PointView& points, const PipelineOptions& given, StageClock& clock,
+void runAutomatic(const PointView& points, const PipelineOptions& options, StageClock& clock,
                   OrientedStages& work, PipelineReport& report) {
-  const PipelineOptions options = withoutUnknownPlaces(given);
+  const std::shared_ptr<const OrientationHints> given = givenHints(options);
   std::optional<HidingPlace> hiding;
   const auto runOnce = [&](const PointHints& known) {
     return runAutoStages(
         work.surface.cloud, options, known,
         [&clock](const char* stage, double fraction) { clock.begin(stage, fraction); });
   };
-  const auto run = [&](const PointHints& known) {
-    AutoStages result = runOnce(known);
+  const auto run = [&](const OrientationHints& hints) {
+    AutoStages result =
+        runOnce(findHints(points, hints, options, work.surface.cloud, report, hiding));
     if (!report.sensors.sure() || !seeBothSides(result.orientation.sensors)) return result;
     for (FoundSensor& s : report.sensors.sensors) s.sure = false;
     report.sensors.why += ", but see surfaces from both sides";
-    return runOnce(resolveHints(withoutPlaces(givenHints(options)), work.surface.cloud));
+    return runOnce(resolveHints(withoutPlaces(*given), work.surface.cloud));
   };
-  AutoStages result = run(findHints(points, options, work.surface.cloud, report, hiding));
+  AutoStages result = run(*given);
   std::vector<KnownSensor> doubted = std::move(report.known_sensors);
-  if (!hiding && doubted.empty() && saysPlaces(givenHints(options)) &&
-      result.orientation.leavesAllToSurface()) {
+  if (!hiding && doubted.empty() && saysPlaces(*given) && result.orientation.leavesAllToSurface()) {
     doubted = std::move(result.orientation.sensors);
-    result = run(findHints(points, asIfUnseen(options), work.surface.cloud, report, hiding));
+    result = run(withoutPlaces(*given));
   }
   if (hiding) {
     hiding->report.used = hiding->isPlausible(work.surface.cloud.points(), result.normals);

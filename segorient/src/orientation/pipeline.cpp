@@ -155,8 +155,7 @@ std::size_t expectedMemory(std::size_t points, const PipelineOptions& options) {
       automatic && options.orientation.automatic.denoise ? entry * (k + 1) + 4 * sizeof(float) : 0;
   // Who saw what is checked in the sensor's view.
   const OrientationHints* hints = options.orientation.hints.get();
-  const bool seen =
-      automatic && hints != nullptr && (detail::saysPlaces(*hints) || hints->has_direction);
+  const bool seen = automatic && hints != nullptr && detail::saysSensors(*hints);
   constexpr std::size_t kOfSensors = 100;
   return points * (entry * (k + 1) + smoothed + kElse + (seen ? kOfSensors : 0));
 }

@@ -28,52 +28,50 @@ OrientationHints asIfNotThere(const OrientationHints& given, const std::array<fl
   return hints;
 }
 
+// What a search finds is followed as if it had been given.
+PlaceChoice findOthers(const PointView& points, OrientationHints hints, PreparedCloud& cloud,
+                       int threads, SeenShadows seen = {}) {
+  PlaceChoice out;
+  out.sensors = addFoundSensors(points, cloud, threads, hints, seen);
+  if (out.sensors.sensors.empty()) out.sensors.sensor_of = {};
+  out.hints = std::move(hints);
+  out.shadows = seen.of_sensor;
+  return out;
+}
+
 }  // namespace
 
 PlaceChoice choosePlaces(const PointView& points, const OrientationHints& given, bool find_sensors,
                          PreparedCloud& cloud, int threads) {
-  PlaceChoice out;
   const std::optional<std::array<float, 3>> place = onlyPlace(given, points.size);
-  OrientationHints found = place ? withoutPlaces(given) : given;
-  if (!find_sensors || !lacksSensors(found)) return out;
-  const bool is_place = place && isFinite(place->data());
-  Shadows shadows;
+  OrientationHints others = place ? withoutPlaces(given) : given;
+  if (!find_sensors || !lacksSensors(others)) return {};
+  if (!place || !isFinite(place->data())) {
+    PlaceChoice found = findOthers(points, std::move(others), cloud, threads);
+    if (place) found.refused = refusedPlace(*place, cloud);
+    return found;
+  }
+  PlaceChoice as_given;
   SeenShadows seen;
-  if (is_place && !isImage(given, points.size)) {
-    shadows = findShadows(cloud.points(), cloud.inUnit(*place), threads);
+  if (!isImage(given, points.size)) {
+    as_given.shadows = findShadows(cloud.points(), cloud.inUnit(*place), threads);
     // What does not confirm a place reveals none.
     seen.nothing_at = place;
   }
-  if (shadows.confirm()) {
-    out.shadows = shadows;
-    return out;
+  if (as_given.shadows.confirm()) return as_given;
+  others.suggested.push_back(*place);
+  PlaceChoice found = findOthers(points, std::move(others), cloud, threads, seen);
+  if (contradictsPlace(cloud, found.sensors, *place)) {
+    found.refused = refusedPlace(*place, cloud);
+    return found;
   }
-  if (is_place) found.suggested.push_back(*place);
-  SensorReport sensors = addFoundSensors(points, cloud, threads, found, seen);
-  if (is_place && !contradictsPlace(cloud, sensors, *place)) {
-    out.shadows = shadows;
-    out.place_found = sensors.sure() && !sensors.sensors[0].suggested;
-    const bool is_fact = out.place_found || !given.viewpoints.empty();
-    if (is_fact || given.surface == SurfaceKind::OPEN || !shadows.deny()) return out;
-    HidingPlace hiding = lookFrom(cloud.points(), cloud.inUnit(*place), threads);
-    // What was found in that very place is no more than compared, either.
-    if (sensors.sure()) {
-      OrientationHints others = asIfNotThere(given, *place);
-      out = choosePlaces(points, others, find_sensors, cloud, threads);
-      if (!out.hints) out.hints = std::move(others);
-      out.hiding = std::move(hiding);
-      return out;
-    }
-    out.place_found = false;
-    out.hiding = std::move(hiding);
-  } else if (place) {
-    out.refused = refusedPlace(*place, cloud);
-  }
-  out.sensors = std::move(sensors);
-  if (out.sensors.sensors.empty()) out.sensors.sensor_of = {};
-  out.hints = std::move(found);
-  out.shadows = seen.of_sensor;
-  return out;
+  as_given.place_found = found.sensors.sure() && !found.sensors.sensors[0].suggested;
+  const bool is_fact = as_given.place_found || !given.viewpoints.empty();
+  if (is_fact || given.surface == SurfaceKind::OPEN || !as_given.shadows.deny()) return as_given;
+  // What was found in that very place is no more than compared, either.
+  if (found.sensors.sure()) found = findOthers(points, asIfNotThere(given, *place), cloud, threads);
+  found.hiding = lookFrom(cloud.points(), cloud.inUnit(*place), threads);
+  return found;
 }
 
 }  // namespace segorient::detail

@@ -30,9 +30,12 @@ bool saysPlaces(const OrientationHints& hints) {
   return hints.has_viewpoint || !hints.viewpoints.empty();
 }
 
+bool saysSensors(const OrientationHints& hints) {
+  return saysPlaces(hints) || hints.has_direction;
+}
+
 bool lacksSensors(const OrientationHints& hints) {
-  return !saysPlaces(hints) && !hints.has_direction && hints.normals.empty() &&
-         hints.surface != SurfaceKind::CLOSED;
+  return !saysSensors(hints) && hints.normals.empty() && hints.surface != SurfaceKind::CLOSED;
 }
 
 bool isImage(const OrientationHints& hints, std::size_t rows) {

@@ -19,6 +19,9 @@ namespace segorient::detail {
 /// Whether places are given that points were seen from.
 bool saysPlaces(const OrientationHints& hints);
 
+/// The same, or a direction that they were seen from.
+bool saysSensors(const OrientationHints& hints);
+
 /// Whether it is worth looking for sensors: none is known, no normals are, and the cloud is not
 /// said to be closed. Places that are given are known ones.
 bool lacksSensors(const OrientationHints& hints);
