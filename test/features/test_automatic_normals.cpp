@@ -11,7 +11,6 @@
 
 #include "feature_clouds.h"
 #include "features/automatic_normals.h"
-#include "features/cloud_noise.h"
 #include "features/local_normals.h"
 
 namespace segorient::test {
@@ -223,7 +222,7 @@ TEST(AutomaticNormals, PartByPartTheSameAtOnce) {
         sample.view(), neighborsOf(sample.view(), kMostAutomaticNeighbors), 0,
         at_once.normals.data(), &unexplained_at_once);
     // Beyond, no cubic surfaces are tried.
-    ASSERT_EQ(at_once.report.noise > 0.35F, noise > 0.5F);
+    ASSERT_EQ(at_once.report.traits.noise.in_spacings > 0.35, noise > 0.5F);
     search::MedianHashIndex index;
     index.build(sample.view(), nullptr, {});
     std::vector<float> found(4 * sample.normals.size());

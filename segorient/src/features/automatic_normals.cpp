@@ -9,7 +9,6 @@
 #include <sstream>
 #include <utility>
 
-#include "features/cloud_noise.h"
 #include "features/local_fit_job.h"
 #include "features/surface_estimation.h"
 #include "features/surface_sizes.h"
@@ -24,7 +23,7 @@ using detail::Surroundings;
 
 CloudNoise noiseOf(const PointView& points, const Neighborhoods& neighborhoods, int threads,
                    const AutomaticNormalTraits* known) {
-  if (known != nullptr) return {known->noise, known->in_spacings};
+  if (known != nullptr) return known->noise;
   return detail::sampleNoise(points, neighborhoods, threads);
 }
 
@@ -47,9 +46,7 @@ class EstimationByRegion {
         noise_(noise),
         known_(known),
         normals_(normals) {
-    report_.noise = static_cast<float>(noise.in_spacings);
-    report_.traits.noise = noise.length;
-    report_.traits.in_spacings = noise.in_spacings;
+    report_.traits.noise = noise;
     if (rows == nullptr) return;
     wanted_.resize(points.size);
     for (const pcl::index_t row : *rows) wanted_[static_cast<std::size_t>(row)] = 1;
@@ -163,7 +160,8 @@ AutomaticNormalReport estimateNormalsAutomatically(const PointView& points,
 
 std::string AutomaticNormalReport::text() const {
   std::ostringstream out;
-  out << "noise " << std::setprecision(2) << noise << " of the spacing";
+  out << "noise " << std::setprecision(2) << static_cast<float>(traits.noise.in_spacings)
+      << " of the spacing";
   for (const auto& [k, count] : surfaces) {
     out << ", " << count << " points by quadratic surfaces of " << k << " neighbours";
   }

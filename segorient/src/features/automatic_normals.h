@@ -12,21 +12,19 @@
 #include <utility>
 #include <vector>
 
-#include "features/local_normals.h"
+#include "features/cloud_noise.h"
 
 namespace segorient {
 
 /// What estimateNormalsAutomatically() measures of a whole cloud; for a part of one it is told.
 struct AutomaticNormalTraits {
-  double noise = 0.0;        ///< standard deviation, in the points' unit
-  double in_spacings = 0.0;  ///< the same over the local spacing
+  detail::CloudNoise noise;
   bool analytic = false;     ///< so smooth that cubic surfaces are nearer at most points
   bool cubic_edges = false;  ///< whether cubic surfaces fit most points at edges better
 };
 
 /// What estimateNormalsAutomatically() found out about a cloud, and what it chose.
 struct AutomaticNormalReport {
-  float noise = 0.F;  ///< standard deviation of the noise over the local spacing
   /// Neighbourhoods of quadratic surfaces that were tried, largest first, and how many points they
   /// were taken for; with the last one also bends, and points that only a cubic surface fits.
   std::vector<std::pair<int, std::size_t>> surfaces;

@@ -54,9 +54,7 @@ SurfaceEstimation::SurfaceEstimation(const Surroundings& surroundings, const Clo
       normals_(normals),
       rows_(rows != nullptr ? *rows : allRows(of_.table.size())),
       open_(rows_) {
-  report_.noise = static_cast<float>(noise.in_spacings);
-  report_.traits.noise = noise.length;
-  report_.traits.in_spacings = noise.in_spacings;
+  report_.traits.noise = noise;
 }
 
 AutomaticNormalReport SurfaceEstimation::run(std::vector<pcl::index_t>* unexplained) {

@@ -132,8 +132,8 @@ void Tile::run() {
   record.traits.noise = {traits.noise, traits.wide_noise, traits.thin != 0};
   record.traits.residual = traits.residual;
   record.traits.scan_scales = traits.scan != 0;
-  record.final_traits.surfaces.noise = static_cast<double>(traits.surface_noise / cloud_.unit());
-  record.final_traits.surfaces.in_spacings = static_cast<double>(traits.surface_ratio);
+  record.final_traits.surfaces.noise = {static_cast<double>(traits.surface_noise / cloud_.unit()),
+                                        static_cast<double>(traits.surface_ratio)};
   record.final_traits.surfaces.analytic = traits.analytic != 0;
   record.final_traits.surfaces.cubic_edges = traits.cubic_edges != 0;
   record.final_traits.edges = traits.edges != 0;

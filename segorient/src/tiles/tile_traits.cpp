@@ -30,8 +30,8 @@ TileTraits measureTileTraits(const PointView& points, int k, const OrientationHi
   out.edges = found.final_traits.edges ? 1 : 0;
   out.analytic = surfaces.analytic ? 1 : 0;
   out.cubic_edges = surfaces.cubic_edges ? 1 : 0;
-  out.surface_noise = static_cast<float>(surfaces.noise) * cloud.unit();
-  out.surface_ratio = static_cast<float>(surfaces.in_spacings);
+  out.surface_noise = static_cast<float>(surfaces.noise.length) * cloud.unit();
+  out.surface_ratio = static_cast<float>(surfaces.noise.in_spacings);
   out.level = found.level;
   if (found.level > 0.F) {
     out.level_radius = found.level * found.spacing * cloud.unit();

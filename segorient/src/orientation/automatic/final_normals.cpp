@@ -13,7 +13,6 @@
 #include "common/dot.h"
 #include "common/parallel_for.h"
 #include "features/automatic_normals.h"
-#include "features/cloud_noise.h"
 #include "features/recompute_normals.h"
 #include "features/recompute_scene.h"
 #include "features/sheet_normals.h"
@@ -81,12 +80,9 @@ class FinalNormals {
   bool has(std::size_t i, Around what) const { return (oriented_.around[i] & what) != 0; }
 
   bool tooNoisy() {
-    const CloudNoise noise = known_ != nullptr
-                                 ? CloudNoise{known_->surfaces.noise, known_->surfaces.in_spacings}
-                                 : sampleNoise(points_, table_, threads_);
-    traits_.surfaces.noise = noise.length;
-    traits_.surfaces.in_spacings = noise.in_spacings;
-    return noise.in_spacings > kCubicNoise;
+    traits_.surfaces.noise =
+        known_ != nullptr ? known_->surfaces.noise : sampleNoise(points_, table_, threads_);
+    return traits_.surfaces.noise.in_spacings > kCubicNoise;
   }
 
   void fitSurfaces(bool only_known) {
@@ -106,7 +102,7 @@ class FinalNormals {
               : estimateNormalsAutomatically(points_, table_, threads_, fitted_.data(),
                                              &unexplained, &rows, known);
     traits_.surfaces = report.traits;
-    noise_ = report.noise;
+    noise_ = static_cast<float>(report.traits.noise.in_spacings);
     most_ = report.surfaces.empty() ? kFewest : report.surfaces.front().first;
     fits_.assign(points_.size, Fit::EXPLAINED);
     for (const pcl::index_t i : unexplained) fits_[static_cast<std::size_t>(i)] = Fit::UNEXPLAINED;
