@@ -180,6 +180,15 @@ float chanceDeviation(int k) {
   return 0.8F / std::sqrt(static_cast<float>(k + 1));
 }
 
+std::pair<float, float> rangeWithout(std::size_t cut, std::vector<float> values) {
+  const auto low = values.begin() + static_cast<std::ptrdiff_t>(cut);
+  std::nth_element(values.begin(), low, values.end());
+  const auto high = values.end() - static_cast<std::ptrdiff_t>(cut) - 1;
+  const float least = *low;
+  std::nth_element(values.begin(), high, values.end());
+  return {least, *high};
+}
+
 float deviation(std::vector<float>& values) {
   if (values.empty()) return 0.F;
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);

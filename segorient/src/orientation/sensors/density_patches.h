@@ -6,6 +6,7 @@
 #include <segorient/search/median_hash_index.h>
 
 #include <cstddef>
+#include <utility>
 #include <vector>
 
 namespace segorient::detail {
@@ -48,6 +49,9 @@ float chanceDeviation(int k);
 
 /// What lies farther from the median is another surface's density, or no surface: a factor of 4.5.
 constexpr float kDeviationCut = 1.5F;
+
+/// The least and the largest of some values, but for `cut` at either end.
+std::pair<float, float> rangeWithout(std::size_t cut, std::vector<float> values);
 
 /// Mean over the values of |value - median|, cut off at kDeviationCut. \param values are reordered
 float deviation(std::vector<float>& values);

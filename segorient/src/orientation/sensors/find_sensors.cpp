@@ -6,6 +6,7 @@
 #include <cmath>
 #include <optional>
 
+#include "common/in_double.h"
 #include "orientation/sensors/image_rays.h"
 #include "orientation/sensors/joint_sensors.h"
 #include "orientation/sensors/sensor_search.h"
@@ -47,24 +48,14 @@ FoundSensor describe(const FittedPlace& fitted, float constant, bool suggested) 
   return out;
 }
 
-bool isNear(const std::array<double, 3>& position, const detail::Extent& extent) {
-  const double reach = kFarthest * extent.diagonal();
-  for (std::size_t a = 0; a < 3; ++a) {
-    if (!(position[a] > extent.low[a] - reach && position[a] < extent.high[a] + reach))
-      return false;
-  }
-  return true;
-}
-
 // The suggestion that fits best, if one does.
 std::optional<FittedPlace> trySuggestions(const DensityPatches& patches, float constant,
                                           const SensorOptions& options) {
   const detail::Extent extent = detail::extentOf(patches);
   std::optional<FittedPlace> best;
   for (const std::array<float, 3>& s : options.suggestions) {
-    const std::array<double, 3> position{static_cast<double>(s[0]), static_cast<double>(s[1]),
-                                         static_cast<double>(s[2])};
-    if (!isNear(position, extent)) continue;
+    const std::array<double, 3> position = inDouble(s.data());
+    if (!extent.holds(position, kFarthest * extent.diagonal())) continue;
     const FittedPlace fitted = detail::fitAt(patches, position);
     if (fitted.cost > kSureSuggested * constant) continue;
     if (!best || fitted.cost < best->cost) best = fitted;

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -44,12 +45,7 @@ Ground groundOf(const PointView& points) {
     std::vector<float> values;
     for (const std::size_t i : EveryNth(points.size, kSample)) values.push_back(points[i][a]);
     const std::size_t cut = values.size() / 50;
-    const auto low = values.begin() + static_cast<std::ptrdiff_t>(cut);
-    std::nth_element(values.begin(), low, values.end());
-    out.low[a] = *low;
-    const auto high = values.end() - static_cast<std::ptrdiff_t>(cut) - 1;
-    std::nth_element(values.begin(), high, values.end());
-    out.high[a] = *high;
+    std::tie(out.low[a], out.high[a]) = rangeWithout(cut, std::move(values));
   }
   return out;
 }

@@ -6,10 +6,10 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
-#include <numeric>
 #include <utility>
 #include <vector>
 
+#include "common/by_size.h"
 #include "common/parallel_for.h"
 #include "orientation/sensors/height_field.h"
 #include "orientation/sensors/moving_sensor.h"
@@ -58,21 +58,10 @@ void assignPlaces(PreparedCloud& cloud, const DensityPatches& patches,
     if (s >= 0) ++report.sensors[static_cast<std::size_t>(s)].points;
   }
   // Those with most points first.
-  std::vector<std::size_t> order(report.sensors.size());
-  std::iota(order.begin(), order.end(), std::size_t{0});
-  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
-    return report.sensors[a].points > report.sensors[b].points;
-  });
-  std::vector<FoundSensor> sorted;
-  std::vector<std::int32_t> rank(order.size());
-  for (std::size_t r = 0; r < order.size(); ++r) {
-    sorted.push_back(report.sensors[order[r]]);
-    rank[order[r]] = static_cast<std::int32_t>(r);
-  }
-  report.sensors = std::move(sorted);
-  for (std::int32_t& s : report.sensor_of) {
-    if (s >= 0) s = rank[static_cast<std::size_t>(s)];
-  }
+  const BySize by_size(report.sensors.size(),
+                       [&](std::size_t s) { return report.sensors[s].points; });
+  by_size.sort(report.sensors);
+  by_size.renumber(report.sensor_of);
 }
 
 void addSensors(const std::vector<std::array<double, 3>>& positions, SensorKind kind,
@@ -96,14 +85,12 @@ void lookFromAbove(PreparedCloud& cloud, const DensityPatches& patches,
   FoundSensor sensor;
   sensor.kind = SensorKind::ABOVE;
   sensor.evidence = SensorEvidence::LAYERS;
-  std::array<double, 3> position{};
-  for (std::size_t a = 0; a < 3; ++a) position[a] = 0.5 * (extent.low[a] + extent.high[a]);
+  std::array<double, 3> position = extent.middle();
   position[2] += kFarAbove * extent.diagonal();
   sensor.position = toFloat(position);
   sensor.axis = {0.F, 0.F, 1.F};
   sensor.cost_ratio = field.layered;
   sensor.sure = true;
-  sensor.points = cloud.size();
   report.sensors.push_back(sensor);
   report.sensor_of.assign(cloud.size(), 0);
   report.why = "one uneven surface over the ground, as it is seen from above";
@@ -112,24 +99,15 @@ void lookFromAbove(PreparedCloud& cloud, const DensityPatches& patches,
 // A scanner that looks ahead stands at the rim of what it sees.
 bool areInside(const std::vector<std::array<double, 3>>& positions, const detail::Extent& extent) {
   const double margin = 0.05 * extent.diagonal();
-  return std::all_of(positions.begin(), positions.end(), [&](const std::array<double, 3>& p) {
-    for (std::size_t a = 0; a < 3; ++a) {
-      if (!(p[a] > extent.low[a] - margin && p[a] < extent.high[a] + margin)) return false;
-    }
-    return true;
-  });
+  return std::all_of(positions.begin(), positions.end(),
+                     [&](const std::array<double, 3>& p) { return extent.holds(p, margin); });
 }
 
 // What is seen from far away looks much alike from the other side: that several places outside of
 // the ball that holds the scene explain densities does not tell the sides.
 bool areOutside(const std::vector<std::array<double, 3>>& positions, const detail::Extent& extent) {
   return std::all_of(positions.begin(), positions.end(), [&](const std::array<double, 3>& p) {
-    double square = 0.0;
-    for (std::size_t a = 0; a < 3; ++a) {
-      const double d = p[a] - 0.5 * (extent.low[a] + extent.high[a]);
-      square += d * d;
-    }
-    return std::sqrt(square) > 0.5 * extent.diagonal();
+    return detail::distance(p, extent.middle()) > 0.5 * extent.diagonal();
   });
 }
 

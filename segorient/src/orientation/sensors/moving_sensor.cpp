@@ -184,8 +184,7 @@ std::array<double, 3> longDirection(const DensityPatches& patches) {
 std::vector<Line> startLines(const DensityPatches& patches, const Extent& extent, double part) {
   const std::array<double, 3> spread = longDirection(patches);
   const double length = spread[2];
-  const double middle[2] = {0.5 * (extent.low[0] + extent.high[0]),
-                            0.5 * (extent.low[1] + extent.high[1])};
+  const Position middle = extent.middle();
   std::vector<Line> out;
   for (const auto& [dx, dy] : {std::pair{spread[0], spread[1]}, std::pair{-spread[1], spread[0]}}) {
     for (const double beside : {-0.06, 0.0, 0.06}) {

@@ -110,11 +110,6 @@ struct Heap {
   }
 };
 
-double distance(const Position& a, const Position& b) {
-  return std::sqrt((a[0] - b[0]) * (a[0] - b[0]) + (a[1] - b[1]) * (a[1] - b[1]) +
-                   (a[2] - b[2]) * (a[2] - b[2]));
-}
-
 }  // namespace
 
 std::vector<Position> mixturePlaces(const DensityPatches& patches, const Occupancy& occupancy,

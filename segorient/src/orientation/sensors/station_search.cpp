@@ -29,11 +29,6 @@ constexpr int kCoarseEvaluations = 100;
 constexpr int kFineEvaluations = 250;
 constexpr int kAxisEvaluations = 60;
 
-double distance(const Position& a, const Position& b) {
-  return std::sqrt((a[0] - b[0]) * (a[0] - b[0]) + (a[1] - b[1]) * (a[1] - b[1]) +
-                   (a[2] - b[2]) * (a[2] - b[2]));
-}
-
 // The laws, those with a vertical once for each coordinate axis: people turn clouds so that up is
 // y, too, and tilting scanners have a level one.
 std::vector<Place> lawsAt(const Position& position) {
@@ -112,35 +107,45 @@ FittedPlace follow(const DensityPatches& coarse, std::vector<FittedPlace> starts
 
 }  // namespace
 
+double distance(const Position& a, const Position& b) {
+  return std::sqrt((a[0] - b[0]) * (a[0] - b[0]) + (a[1] - b[1]) * (a[1] - b[1]) +
+                   (a[2] - b[2]) * (a[2] - b[2]));
+}
+
 double Extent::diagonal() const {
   return distance(low, high);
+}
+
+Position Extent::middle() const {
+  return {0.5 * (low[0] + high[0]), 0.5 * (low[1] + high[1]), 0.5 * (low[2] + high[2])};
+}
+
+bool Extent::holds(const Position& place, double margin) const {
+  for (std::size_t a = 0; a < 3; ++a) {
+    if (!(place[a] > low[a] - margin && place[a] < high[a] + margin)) return false;
+  }
+  return true;
 }
 
 Extent extentOf(const DensityPatches& patches) {
   Extent out;
   const std::vector<float>* columns[3] = {&patches.x, &patches.y, &patches.z};
   for (std::size_t a = 0; a < 3; ++a) {
-    std::vector<float> values = *columns[a];
-    if (values.empty()) continue;
-    const std::size_t cut = values.size() / 100;
-    const auto low = values.begin() + static_cast<std::ptrdiff_t>(cut);
-    std::nth_element(values.begin(), low, values.end());
-    out.low[a] = static_cast<double>(*low);
-    const auto high = values.end() - static_cast<std::ptrdiff_t>(cut) - 1;
-    std::nth_element(values.begin(), high, values.end());
-    out.high[a] = static_cast<double>(*high);
+    if (columns[a]->empty()) continue;
+    const auto [low, high] = rangeWithout(columns[a]->size() / 100, *columns[a]);
+    out.low[a] = static_cast<double>(low);
+    out.high[a] = static_cast<double>(high);
   }
   return out;
 }
 
 std::vector<Position> placesInside(const Extent& extent, int count_wanted) {
   const double diagonal = extent.diagonal();
+  const Position middle = extent.middle();
   Position width{};
-  Position middle{};
   double volume = 1.0;
   for (std::size_t a = 0; a < 3; ++a) {
     width[a] = std::max(extent.high[a] - extent.low[a], 0.05 * diagonal);
-    middle[a] = 0.5 * (extent.low[a] + extent.high[a]);
     volume *= width[a];
   }
   const double cell = std::cbrt(volume / count_wanted);
@@ -165,9 +170,7 @@ std::vector<Position> placesInside(const Extent& extent, int count_wanted) {
 
 std::vector<Position> placesAround(const Extent& extent, int inside) {
   std::vector<Position> out = placesInside(extent, inside);
-  Position middle{};
-  for (std::size_t a = 0; a < 3; ++a) middle[a] = 0.5 * (extent.low[a] + extent.high[a]);
-  const std::vector<Position> around = shells(middle, extent.diagonal());
+  const std::vector<Position> around = shells(extent.middle(), extent.diagonal());
   out.insert(out.end(), around.begin(), around.end());
   return out;
 }

@@ -30,7 +30,11 @@ struct Extent {
   std::array<double, 3> high{0.0, 0.0, 0.0};
 
   double diagonal() const;
+  std::array<double, 3> middle() const;
+  /// Whether a place is in there, or less than a margin beside it.
+  bool holds(const std::array<double, 3>& place, double margin) const;
 };
+double distance(const std::array<double, 3>& a, const std::array<double, 3>& b);
 Extent extentOf(const DensityPatches& patches);
 
 /// Places in a regular grid inside the extent, `count` or a few more.
