@@ -49,7 +49,7 @@ class Solver {
 
   std::vector<ComponentWinding> solve() {
     takeSamples();
-    for (std::size_t c = 0; c < rows_.size(); ++c) evaluate(c);
+    evaluateAll();
     insertOneByOne();
     return results();
   }
@@ -76,8 +76,8 @@ class Solver {
   void windAsTurned() {
     takeSamples();
     signs_.assign(rows_.size(), 1);
+    evaluateAll();
     for (std::size_t c = 0; c < rows_.size(); ++c) {
-      evaluate(c);
       for (const Reach& r : reach_[c]) field_[r.sample] += static_cast<double>(r.w);
     }
   }
@@ -104,7 +104,25 @@ class Solver {
     index_ = search::indexOf({places.data(), 3, samples_.size()}, threads_);
   }
 
-  void evaluate(std::size_t c) {
+  // One by one on all threads, and side by side where each is a small part of a thread's share.
+  void evaluateAll() {
+    constexpr double kPointTime = 200.0;  // ns, see resolveThreads()
+    const auto threads = static_cast<std::size_t>(resolveThreads(threads_));
+    std::vector<std::size_t> small;
+    std::size_t in_small = 0;
+    for (std::size_t c = 0; c < rows_.size(); ++c) {
+      if (8 * threads * rows_[c].size() > points_.size) {
+        evaluate(c, threads_);
+      } else {
+        small.push_back(c);
+        in_small += rows_[c].size();
+      }
+    }
+    parallelFor(small.size(), threads_, timeOfEach(small.size(), in_small, kPointTime),
+                [&](std::size_t s) { evaluate(small[s], 1); });
+  }
+
+  void evaluate(std::size_t c, int threads) {
     // For a WindingNumber, no rows are all points.
     if (rows_[c].empty()) return;
     WindingNumber winding;
@@ -126,7 +144,7 @@ class Solver {
     // Nanoseconds: some nodes of each level of the tree are opened.
     constexpr double kLevel = 2000.0;
     const double time = kLevel * std::log2(static_cast<double>(rows_[c].size()) + 1.0);
-    parallelFor(reach.size(), threads_, time, [&](std::size_t r) {
+    parallelFor(reach.size(), threads, time, [&](std::size_t r) {
       const std::uint32_t i = samples_[reach[r].sample];
       reach[r].w = winding.evaluate(points_[i], spacing_[i]);
     });
