@@ -4,6 +4,7 @@
 
 #include <segorient/search/median_hash_index.h>
 
+#include <array>
 #include <cmath>
 #include <vector>
 
@@ -24,6 +25,20 @@ inline Neighborhoods neighborsOf(const std::vector<float>& xyz, int k = kSheetNe
   index.nearestKAll(k + 1, table, false);
   return table;
 }
+
+/// Points and their true normals, 4 floats each.
+struct TrueNormals {
+  std::vector<float> xyz;
+  std::vector<float> normals;
+
+  void add(const std::array<double, 3>& p, const std::array<double, 3>& n) {
+    for (const double v : p) xyz.push_back(static_cast<float>(v));
+    for (const double v : n) normals.push_back(static_cast<float>(v));
+    xyz.push_back(0.F);
+    normals.push_back(0.F);
+  }
+  std::size_t size() const { return xyz.size() / 4; }
+};
 
 inline float dot3(const float* a, const float* b) {
   return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];

@@ -24,18 +24,7 @@ namespace {
 
 using Vector = std::array<double, 3>;
 
-struct Cloud {
-  std::vector<float> xyz;
-  std::vector<float> normals;  // the true ones
-
-  void add(const Vector& p, const Vector& n) {
-    for (const double v : p) xyz.push_back(static_cast<float>(v));
-    for (const double v : n) normals.push_back(static_cast<float>(v));
-    xyz.push_back(0.F);
-    normals.push_back(0.F);
-  }
-  std::size_t size() const { return xyz.size() / 4; }
-};
+using Cloud = TrueNormals;
 
 Vector onSphere(std::mt19937& rng) {
   std::normal_distribution<double> normal;

@@ -17,18 +17,6 @@
 namespace segorient::test {
 namespace {
 
-struct Striped {
-  std::vector<float> xyz;
-  std::vector<float> normals;
-
-  void add(const std::array<double, 3>& p, const std::array<double, 3>& n) {
-    for (const double v : p) xyz.push_back(static_cast<float>(v));
-    for (const double v : n) normals.push_back(static_cast<float>(v));
-    xyz.push_back(0.F);
-    normals.push_back(0.F);
-  }
-};
-
 // Six stripes across a length of 2 along some direction.
 class Stripes {
  public:
@@ -52,11 +40,11 @@ class Stripes {
   double phase_ = 0.0;
 };
 
-Striped halfSphere(std::size_t count, unsigned seed) {
+TrueNormals halfSphere(std::size_t count, unsigned seed) {
   std::mt19937 rng(seed);
   std::uniform_real_distribution<double> unit(0, 1);
   const Stripes stripes(rng);
-  Striped out;
+  TrueNormals out;
   while (out.xyz.size() < 4 * count) {
     const double z = unit(rng);
     const double t = 2 * M_PI * unit(rng);
@@ -68,14 +56,14 @@ Striped halfSphere(std::size_t count, unsigned seed) {
 }
 
 // Two and a half turns, six spacings apart on average.
-Striped roll(std::size_t count, unsigned seed) {
+TrueNormals roll(std::size_t count, unsigned seed) {
   std::mt19937 rng(seed);
   std::uniform_real_distribution<double> unit(0, 1);
   const Stripes stripes(rng);
   const double widening = 6 * std::sqrt(12.0 / static_cast<double>(count)) / (2 * M_PI);
   const auto radius = [&](double t) { return 0.35 + widening * t; };
   const double turns = 5 * M_PI;
-  Striped out;
+  TrueNormals out;
   while (out.xyz.size() < 4 * count) {
     const double t = turns * unit(rng);
     if (unit(rng) * radius(turns) > radius(t)) continue;
@@ -89,7 +77,7 @@ Striped roll(std::size_t count, unsigned seed) {
   return out;
 }
 
-double shareOfOneSide(const Striped& cloud) {
+double shareOfOneSide(const TrueNormals& cloud) {
   const OrientedCloud oriented = orientCloud(viewOf(cloud.xyz), nullptr, PipelineOptions{});
   const double share = shareOutward(oriented.normals, cloud.normals);
   return std::max(share, 1 - share);

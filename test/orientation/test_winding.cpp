@@ -23,6 +23,21 @@ struct Balls {
   std::vector<float> spacing;
 };
 
+// What is known of them if they are one sheet without walls.
+struct OneSheet {
+  explicit OneSheet(const Balls& balls)
+      : above(balls.spacing.size(), std::numeric_limits<float>::max()),
+        below(above.size(), -std::numeric_limits<float>::max()),
+        reliable(above.size(), 1),
+        field{balls.normals.data(), nullptr,      balls.spacing.data(),
+              below.data(),         above.data(), reliable.data()} {}
+
+  const std::vector<float> above;
+  const std::vector<float> below;
+  const std::vector<std::uint8_t> reliable;
+  const SheetField field;
+};
+
 void addBall(Balls& balls, std::array<double, 3> center, double radius, std::size_t n, float sign) {
   const auto component =
       static_cast<std::int32_t>(balls.components.empty() ? 0 : balls.components.back() + 1);
@@ -241,23 +256,15 @@ TEST(LooseParts, AreFoundByTheirBorders) {
     const bool at_border = p[2] >= 0.6F && p[2] < 0.75F;
     if (at_border && std::sin(12.F * std::atan2(p[1], p[0])) < 0.4F) segmentation.signs[i] = -1;
   }
-  const std::vector<float> wall(n, std::numeric_limits<float>::max());
-  const std::vector<float> below(n, -std::numeric_limits<float>::max());
-  const std::vector<std::uint8_t> reliable(n, 1);
-  const SheetField field{bands.ball.normals.data(),
-                         nullptr,
-                         bands.ball.spacing.data(),
-                         below.data(),
-                         wall.data(),
-                         reliable.data()};
+  const OneSheet sheet(bands.ball);
   const Neighborhoods table = neighborsOf(bands.ball.xyz);
   segmentation.segments.resize(4);  // the last one has no points
   for (const bool by_winding : {false, true}) {
     AutomaticOptions options;
     options.turn_loose_parts = by_winding;
     const AutoOrientation out =
-        orientSheets(viewOf(bands.ball.xyz), table, field, segmentation,
-                     borderVotes(viewOf(bands.ball.xyz), table, field, segmentation),
+        orientSheets(viewOf(bands.ball.xyz), table, sheet.field, segmentation,
+                     borderVotes(viewOf(bands.ball.xyz), table, sheet.field, segmentation),
                      bands.ball.xyz.size() / 3, options);
     EXPECT_EQ(out.result.segments[0].sign, 1);
     EXPECT_EQ(out.result.segments[1].sign, 1);
@@ -287,18 +294,15 @@ TEST(LooseParts, MayBeTheLargest) {
     if ((at_largest && wave < 0.4) || (in_south && wave < -0.2)) segmentation.signs[i] = -1;
   }
   ASSERT_GT(segmentation.segments[2].size, segmentation.segments[1].size);
-  const std::vector<float> above(n, std::numeric_limits<float>::max());
-  const std::vector<float> below(n, -std::numeric_limits<float>::max());
-  const std::vector<std::uint8_t> reliable(n, 1);
-  const SheetField field{ball.normals.data(), nullptr,      ball.spacing.data(),
-                         below.data(),        above.data(), reliable.data()};
+  const OneSheet sheet(ball);
   const Neighborhoods table = neighborsOf(ball.xyz);
   for (const bool by_winding : {false, true}) {
     AutomaticOptions options;
     options.turn_loose_parts = by_winding;
-    const AutoOrientation out = orientSheets(
-        viewOf(ball.xyz), table, field, segmentation,
-        borderVotes(viewOf(ball.xyz), table, field, segmentation), ball.xyz.size() / 3, options);
+    const AutoOrientation out =
+        orientSheets(viewOf(ball.xyz), table, sheet.field, segmentation,
+                     borderVotes(viewOf(ball.xyz), table, sheet.field, segmentation),
+                     ball.xyz.size() / 3, options);
     for (std::size_t s = 0; s < 4; ++s) {
       EXPECT_EQ(out.result.segments[s].sign, s == 2 && !by_winding ? -1 : 1) << s << by_winding;
     }
