@@ -176,6 +176,9 @@ class Sensors(NamedTuple):
     deviation: float  #: mean deviation of the log density from a constant
     chance: float  #: the same if points were strewn at random
     why: str  #: in a few words, what was found or why nothing
+    #: (n, 3) where no sensor was found, but that all was seen from within: the mean direction to
+    #: where each point was seen from, 0 = unknown; otherwise (0, 3)
+    directions: Floats
 
 
 class Neighbors(NamedTuple):
@@ -718,6 +721,6 @@ def sensors(
         raise TypeError("width and threads must be whole numbers")
     array, origin = _local(points)
     places = np.zeros((1, 3)) if suggestions is None else _rows("suggestions", suggestions)
-    found = Sensors(*_core.sensors(array, _moved(places, origin), pixels, cores))
-    _to_world(found.sensors, origin)
-    return found
+    *found, directions = _core.sensors(array, _moved(places, origin), pixels, cores)
+    _to_world(found[0], origin)
+    return Sensors(*found, directions.reshape(-1, 3))

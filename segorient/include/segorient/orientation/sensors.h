@@ -100,6 +100,9 @@ struct SensorOptions {
 struct SensorReport {
   std::vector<FoundSensor> sensors;     ///< by descending number of points
   std::vector<std::int32_t> sensor_of;  ///< for each row, into `sensors`; -1 = by none
+  /// Where no sensor was found, but it is known that the scene was seen from within: 3 floats a
+  /// row, the mean direction to where it was seen from; 0 = unknown. Empty elsewhere.
+  std::vector<float> directions;
   /// Mean deviation of log density from a constant, and what it were by chance alone.
   float deviation = 0.F;
   float chance = 0.F;

@@ -141,6 +141,7 @@ void trySuggestedShadows(PreparedCloud& cloud, const SensorOptions& options,
     sensor.suggested = true;
     sensor.cost_ratio = shadows.coveredOfSteps();
     sensor.sure = true;
+    out.directions.clear();
     setOnly(sensor, "surfaces end at the shadows that the suggested place casts", out);
     return;
   }
@@ -166,6 +167,7 @@ SensorReport detail::sensorsOf(const PointView& points, PreparedCloud& cloud,
     }
   }
   out.sensor_of = cloud.scatter(out.sensor_of, 1, std::int32_t{-1});
+  if (!out.directions.empty()) out.directions = cloud.scatter(out.directions, 3, 0.F);
   for (FoundSensor& s : out.sensors) s.points = 0;
   for (const std::int32_t s : out.sensor_of) {
     if (s >= 0) ++out.sensors[static_cast<std::size_t>(s)].points;

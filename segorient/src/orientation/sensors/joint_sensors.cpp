@@ -14,6 +14,7 @@
 #include "orientation/sensors/height_field.h"
 #include "orientation/sensors/moving_sensor.h"
 #include "orientation/sensors/occupancy.h"
+#include "orientation/sensors/seen_within.h"
 #include "orientation/sensors/several_stations.h"
 #include "orientation/sensors/station_search.h"
 #include "search/index_of.h"
@@ -37,10 +38,9 @@ constexpr float kVariesTilted = 4.F;
 constexpr float kVariesMuch = 8.F;
 constexpr float kSureWhereMuch = 0.4F;
 
-// For each point the place that left most of the density of the nearest piece.
-void assignPlaces(PreparedCloud& cloud, const DensityPatches& patches,
-                  const std::vector<std::int32_t>& place_of_piece, int threads,
-                  SensorReport& report) {
+// Of each point, -1 = none.
+std::vector<std::int32_t> nearestPieces(PreparedCloud& cloud, const DensityPatches& patches,
+                                        int threads) {
   std::vector<float> centers;
   for (std::size_t i = 0; i < patches.size(); ++i) {
     centers.insert(centers.end(), {patches.x[i], patches.y[i], patches.z[i]});
@@ -48,12 +48,23 @@ void assignPlaces(PreparedCloud& cloud, const DensityPatches& patches,
   const search::MedianHashIndex index =
       search::indexOf({centers.data(), 3, patches.size()}, threads);
   constexpr double kQueryTime = 300.0;  // ns, see resolveThreads()
+  std::vector<std::int32_t> out(cloud.size(), -1);
   parallelFor(cloud.size(), threads, kQueryTime, [&](std::size_t i) {
     pcl::index_t nearest = 0;
     float distance = 0.F;
-    if (index.nearestK(cloud.points()[i], 1, &nearest, &distance) < 1) return;
-    report.sensor_of[i] = place_of_piece[static_cast<std::size_t>(nearest)];
+    if (index.nearestK(cloud.points()[i], 1, &nearest, &distance) > 0) out[i] = nearest;
   });
+  return out;
+}
+
+// For each point the place that left most of the density of the nearest piece.
+void assignPlaces(PreparedCloud& cloud, const DensityPatches& patches,
+                  const std::vector<std::int32_t>& place_of_piece, int threads,
+                  SensorReport& report) {
+  report.sensor_of = nearestPieces(cloud, patches, threads);
+  for (std::int32_t& s : report.sensor_of) {
+    if (s >= 0) s = place_of_piece[static_cast<std::size_t>(s)];
+  }
   for (const std::int32_t s : report.sensor_of) {
     if (s >= 0) ++report.sensors[static_cast<std::size_t>(s)].points;
   }
@@ -94,6 +105,23 @@ void lookFromAbove(PreparedCloud& cloud, const DensityPatches& patches,
   report.sensors.push_back(sensor);
   report.sensor_of.assign(cloud.size(), 0);
   report.why = "one uneven surface over the ground, as it is seen from above";
+}
+
+// Nobody knows the places, but the sides.
+void lookWithin(PreparedCloud& cloud, const DensityPatches& all, const detail::Extent& extent,
+                const detail::Occupancy& occupancy, int threads, SensorReport& report) {
+  constexpr std::size_t kPieces = 800;
+  const DensityPatches patches = all.thinned(kPieces);
+  const std::vector<float> directions =
+      detail::directionsWithin(patches, occupancy, extent, threads);
+  if (directions.empty()) return;
+  const std::vector<std::int32_t> piece = nearestPieces(cloud, patches, threads);
+  report.directions.assign(3 * cloud.size(), 0.F);
+  for (std::size_t i = 0; i < piece.size(); ++i) {
+    if (piece[i] < 0) continue;
+    std::copy_n(&directions[3 * static_cast<std::size_t>(piece[i])], 3, &report.directions[3 * i]);
+  }
+  report.why = "no places explain the densities, but it was seen from within";
 }
 
 // A scanner that looks ahead stands at the rim of what it sees.
@@ -158,7 +186,11 @@ void detail::findSeveral(PreparedCloud& cloud, const DensityPatches& patches, in
   if (report.sensors.empty() && left > kSureSeveral) {
     lookForTilted(cloud, patches, extent, occupancy, left, threads, report);
   }
-  if (!is_track || !report.sensors.empty()) return;
+  if (!report.sensors.empty()) return;
+  if (!is_track) {
+    lookWithin(cloud, patches, extent, occupancy, threads, report);
+    return;
+  }
   addSensors(track.places, SensorKind::MOVING, kUp, left, report);
   assignPlaces(cloud, patches, detail::placeOf(patches, occupancy, track), threads, report);
   report.why = "places along a line explain the densities";

@@ -7,6 +7,7 @@
 #include <cstddef>
 #include <limits>
 #include <optional>
+#include <utility>
 
 #include "common/every_nth.h"
 
@@ -53,6 +54,8 @@ SensorReport addFoundSensors(const PointView& points, PreparedCloud& cloud, int 
   if (isImage(hints, points.size)) options.image_width = hints.grids[0].width;
   SensorReport report = sensorsOf(points, cloud, options, shadows);
   if (report.sure()) addViewpoints(report, hints);
+  hints.normals = std::move(report.directions);
+  report.directions.clear();
   return report;
 }
 

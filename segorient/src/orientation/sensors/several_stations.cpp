@@ -32,6 +32,32 @@ constexpr std::size_t kMostRelocated = 6;  // more stations than that find place
 // Of the constant's cost: stations that gain less than this are not there.
 constexpr float kGain = 0.035F;
 
+// What stations leave on the pieces, by the side that they see. Of a surface nobody sees both.
+struct SideSums {
+  std::vector<float> front;
+  std::vector<float> back;
+
+  explicit SideSums(std::size_t pieces) : front(pieces, 0.F), back(pieces, 0.F) {}
+
+  // \param densities those of what is seen from behind negative
+  void add(const std::vector<float>& densities) {
+    for (std::size_t i = 0; i < front.size(); ++i) {
+      front[i] += std::max(densities[i], 0.F);
+      back[i] += std::max(-densities[i], 0.F);
+    }
+  }
+
+  // With those of one more station.
+  void logsWith(const std::vector<float>& densities, std::vector<float>& out) const {
+    out.resize(front.size());
+    for (std::size_t i = 0; i < out.size(); ++i) {
+      out[i] =
+          std::max(front[i] + std::max(densities[i], 0.F), back[i] + std::max(-densities[i], 0.F));
+    }
+    takeLogs(out);
+  }
+};
+
 // Some stations and what each leaves on the pieces. Weights are equal: one scanner, one setting.
 class Sum {
  public:
@@ -53,11 +79,10 @@ class Sum {
   }
 
   void refineOne(std::size_t j, double step) {
-    const std::vector<float> others = sumWithout(j);
+    const SideSums others = sumWithout(j);
     const auto cost = [&](const std::vector<double>& v) {
       densityAt({v[0], v[1], v[2]}, seen_[j], trial_);
-      for (std::size_t i = 0; i < trial_.size(); ++i) trial_[i] += others[i];
-      return static_cast<double>(costOfSum(trial_));
+      return static_cast<double>(costWith(others, trial_));
     };
     std::vector<double> values(positions_[j].begin(), positions_[j].end());
     minimize(cost, {step, step, step}, kEvaluations, values);
@@ -86,12 +111,9 @@ class Sum {
     std::size_t moved = 0;
     std::size_t to = 0;
     for (std::size_t j = 0; j < positions_.size(); ++j) {
-      const std::vector<float> others = sumWithout(j);
+      const SideSums others = sumWithout(j);
       for (std::size_t c = 0; c < alternatives_.size(); ++c) {
-        trial_ = others;
-        const std::vector<float>& there = alternative_densities_[c];
-        for (std::size_t i = 0; i < trial_.size(); ++i) trial_[i] += there[i];
-        const float value = costOfSum(trial_);
+        const float value = costWith(others, alternative_densities_[c]);
         if (value >= least) continue;
         least = value;
         moved = j;
@@ -129,8 +151,7 @@ class Sum {
     std::size_t least = 0;
     float cost = 0.F;
     for (std::size_t j = 0; j < positions_.size(); ++j) {
-      trial_ = sumWithout(j);
-      const float without = costOfSum(trial_);
+      const float without = costWithout(j);
       if (j == 0 || without < cost) {
         least = j;
         cost = without;
@@ -142,13 +163,14 @@ class Sum {
     densities_.erase(densities_.begin() + at);
   }
 
-  float cost() {
-    trial_ = sumWithout(positions_.size());
-    return costOfSum(trial_);
-  }
+  float cost() { return costWithout(positions_.size()); }
 
   std::vector<std::int32_t> strongest() const {
-    return strongestPlaces(patches_, positions_, densities_);
+    std::vector<std::vector<float>> left = densities_;
+    for (std::vector<float>& row : left) {
+      for (float& v : row) v = std::fabs(v);
+    }
+    return strongestPlaces(patches_, positions_, left);
   }
 
   const std::vector<Position>& positions() const { return positions_; }
@@ -184,25 +206,37 @@ class Sum {
     return image;
   }
 
-  // Over the density that is there.
+  // Over the density that is there; negative where the piece is seen from behind.
   void densityAt(const Position& position, const std::vector<float>& seen,
                  std::vector<float>& out) const {
     ratios(patches_, {position, axis_, SamplingLaw::ANGLE_GRID}, out);
-    for (std::size_t i = 0; i < out.size(); ++i) out[i] *= seen[i];
+    const auto x = static_cast<float>(position[0]);
+    const auto y = static_cast<float>(position[1]);
+    const auto z = static_cast<float>(position[2]);
+    for (std::size_t i = 0; i < out.size(); ++i) {
+      const float height = (x - patches_.x[i]) * patches_.nx[i] +
+                           (y - patches_.y[i]) * patches_.ny[i] +
+                           (z - patches_.z[i]) * patches_.nz[i];
+      out[i] *= height < 0.F ? -seen[i] : seen[i];
+    }
   }
 
-  std::vector<float> sumWithout(std::size_t left_out) const {
-    std::vector<float> sum(patches_.size(), 0.F);
+  SideSums sumWithout(std::size_t left_out) const {
+    SideSums sum(patches_.size());
     for (std::size_t j = 0; j < densities_.size(); ++j) {
-      if (j == left_out) continue;
-      for (std::size_t i = 0; i < sum.size(); ++i) sum[i] += densities_[j][i];
+      if (j != left_out) sum.add(densities_[j]);
     }
     return sum;
   }
 
-  static float costOfSum(std::vector<float>& sum) {
-    takeLogs(sum);
-    return deviation(sum);
+  float costWithout(std::size_t left_out) {
+    const std::vector<float> nothing(patches_.size(), 0.F);
+    return costWith(sumWithout(left_out), nothing);
+  }
+
+  float costWith(const SideSums& others, const std::vector<float>& densities) {
+    others.logsWith(densities, logs_);
+    return deviation(logs_);
   }
 
   const DensityPatches& patches_;
@@ -214,6 +248,7 @@ class Sum {
   std::vector<Position> alternatives_;
   std::vector<std::vector<float>> alternative_densities_;
   std::vector<float> trial_;
+  std::vector<float> logs_;
 };
 
 }  // namespace

@@ -8,7 +8,6 @@
 #include <numeric>
 
 #include "common/parallel_for.h"
-#include "orientation/sensors/sampling_law.h"
 #include "orientation/sensors/station_search.h"
 
 namespace segorient::detail {
@@ -26,14 +25,8 @@ constexpr double kTogether = 0.07;    // of the extent: the grid's cells are as 
 constexpr std::size_t kMostPlaces = 10;
 
 // What each place would leave on each piece, over the density that is there.
-struct Shares {
-  std::vector<std::vector<float>> rows;  // by place
-  std::vector<std::size_t> place;
-};
-
-Shares sharesOf(const DensityPatches& patches, const Occupancy& occupancy,
-                const std::vector<Position>& places, const Position& axis, int threads) {
-  Shares out;
+void fillRows(const DensityPatches& patches, const Occupancy& occupancy,
+              const std::vector<Position>& places, const Place& law, int threads, Mixture& out) {
   out.rows.resize(places.size());
   out.place.resize(places.size());
   std::iota(out.place.begin(), out.place.end(), std::size_t{0});
@@ -43,7 +36,7 @@ Shares sharesOf(const DensityPatches& patches, const Occupancy& occupancy,
       [n] { return std::vector<float>(n); },
       [&](std::size_t j, std::vector<float>& seen) {
         std::vector<float>& row = out.rows[j];
-        ratios(patches, {places[j], axis, SamplingLaw::ANGLE_GRID}, row);
+        ratios(patches, {places[j], law.axis, law.law}, row);
         occupancy.visibility(patches, places[j], seen.data());
         float sum = 0.F;
         for (std::size_t i = 0; i < n; ++i) {
@@ -53,42 +46,43 @@ Shares sharesOf(const DensityPatches& patches, const Occupancy& occupancy,
         const float mean = std::max(sum / static_cast<float>(n), 1e-30F);
         for (float& v : row) v /= mean;
       });
-  return out;
 }
 
-void prune(Shares& shares, std::vector<float>& weights) {
+void prune(Mixture& mixture) {
+  std::vector<float>& weights = mixture.weights;
   const float all = std::accumulate(weights.begin(), weights.end(), 0.F);
   std::size_t kept = 0;
   for (std::size_t j = 0; j < weights.size(); ++j) {
     if (weights[j] < kNegligible * all) continue;
     if (kept != j) {
-      shares.rows[kept] = std::move(shares.rows[j]);
-      shares.place[kept] = shares.place[j];
+      mixture.rows[kept] = std::move(mixture.rows[j]);
+      mixture.place[kept] = mixture.place[j];
       weights[kept] = weights[j];
     }
     ++kept;
   }
-  shares.rows.resize(kept);
-  shares.place.resize(kept);
+  mixture.rows.resize(kept);
+  mixture.place.resize(kept);
   weights.resize(kept);
 }
 
 // Multiplicative updates, as of maximum likelihood, a little overdone to be quicker. Each piece's
 // mixture divides by what is there, so that dense and thin places count the same.
-std::vector<float> weigh(Shares& shares, std::size_t pieces) {
-  std::vector<float> weights(shares.rows.size(), 1.F / static_cast<float>(shares.rows.size()));
+void weigh(std::size_t pieces, Mixture& mixture) {
+  std::vector<float>& weights = mixture.weights;
+  weights.assign(mixture.rows.size(), 1.F / static_cast<float>(mixture.rows.size()));
   std::vector<float> mixed(pieces);
   for (int round = 0; round < kRounds; ++round) {
-    if (round == kRoundsBeforePruning) prune(shares, weights);
+    if (round == kRoundsBeforePruning) prune(mixture);
     std::fill(mixed.begin(), mixed.end(), 1e-30F);
     for (std::size_t j = 0; j < weights.size(); ++j) {
       const float w = weights[j];
-      const float* row = shares.rows[j].data();
+      const float* row = mixture.rows[j].data();
       for (std::size_t i = 0; i < pieces; ++i) mixed[i] += w * row[i];
     }
     for (float& m : mixed) m = 1.F / m;
     for (std::size_t j = 0; j < weights.size(); ++j) {
-      const float* row = shares.rows[j].data();
+      const float* row = mixture.rows[j].data();
       float sum = 0.F;
 #pragma omp simd reduction(+ : sum)
       for (std::size_t i = 0; i < pieces; ++i) sum += row[i] * mixed[i];
@@ -96,7 +90,6 @@ std::vector<float> weigh(Shares& shares, std::size_t pieces) {
       weights[j] *= factor * std::sqrt(factor);
     }
   }
-  return weights;
 }
 
 struct Heap {
@@ -112,11 +105,20 @@ struct Heap {
 
 }  // namespace
 
+Mixture mixtureOf(const DensityPatches& patches, const Occupancy& occupancy,
+                  const std::vector<Position>& places, const Place& law, int threads) {
+  Mixture out;
+  fillRows(patches, occupancy, places, law, threads, out);
+  weigh(patches.size(), out);
+  return out;
+}
+
 std::vector<Position> mixturePlaces(const DensityPatches& patches, const Occupancy& occupancy,
                                     const Extent& extent, const Position& axis, int threads) {
   const std::vector<Position> places = placesAround(extent, kPlacesInside);
-  Shares shares = sharesOf(patches, occupancy, places, axis, threads);
-  const std::vector<float> weights = weigh(shares, patches.size());
+  const Mixture mixture =
+      mixtureOf(patches, occupancy, places, {{}, axis, SamplingLaw::ANGLE_GRID}, threads);
+  const std::vector<float>& weights = mixture.weights;
   const float all = std::accumulate(weights.begin(), weights.end(), 0.F);
   std::vector<std::size_t> order(weights.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
@@ -125,7 +127,7 @@ std::vector<Position> mixturePlaces(const DensityPatches& patches, const Occupan
   std::vector<Heap> heaps;
   for (const std::size_t j : order) {
     if (weights[j] < kShare * all) break;
-    const Position& p = places[shares.place[j]];
+    const Position& p = places[mixture.place[j]];
     const auto near = std::find_if(heaps.begin(), heaps.end(), [&](const Heap& h) {
       return distance(h.mean(), p) < kTogether * extent.diagonal();
     });

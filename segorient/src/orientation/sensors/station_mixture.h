@@ -3,12 +3,28 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <vector>
 
 #include "orientation/sensors/density_patches.h"
 #include "orientation/sensors/occupancy.h"
+#include "orientation/sensors/sampling_law.h"
 
 namespace segorient::detail {
+
+/// Places with a weight each, so that the sum of what they leave is likeliest: those that are left,
+/// as most weights come to nothing.
+struct Mixture {
+  /// By place and piece: what it would leave where it can see, over the density that is there, as a
+  /// part of the place's mean.
+  std::vector<std::vector<float>> rows;
+  std::vector<std::size_t> place;  ///< each row's, into those that were tried
+  std::vector<float> weights;
+};
+
+/// \param law of all of them, its position unused
+Mixture mixtureOf(const DensityPatches& patches, const Occupancy& occupancy,
+                  const std::vector<std::array<double, 3>>& places, const Place& law, int threads);
 
 /// Places whose mixture explains the densities, each with any weight, those near each other taken
 /// together: a start for searchStations(), the heaviest first.

@@ -168,9 +168,13 @@ std::vector<Position> placesInside(const Extent& extent, int count_wanted) {
   return out;
 }
 
+std::vector<Position> placesOutside(const Extent& extent) {
+  return shells(extent.middle(), extent.diagonal());
+}
+
 std::vector<Position> placesAround(const Extent& extent, int inside) {
   std::vector<Position> out = placesInside(extent, inside);
-  const std::vector<Position> around = shells(extent.middle(), extent.diagonal());
+  const std::vector<Position> around = placesOutside(extent);
   out.insert(out.end(), around.begin(), around.end());
   return out;
 }

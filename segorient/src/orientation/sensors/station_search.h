@@ -40,7 +40,10 @@ Extent extentOf(const DensityPatches& patches);
 /// Places in a regular grid inside the extent, `count` or a few more.
 std::vector<std::array<double, 3>> placesInside(const Extent& extent, int count);
 
-/// The same and places on shells around the extent.
+/// Places on shells around the extent.
+std::vector<std::array<double, 3>> placesOutside(const Extent& extent);
+
+/// Both.
 std::vector<std::array<double, 3>> placesAround(const Extent& extent, int inside);
 
 }  // namespace segorient::detail

@@ -1,0 +1,133 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the segorient authors
+// Scenes that were seen from so many places that no search finds them.
+#include <gtest/gtest.h>
+#include <segorient/orientation/pipeline.h>
+#include <segorient/orientation/sensors.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <random>
+#include <vector>
+
+#include "sensor_scans.h"
+
+namespace segorient {
+namespace {
+
+// A lidar of few beams, tilted by 45 degrees, which swings while it is carried about in a room.
+struct Carried {
+  Scan scan;
+  std::vector<Vector> from;  // by row
+};
+
+Carried carriedAbout() {
+  Carried out;
+  constexpr int kPoses = 30;
+  for (int i = 0; i < kPoses; ++i) {
+    const double way = 2.0 * kPi * i / kPoses;
+    const Vector place{3.0 + 1.4 * std::cos(way), 2.2 + 0.9 * std::sin(way),
+                       1.4 + 0.1 * std::sin(5.0 * way)};
+    const double heading = way + 0.6 * std::sin(i);
+    for (double e = -14.0; e <= 14.0; e += 4.0) {
+      for (double a = 0.1 * i; a < 360.0; a += 1.5) {
+        const double elevation = e * kPi / 180.0;
+        const double azimuth = a * kPi / 180.0;
+        const Vector d{std::cos(elevation) * std::cos(azimuth),
+                       std::cos(elevation) * std::sin(azimuth), std::sin(elevation)};
+        // About x by 45 degrees, then about z.
+        const double y = (d[1] - d[2]) * std::sqrt(0.5);
+        const double z = (d[1] + d[2]) * std::sqrt(0.5);
+        out.scan.add(place, {std::cos(heading) * d[0] - std::sin(heading) * y,
+                             std::sin(heading) * d[0] + std::cos(heading) * y, z});
+        out.from.push_back(place);
+      }
+    }
+  }
+  return out;
+}
+
+TEST(SeenWithin, ARoomFacesWhoWasCarriedAboutInIt) {
+  const Carried carried = carriedAbout();
+  const PointView points = carried.scan.view();
+  const SensorReport report = findSensors(points);
+  EXPECT_TRUE(report.sensors.empty());
+  ASSERT_EQ(report.directions.size(), 3 * points.size) << report.why;
+  const OrientedCloud cloud = orientCloud(points, nullptr, {});
+  std::size_t facing = 0;
+  for (std::size_t i = 0; i < points.size; ++i) {
+    double sum = 0.0;
+    for (std::size_t a = 0; a < 3; ++a) {
+      sum += static_cast<double>(cloud.normals[4 * i + a]) *
+             (carried.from[i][a] - static_cast<double>(points[i][a]));
+    }
+    facing += sum > 0.0 ? 1 : 0;
+  }
+  EXPECT_GT(static_cast<double>(facing), 0.99 * static_cast<double>(points.size));
+}
+
+// An ellipsoid 3 x 1 x 1, seen by a camera that is carried around it at half its width.
+std::vector<float> carriedAround() {
+  const Vector half{1.5, 0.5, 0.5};
+  std::mt19937 random(3);
+  std::normal_distribution<double> normal;
+  std::vector<float> rows;
+  for (int i = 0; i < 40; ++i) {
+    Vector place{};
+    Vector out{};
+    double length = 0.0;
+    double slope = 0.0;
+    for (double& v : out) {
+      v = normal(random);
+      length += v * v;
+    }
+    for (std::size_t a = 0; a < 3; ++a) {
+      out[a] /= std::sqrt(length);
+      slope += std::pow(out[a] / half[a], 2);
+    }
+    for (std::size_t a = 0; a < 3; ++a) {
+      place[a] = out[a] * half[a] + 0.5 * out[a] / half[a] / std::sqrt(slope);
+    }
+    for (int r = 0; r < 4000; ++r) {
+      Vector d{};
+      double dd = 0.0;
+      double od = 0.0;
+      double oo = -1.0;
+      for (std::size_t a = 0; a < 3; ++a) {
+        d[a] = -out[a] / half[a] / std::sqrt(slope) + 0.25 * normal(random);
+        dd += std::pow(d[a] / half[a], 2);
+        od += d[a] * place[a] / (half[a] * half[a]);
+        oo += std::pow(place[a] / half[a], 2);
+      }
+      const double root = od * od - dd * oo;
+      if (root < 0.0 || od > 0.0) continue;
+      const double t = (-od - std::sqrt(root)) / dd;
+      for (std::size_t a = 0; a < 3; ++a) rows.push_back(static_cast<float>(place[a] + t * d[a]));
+    }
+  }
+  return rows;
+}
+
+TEST(SeenWithin, ABodyWasNotSeenFromItsInside) {
+  const std::vector<float> rows = carriedAround();
+  const PointView points{rows.data(), 3, rows.size() / 3};
+  const SensorReport report = findSensors(points);
+  EXPECT_GT(report.deviation, 2.F * report.chance);
+  EXPECT_TRUE(report.directions.empty()) << report.why;
+  const OrientedCloud cloud = orientCloud(points, nullptr, {});
+  std::size_t outward = 0;
+  for (std::size_t i = 0; i < points.size; ++i) {
+    double sum = 0.0;
+    for (std::size_t a = 0; a < 3; ++a) {
+      const double weight = a == 0 ? 1.0 : 9.0;
+      sum += weight * static_cast<double>(cloud.normals[4 * i + a]) *
+             static_cast<double>(points[i][a]);
+    }
+    outward += sum > 0.0 ? 1 : 0;
+  }
+  EXPECT_GT(static_cast<double>(outward), 0.99 * static_cast<double>(points.size));
+}
+
+}  // namespace
+}  // namespace segorient
