@@ -16,6 +16,7 @@
 #include "common/threads.h"
 #include "features/sheet_fit.h"
 #include "orientation/automatic/even_cells.h"
+#include "orientation/automatic/field_patches.h"
 #include "orientation/automatic/sign_energy.h"
 #include "orientation/automatic/torn_sheets.h"
 #include "orientation/winding/dipole_fields.h"
@@ -24,13 +25,13 @@
 namespace segorient::detail {
 namespace {
 
-constexpr int kSix = 6;  // neighbours of the spacing
+// Of so many points a median is known to a hundredth, a kurtosis to less than a tenth.
+constexpr std::size_t kRows = 20000;
 
 float medianSpacing(const PointView& points, const Neighborhoods& table) {
-  constexpr std::size_t kRows = 20000;  // a median of so many is known to a hundredth
   std::vector<float> values;
   for (const std::size_t i : EveryNth(points.size, kRows)) {
-    values.push_back(meanDistance(points, table, i, kSix));
+    values.push_back(meanDistance(points, table, i, kFirstRing));
   }
   return median(std::move(values));
 }
@@ -84,10 +85,8 @@ float offsetOf(const PointView& points, const Neighborhoods& table,
 // with noise s have an excess kurtosis of -2 a^4 / (a^2 + s^2)^2.
 bool hidesTwoSides(const PointView& points, const Neighborhoods& table,
                    const std::vector<float>& normals, int threads) {
-  // Half of what sides make that are as far from their middle as noise takes points; the kurtosis
-  // of so many rows is known to less than a tenth.
+  // Half of what sides make that are as far from their middle as noise takes points.
   constexpr double kTwoSides = -0.25;
-  constexpr std::size_t kRows = 4000;
   const EveryNth rows(points.size, kRows);
   std::vector<float> offsets(rows.size());
 #pragma omp parallel for num_threads(resolveThreads(threads, offsets.size(), 300.0)) \
@@ -134,13 +133,13 @@ std::vector<std::uint8_t> pointsToTurn(const PointView& points, const Neighborho
                                        const std::vector<std::uint8_t>& against, int threads) {
   std::vector<std::uint8_t> turned = against;
   if (!field.consistent) return turned;
-  if (field.keeps.empty()) {
-    keepSheetsWhole(neighborhoods, normals, turned);
-    return turned;
-  }
+  const bool whole = field.keeps.empty();
+  if (whole) keepSheetsWhole(neighborhoods, normals, turned);
+  const std::vector<std::uint8_t>& told = whole ? field.turns : field.keeps;
+  if (told.empty()) return turned;
   const std::vector<std::uint32_t> cells = cellsOf(points, field, threads);
   for (std::size_t i = 0; i < turned.size(); ++i) {
-    if (field.keeps[cells[i]] != 0) turned[i] = 0;
+    if (against[i] != 0 && told[cells[i]] != 0) turned[i] = whole ? 1 : 0;
   }
   return turned;
 }
@@ -151,8 +150,8 @@ void findWhatSheetsKeep(const PointView& points, const Neighborhoods& neighborho
                         const std::vector<float>& normals, int threads, NoiseField& field) {
   if (field.empty() || !field.consistent) return;
   const std::vector<std::uint8_t> against = FieldSides(points, field, normals, threads).against;
-  std::vector<std::uint8_t> turned = against;
-  keepSheetsWhole(neighborhoods, normals, turned);
+  const std::vector<std::uint8_t> turned =
+      pointsToTurn(points, neighborhoods, field, normals, against, threads);
   const std::vector<std::uint32_t> cells = cellsOf(points, field, threads);
   std::vector<int> balance(field.places.size() / 4, 0);
   for (std::size_t i = 0; i < against.size(); ++i) {
@@ -170,7 +169,9 @@ NoiseField findNoiseField(const PointView& points, const Neighborhoods& neighbor
   // The mean of w is a fifth of its root mean square there, as it is by chance of 25 pieces with
   // random signs: the surface is open, for all that w tells. Folds and rolls have three quarters.
   constexpr float kSaysNothing = 0.24F;
-  constexpr int kRounds = 2;  // a third changes little
+  // Half of the mean square of w is that of its mean: most of the surface is closed and right, so
+  // that what w contradicts is wrong. On open sheets it contradicts what is right.
+  constexpr float kSaysMost = 0.125F;
   // The spread is what noise leaves of w; over it, and the square of what noise leaves of normals,
   // a half. 1 and 4 are as good in the mean.
   constexpr float kEvidence = 2.F;
@@ -186,11 +187,19 @@ NoiseField findNoiseField(const PointView& points, const Neighborhoods& neighbor
   out.consistent = consistent
                        ? *consistent
                        : opposedPairs(points, neighborhoods, normals, threads).facing < kSuspicious;
+  // What single points show of two sides are their own lines.
+  const bool averaged = scale.cell > 1.F;
   if (own.spread < kSaysNothing && own.factor > 0.F) {
+    if (averaged && own.spread < kSaysMost && contradictsField(solver.lackOf(found, own.factor))) {
+      const std::vector<float> nothing(found.size(), 0.F);
+      const std::vector<float> even(subset.size(), kEvidence * own.spread);
+      out.turns = takeBetterPatches(solver, subset, solver.solve(nothing, even), found);
+    }
     // Signs that do not contradict each other are all as good, whatever votes were against them.
     const std::vector<float> trust = trustOf(
         subset, out.consistent ? std::vector<float>{} : confidences, kEvidence * own.spread);
-    for (int round = 0; round < kRounds; ++round) found = solver.solve(found, trust);
+    // What the first solution found is the evidence of the second; a third changes little.
+    found = solver.solve(solver.solve(found, trust), trust);
   }
   out.factor = solver.fit(found).factor;
   out.dipoles = dipolesOf(found, subset.areas);
@@ -198,8 +207,6 @@ NoiseField findNoiseField(const PointView& points, const Neighborhoods& neighbor
   // The signs as they came contradict the field by more than noise explains: the surface may be
   // open, or a wall whose two sides came out as one sheet, and which of them cannot be told.
   out.most = kSure / std::max(kSure, own.spread);
-  // What single points show of two sides are their own lines.
-  const bool averaged = scale.cell > 1.F;
   if (averaged && hidesTwoSides(points, neighborhoods, normals, threads)) out.most = 0.F;
   out.places = std::move(subset.places);
   return out;

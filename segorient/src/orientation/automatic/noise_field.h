@@ -47,6 +47,9 @@ struct NoiseField {
   /// Cosine below which normals are averaged with the field's direction: all of them, unless it is
   /// coarser than what the points themselves tell; with 0 it tells only their sides.
   float averaged_below = 1.F;
+  /// One a cell, whether its normals were surely the wrong way: to turn its points may tear a
+  /// sheet. Empty where none is.
+  std::vector<std::uint8_t> turns;
   /// Where only parts of the cloud can be looked at: one a cell, whether to turn its points would
   /// tear a sheet. Else empty.
   std::vector<std::uint8_t> keeps;

@@ -12,6 +12,7 @@
 #include "common/every_nth.h"
 #include "common/median.h"
 #include "common/parallel_for.h"
+#include "features/sheet_fit.h"
 #include "orientation/automatic/blue_noise.h"
 #include "orientation/automatic/even_cells.h"
 #include "orientation/winding/dipole_fields.h"
@@ -34,11 +35,10 @@ float distance(const float* a, const float* b) {
 }
 
 float medianSixth(const PointView& points, const Neighborhoods& table) {
-  constexpr int kSixth = 6;  // the first ring
   std::vector<float> distances;
   for (const std::size_t i : EveryNth(points.size, kPairRows)) {
-    if (table.count(i) <= kSixth) continue;
-    const auto q = static_cast<std::size_t>(table.indices(i)[kSixth]);
+    if (table.count(i) <= kFirstRing) continue;
+    const auto q = static_cast<std::size_t>(table.indices(i)[kFirstRing]);
     distances.push_back(distance(points[i], points[q]));
   }
   return median(std::move(distances));

@@ -46,16 +46,47 @@ std::vector<float> FieldSolver::windingOf(const std::vector<float>& normals) con
   return windingNumbers(points_, {points_, dipoles}, radius_, threads_);
 }
 
+float FieldSolver::meanAround(const std::vector<float>& values, std::size_t i) const {
+  const int count = neighborhoods_.count(i);
+  float sum = 0.F;
+  for (int j = 0; j < count; ++j) {
+    sum += values[static_cast<std::size_t>(neighborhoods_.indices(i)[j])];
+  }
+  return sum / static_cast<float>(count);
+}
+
 std::vector<float> FieldSolver::meansOf(std::vector<float> values) const {
   for (int pass = 0; pass < kPasses; ++pass) {
     std::vector<float> means(values.size(), 0.F);
-    for (std::size_t i = 0; i < means.size(); ++i) {
-      const int count = neighborhoods_.count(i);
-      for (int j = 0; j < count; ++j) {
-        means[i] += values[static_cast<std::size_t>(neighborhoods_.indices(i)[j])];
-      }
-      means[i] /= static_cast<float>(count);
-    }
+    for (std::size_t i = 0; i < means.size(); ++i) means[i] = meanAround(values, i);
+    values = std::move(means);
+  }
+  return values;
+}
+
+std::vector<float> FieldSolver::lackOf(const std::vector<float>& normals, float factor) const {
+  std::vector<float> lack = meansOf(windingOf(normals));
+  for (float& v : lack) v = 0.5F - factor * v;
+  return lack;
+}
+
+std::vector<float> FieldSolver::meansNear(const std::vector<float>& normals,
+                                          const std::vector<std::uint32_t>& rows,
+                                          const std::vector<std::uint32_t>& near) const {
+  std::vector<float> dipoles(normals.size(), 0.F);
+  for (const std::uint32_t p : rows) {
+    for (std::size_t a = 0; a < 3; ++a) dipoles[4 * p + a] = areas_[p] * normals[4 * p + a];
+    dipoles[4 * p + 3] = areas_[p];
+  }
+  std::vector<float> places;
+  for (const std::uint32_t p : near) places.insert(places.end(), points_[p], points_[p] + 4);
+  const std::vector<float> winding =
+      windingNumbers({places.data(), 4, near.size()}, {points_, dipoles, &rows}, radius_, threads_);
+  std::vector<float> values(areas_.size(), 0.F);
+  for (std::size_t i = 0; i < near.size(); ++i) values[near[i]] = winding[i];
+  for (int pass = 0; pass < kPasses; ++pass) {
+    std::vector<float> means(values.size(), 0.F);
+    for (const std::uint32_t p : near) means[p] = meanAround(values, p);
     values = std::move(means);
   }
   return values;

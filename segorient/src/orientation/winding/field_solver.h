@@ -5,6 +5,8 @@
 #include <segorient/common/neighborhoods.h>
 #include <segorient/common/point_view.h>
 
+#include <cstddef>
+#include <cstdint>
 #include <vector>
 
 namespace segorient {
@@ -44,9 +46,20 @@ class FieldSolver {
 
   FieldFit fit(const std::vector<float>& normals) const;
 
+  /// What the means S w are off 1/2: 1/2 - factor S w. One a point.
+  std::vector<float> lackOf(const std::vector<float>& normals, float factor) const;
+
+  /// The means S w that some of the points make alone.
+  /// \param rows those points, ascending
+  /// \param near points that are asked for, ascending \return one a point, 0 at all others
+  std::vector<float> meansNear(const std::vector<float>& normals,
+                               const std::vector<std::uint32_t>& rows,
+                               const std::vector<std::uint32_t>& near) const;
+
  private:
   std::vector<float> windingOf(const std::vector<float>& normals) const;
   std::vector<float> growthOf(const std::vector<float>& lack) const;
+  float meanAround(const std::vector<float>& values, std::size_t i) const;
   std::vector<float> meansOf(std::vector<float> values) const;
   std::vector<float> sharesOf(std::vector<float> values) const;
   FieldFit fitOf(const std::vector<float>& winding) const;
