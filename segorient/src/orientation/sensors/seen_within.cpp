@@ -23,6 +23,9 @@ constexpr double kSure = 3.0;
 // rooms, streets and tunnels .74 and more. Of bodies that a scanner was carried around close by it
 // is .43 to .72, as places in them leave the same.
 constexpr double kOneSided = 0.7;
+// Where all of it comes from one side the surface is convex: nothing in it hides anything, and a
+// body that was seen all around looks like that as well.
+constexpr double kConvex = 0.995;
 
 // A mixture of places whose rays nothing is known of.
 struct Explained {
@@ -111,7 +114,7 @@ std::vector<float> directionsWithin(const DensityPatches& patches, const Occupan
                                     const Extent& extent, int threads) {
   const Explained within(patches, occupancy, placesInside(extent, kPlacesInside), threads);
   Sides sides = sidesOf(patches, within);
-  if (sides.one_sided < kOneSided) return {};
+  if (sides.one_sided < kOneSided || sides.one_sided > kConvex) return {};
   const Explained around(patches, occupancy, placesOutside(extent), threads);
   if (advantage(within.logs, around.logs) < kSure) return {};
   return std::move(sides.directions);
