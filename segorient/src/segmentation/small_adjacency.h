@@ -98,7 +98,7 @@ class SmallAdjacency {
       const std::size_t p = point(slot);
       const pcl::index_t* row = state_.neighborhoods->indices(p);
       const int count = state_.rowSize(p);
-      std::fill_n(&marks_[words() * slot], words(), 0U);
+      std::fill_n(marks_.begin() + static_cast<std::ptrdiff_t>(words() * slot), words(), 0U);
       const auto holds = [&](pcl::index_t index) {
         bool found = false;
         visitNear(p, index, [&](std::size_t q) { found = condition(p, q); });
