@@ -54,6 +54,13 @@ struct Plate {
     for (const std::uint32_t c : rows) normals[4 * std::size_t{c} + 2] *= -1.F;
     return normals;
   }
+  std::vector<std::uint8_t> takeBetter(const std::vector<float>& other,
+                                       std::vector<float>& normals) const {
+    const FieldSolver solver = this->solver();
+    const float factor = solver.fit(normals).factor;
+    return detail::takeBetterPatches(solver, cells, factor, solver.lackOf(normals, factor), other,
+                                     normals);
+  }
   bool contradicts(const std::vector<float>& normals) const {
     return detail::contradictsField(solver().lackOf(normals, solver().fit(cells.normals).factor));
   }
@@ -82,8 +89,7 @@ TEST(FieldPatches, OneSideOfAThinPartIsTakenFromTheOtherSolution) {
   const std::vector<std::uint32_t> wrong = plate.middle(8.F);
   std::vector<float> normals = plate.turned(wrong);
   EXPECT_TRUE(plate.contradicts(normals));
-  const std::vector<std::uint8_t> taken =
-      detail::takeBetterPatches(plate.solver(), plate.cells, plate.cells.normals, normals);
+  const std::vector<std::uint8_t> taken = plate.takeBetter(plate.cells.normals, normals);
   EXPECT_EQ(normals, plate.cells.normals);
   ASSERT_EQ(taken.size(), plate.cells.size());
   EXPECT_EQ(std::count(taken.begin(), taken.end(), 1), static_cast<std::ptrdiff_t>(wrong.size()));
@@ -94,8 +100,8 @@ TEST(FieldPatches, TheOtherSolutionIsNotTakenWhereItIsWorse) {
   const Plate plate(3.F);
   EXPECT_FALSE(plate.contradicts(plate.cells.normals));
   std::vector<float> normals = plate.cells.normals;
-  const std::vector<std::uint8_t> taken = detail::takeBetterPatches(
-      plate.solver(), plate.cells, plate.turned(plate.middle(8.F)), normals);
+  const std::vector<std::uint8_t> taken =
+      plate.takeBetter(plate.turned(plate.middle(8.F)), normals);
   EXPECT_TRUE(taken.empty());
   EXPECT_EQ(normals, plate.cells.normals);
 }

@@ -70,12 +70,11 @@ bool contradictsField(const std::vector<float>& lack) {
 }
 
 std::vector<std::uint8_t> takeBetterPatches(const FieldSolver& solver, const EvenCells& cells,
+                                            float factor, std::vector<float> lack,
                                             const std::vector<float>& other,
                                             std::vector<float>& normals) {
   const std::vector<Rows> patches = opposedPatches(cells, normals, other);
   if (patches.empty()) return {};
-  const float factor = solver.fit(normals).factor;
-  std::vector<float> lack = solver.lackOf(normals, factor);
   std::vector<std::uint8_t> taken;
   std::vector<float> change(normals.size(), 0.F);
   for (const Rows& patch : patches) {

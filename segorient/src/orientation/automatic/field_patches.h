@@ -26,11 +26,12 @@ SEGORIENT_ORIENTATION_EXPORT bool contradictsField(const std::vector<float>& lac
 /// One solution that has all signs by the field alone is a worse one, as it loses fine parts, and
 /// the least sum is not the truth; so much less of it is.
 ///
+/// \param factor of FieldSolver::fit() \param lack of FieldSolver::lackOf(), both of `normals`
 /// \param normals 4 floats a cell, evidence that may change
 /// \param other of another solution
 /// \return one a cell: whether it has another normal now; empty where none has
 SEGORIENT_ORIENTATION_EXPORT std::vector<std::uint8_t> takeBetterPatches(
-    const FieldSolver& solver, const EvenCells& cells, const std::vector<float>& other,
-    std::vector<float>& normals);
+    const FieldSolver& solver, const EvenCells& cells, float factor, std::vector<float> lack,
+    const std::vector<float>& other, std::vector<float>& normals);
 
 }  // namespace segorient::detail

@@ -190,10 +190,13 @@ NoiseField findNoiseField(const PointView& points, const Neighborhoods& neighbor
   // What single points show of two sides are their own lines.
   const bool averaged = scale.cell > 1.F;
   if (own.spread < kSaysNothing && own.factor > 0.F) {
-    if (averaged && own.spread < kSaysMost && contradictsField(solver.lackOf(found, own.factor))) {
+    std::vector<float> lack;
+    if (averaged && own.spread < kSaysMost) lack = solver.lackOf(found, own.factor);
+    if (contradictsField(lack)) {
       const std::vector<float> nothing(found.size(), 0.F);
       const std::vector<float> even(subset.size(), kEvidence * own.spread);
-      out.turns = takeBetterPatches(solver, subset, solver.solve(nothing, even), found);
+      out.turns = takeBetterPatches(solver, subset, own.factor, std::move(lack),
+                                    solver.solve(nothing, even), found);
     }
     // Signs that do not contradict each other are all as good, whatever votes were against them.
     const std::vector<float> trust = trustOf(

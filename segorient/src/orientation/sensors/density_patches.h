@@ -5,6 +5,7 @@
 #include <segorient/common/point_view.h>
 #include <segorient/search/median_hash_index.h>
 
+#include <array>
 #include <cstddef>
 #include <utility>
 #include <vector>
@@ -28,6 +29,13 @@ struct DensityPatches {
 
   /// Appends a piece, without its sparsity.
   void add(const float* center, const float* normal, float density, std::size_t of_point);
+
+  /// How far a place is in front of a piece's plane; below 0 behind it.
+  float heightOver(std::size_t i, const std::array<double, 3>& place) const {
+    return (static_cast<float>(place[0]) - x[i]) * nx[i] +
+           (static_cast<float>(place[1]) - y[i]) * ny[i] +
+           (static_cast<float>(place[2]) - z[i]) * nz[i];
+  }
 
   /// Fills `sparsity` from `log_density`.
   void setSparsity();

@@ -16,7 +16,6 @@ namespace {
 
 using Position = std::array<double, 3>;
 
-constexpr int kPlacesInside = 800;
 // By how many standard errors places within have to explain the pieces better than places around.
 constexpr double kSure = 3.0;
 // What each piece got from one of its sides, less what it got from the other, as a part of both: of
@@ -76,8 +75,6 @@ Sides sidesOf(const DensityPatches& patches, const Explained& within) {
   for (std::size_t i = 0; i < patches.size(); ++i) {
     const Position at{static_cast<double>(patches.x[i]), static_cast<double>(patches.y[i]),
                       static_cast<double>(patches.z[i])};
-    const Position normal{static_cast<double>(patches.nx[i]), static_cast<double>(patches.ny[i]),
-                          static_cast<double>(patches.nz[i])};
     double balance = 0.0;
     double total = 0.0;
     Position direction{0.0, 0.0, 0.0};
@@ -85,15 +82,13 @@ Sides sidesOf(const DensityPatches& patches, const Explained& within) {
       const Position& place = within.places[within.mixture.place[j]];
       Position way{};
       double square = 0.0;
-      double height = 0.0;
       for (std::size_t a = 0; a < 3; ++a) {
         way[a] = place[a] - at[a];
         square += way[a] * way[a];
-        height += way[a] * normal[a];
       }
       const double got = static_cast<double>(within.mixture.weights[j]) *
                          static_cast<double>(within.mixture.rows[j][i]);
-      balance += height < 0.0 ? -got : got;
+      balance += patches.heightOver(i, place) < 0.F ? -got : got;
       total += got;
       for (std::size_t a = 0; a < 3; ++a) {
         direction[a] += got * way[a] / std::sqrt(std::max(square, 1e-30));
@@ -112,7 +107,7 @@ Sides sidesOf(const DensityPatches& patches, const Explained& within) {
 
 std::vector<float> directionsWithin(const DensityPatches& patches, const Occupancy& occupancy,
                                     const Extent& extent, int threads) {
-  const Explained within(patches, occupancy, placesInside(extent, kPlacesInside), threads);
+  const Explained within(patches, occupancy, placesInside(extent, kMixedInside), threads);
   Sides sides = sidesOf(patches, within);
   if (sides.one_sided < kOneSided || sides.one_sided > kConvex) return {};
   const Explained around(patches, occupancy, placesOutside(extent), threads);

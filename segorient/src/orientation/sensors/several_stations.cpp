@@ -210,14 +210,8 @@ class Sum {
   void densityAt(const Position& position, const std::vector<float>& seen,
                  std::vector<float>& out) const {
     ratios(patches_, {position, axis_, SamplingLaw::ANGLE_GRID}, out);
-    const auto x = static_cast<float>(position[0]);
-    const auto y = static_cast<float>(position[1]);
-    const auto z = static_cast<float>(position[2]);
     for (std::size_t i = 0; i < out.size(); ++i) {
-      const float height = (x - patches_.x[i]) * patches_.nx[i] +
-                           (y - patches_.y[i]) * patches_.ny[i] +
-                           (z - patches_.z[i]) * patches_.nz[i];
-      out[i] *= height < 0.F ? -seen[i] : seen[i];
+      out[i] *= patches_.heightOver(i, position) < 0.F ? -seen[i] : seen[i];
     }
   }
 

@@ -5,16 +5,6 @@
 #include <cstddef>
 
 namespace segorient::detail {
-namespace {
-
-bool isInFront(const DensityPatches& patches, std::size_t i, const std::array<double, 3>& place) {
-  return (static_cast<float>(place[0]) - patches.x[i]) * patches.nx[i] +
-             (static_cast<float>(place[1]) - patches.y[i]) * patches.ny[i] +
-             (static_cast<float>(place[2]) - patches.z[i]) * patches.nz[i] >
-         0.F;
-}
-
-}  // namespace
 
 std::vector<std::int32_t> strongestPlaces(const DensityPatches& patches,
                                           const std::vector<std::array<double, 3>>& places,
@@ -25,7 +15,7 @@ std::vector<std::int32_t> strongestPlaces(const DensityPatches& patches,
     float most[2] = {-1.F, -1.F};
     std::int32_t best[2] = {0, 0};
     for (std::size_t j = 0; j < places.size(); ++j) {
-      const std::size_t side = isInFront(patches, i, places[j]) ? 1 : 0;
+      const std::size_t side = patches.heightOver(i, places[j]) > 0.F ? 1 : 0;
       sum[side] += rows[j][i];
       if (rows[j][i] <= most[side]) continue;
       most[side] = rows[j][i];

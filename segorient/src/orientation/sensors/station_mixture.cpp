@@ -15,7 +15,6 @@ namespace {
 
 using Position = std::array<double, 3>;
 
-constexpr int kPlacesInside = 800;
 constexpr int kRounds = 200;
 // By then weights of places without a sensor have fallen by orders of magnitude.
 constexpr int kRoundsBeforePruning = 30;
@@ -115,7 +114,7 @@ Mixture mixtureOf(const DensityPatches& patches, const Occupancy& occupancy,
 
 std::vector<Position> mixturePlaces(const DensityPatches& patches, const Occupancy& occupancy,
                                     const Extent& extent, const Position& axis, int threads) {
-  const std::vector<Position> places = placesAround(extent, kPlacesInside);
+  const std::vector<Position> places = placesAround(extent, kMixedInside);
   const Mixture mixture =
       mixtureOf(patches, occupancy, places, {{}, axis, SamplingLaw::ANGLE_GRID}, threads);
   const std::vector<float>& weights = mixture.weights;

@@ -12,6 +12,9 @@
 
 namespace segorient::detail {
 
+/// Places inside of the extent that mixtures are made of.
+constexpr int kMixedInside = 800;
+
 /// Places with a weight each, so that the sum of what they leave is likeliest: those that are left,
 /// as most weights come to nothing.
 struct Mixture {
