@@ -31,6 +31,7 @@ void forEachNumber(P& p, const Visit& visit) {
   visit(p.open);
   visit(p.find_sensors);
   visit(p.found_sensors);
+  visit(p.seen_within);
   visit(p.place.shadows.steps);
   visit(p.place.shadows.covered);
   visit(p.place.shadows.open);

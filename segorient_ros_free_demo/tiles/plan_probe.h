@@ -58,13 +58,16 @@ class Probe {
     return wanted;
   }
   /// \param seen_from relative to the origin; null where no point carries that
-  void add(const Place& place, const float* seen_from) {
+  /// \param normal the same, see Plan::hasNormals()
+  void add(const Place& place, const float* seen_from, const float* normal) {
     const std::array<float, 3> p = near(place, origin_);
     points_.insert(points_.end(), p.begin(), p.end());
     if (seen_from != nullptr) viewpoints_.insert(viewpoints_.end(), seen_from, seen_from + 3);
+    if (normal != nullptr) normals_.insert(normals_.end(), normal, normal + 3);
   }
   PointView points() const { return {points_.data(), 3, points_.size() / 3}; }
   const std::vector<float>& viewpoints() const { return viewpoints_; }
+  const std::vector<float>& normals() const { return normals_; }
 
  private:
   // Together half a million points: traits are medians and shares, and their surroundings are
@@ -77,6 +80,7 @@ class Probe {
   std::vector<std::uint8_t> is_near_;  // by node: whether some of it may be of a part
   std::vector<float> points_;
   std::vector<float> viewpoints_;
+  std::vector<float> normals_;
 };
 
 }  // namespace segorient::program

@@ -37,7 +37,7 @@ PlanSensors::PlanSensors(const Plan& plan, const PointSample& sample, const Plac
   given.suggested = {near({0.0, 0.0, 0.0}, plan.origin)};
   if (by_row_ && image_width > 0) given.grids = {{0, image_width, size / image_width}};
   choose(given, threads);
-  if (by_row_ || sure_ == 0) return;
+  if (by_row_ || (sure_ == 0 && !seenWithin())) return;
   search::MedianHashIndex::Options search_options;
   search_options.threads = threads;
   index_.build({points_.data(), 3, size}, nullptr, search_options);
@@ -60,17 +60,31 @@ void PlanSensors::choose(const OrientationHints& given, int threads) {
   detail::PlaceChoice choice = detail::choosePlaces(points, given, true, cloud, threads);
   place_ = {choice.shadows, choice.place_found};
   follows_given_ = !choice.hints;
+  if (choice.hints) directions_ = std::move(choice.hints->normals);
   report_ = std::move(choice.sensors);
   if (!report_.sure()) return;
   sure_ = static_cast<std::size_t>(std::count_if(report_.sensors.begin(), report_.sensors.end(),
                                                  [](const FoundSensor& s) { return s.sure; }));
 }
 
-std::array<float, 3> PlanSensors::of(std::uint64_t row, const std::array<float, 3>& place) const {
-  pcl::index_t point = static_cast<pcl::index_t>(by_row_ ? row : 0);
+// A point of the sample, or the nearest one.
+std::size_t PlanSensors::sampleOf(std::uint64_t row, const std::array<float, 3>& place) const {
+  if (by_row_) return static_cast<std::size_t>(row);
+  pcl::index_t point = 0;
   float distance = 0.F;
-  if (!by_row_ && index_.nearestK(place.data(), 1, &point, &distance) == 0) point = 0;
-  const std::int32_t sensor = report_.sensor_of[static_cast<std::size_t>(point)];
+  const bool any = index_.nearestK(place.data(), 1, &point, &distance) > 0;
+  return any ? static_cast<std::size_t>(point) : 0;
+}
+
+std::array<float, 3> PlanSensors::directionOf(std::uint64_t row,
+                                              const std::array<float, 3>& place) const {
+  std::array<float, 3> out{};
+  std::copy_n(&directions_[3 * sampleOf(row, place)], 3, out.begin());
+  return out;
+}
+
+std::array<float, 3> PlanSensors::of(std::uint64_t row, const std::array<float, 3>& place) const {
+  const std::int32_t sensor = report_.sensor_of[sampleOf(row, place)];
   if (sensor < 0 || !report_.sensors[static_cast<std::size_t>(sensor)].sure) {
     return {kNaN, kNaN, kNaN};
   }

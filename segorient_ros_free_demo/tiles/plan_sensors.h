@@ -53,14 +53,19 @@ class PlanSensors {
   /// What is known of the one that is followed.
   const CloudPlace& place() const { return place_; }
   std::size_t found() const { return sure_; }
+  bool seenWithin() const { return !directions_.empty(); }
   /// Where a point was seen from, relative to the plan's origin; NaN where no sensor is sure.
   std::array<float, 3> of(std::uint64_t row, const std::array<float, 3>& place) const;
+  /// Where the scene was seen from within: the mean direction to where; 0 = unknown.
+  std::array<float, 3> directionOf(std::uint64_t row, const std::array<float, 3>& place) const;
 
  private:
   void takeSample(const Plan& plan, const PointSample& sample);
   void choose(const OrientationHints& given, int threads);
+  std::size_t sampleOf(std::uint64_t row, const std::array<float, 3>& place) const;
 
   SensorReport report_;
+  std::vector<float> directions_;  // 3 a point of the sample, or empty
   CloudPlace place_;
   bool follows_given_ = true;
   std::size_t sure_ = 0;

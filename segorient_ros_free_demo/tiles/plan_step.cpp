@@ -136,8 +136,7 @@ void findWanted(const Probe& probe, const StoredPoint* points, std::size_t size,
 // The second pass: each point to its tile.
 void distribute(const std::string& folder, const StepProgress& progress, const PlanSensors& sensors,
                 int threads, Probe& probe, Plan& plan) {
-  PointFiles files(folder, plan.run, plan.tree, {plan.has_viewpoints, plan.keep_orientation},
-                   threads);
+  PointFiles files(folder, plan.run, plan.tree, {plan.has_viewpoints, plan.hasNormals()}, threads);
   Viewpoints viewpoints(sensors);
   plan.step = roundingStep(plan.tree);
   const Trajectory trajectory = trajectoryOf(plan);
@@ -152,14 +151,18 @@ void distribute(const std::string& folder, const StepProgress& progress, const P
       for (std::size_t i = 0; i < block.size; ++i, ++row) {
         StoredPoint& point = points[i];
         if (point.cell == kNoCell) continue;
+        const Place place = block.triple(block.xyz(), i);
         if (plan.has_viewpoints) {
-          point.seen_from = viewpoints.of(block, i, row, block.triple(block.xyz(), i), plan.origin);
+          point.seen_from = viewpoints.of(block, i, row, place, plan.origin);
         }
         if (plan.keep_orientation) {
           point.normal = near(block.triple(block.normals(), i), {0.0, 0.0, 0.0});
+        } else if (plan.seen_within) {
+          point.normal = sensors.directionOf(row, near(place, plan.origin));
         }
         if (wanted[i] != 0) {
-          probe.add(point.place, plan.has_viewpoints ? point.seen_from.data() : nullptr);
+          probe.add(point.place, plan.has_viewpoints ? point.seen_from.data() : nullptr,
+                    plan.hasNormals() ? point.normal.data() : nullptr);
         }
         ++plan.finite;
       }
@@ -203,6 +206,7 @@ void followSensors(const PlanSensors& sensors, Plan& plan) {
   }
   plan.place = sensors.place();
   plan.found_sensors = static_cast<std::uint32_t>(sensors.found());
+  plan.seen_within = sensors.seenWithin();
   plan.has_viewpoints = plan.has_viewpoints || sensors.found() > 0;
 }
 
@@ -268,6 +272,7 @@ Plan planStep(const TileRequest& request, const std::string& folder, const StepP
   distribute(folder, progress, sensors, request.threads, probe, plan);
   OrientationHints hints = hintsOf(plan, plan.origin);
   hints.viewpoints = probe.viewpoints();
+  hints.normals = probe.normals();
   plan.traits = measureTileTraits(probe.points(), plan.k, hints, request.threads);
   // Its points are so much farther apart, and see as many of them.
   if (plan.traits.level > 1.F) plan.tree.widen(static_cast<double>(plan.traits.level));

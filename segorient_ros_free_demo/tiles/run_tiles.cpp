@@ -45,6 +45,7 @@ std::string reportText(const Plan& plan, const JoinSummary& joined, std::uint64_
   json.field("pieces", joined.pieces);
   json.field("segments", segments);
   json.field("sensors_found", joined.sensors_dropped ? 0U : plan.found_sensors);
+  json.field("seen_within", plan.seen_within);
   json.field("viewpoint_left_aside", leavesPlaceAside(plan, joined));
   json.field("noise_in_spacings", plan.traits.noise);
   json.field("denoised", plan.traits.denoise != 0);
@@ -145,6 +146,7 @@ void runAllSteps(const TileRequest& request, const std::string& folder_asked_for
     std::printf("sensors found   %u%s\n", plan.found_sensors,
                 joined.sensors_dropped ? ", but see surfaces from both sides" : "");
   }
+  if (plan.seen_within) std::printf("sensors found   none, but it was seen from within\n");
   if (leavesPlaceAside(plan, joined)) {
     std::printf("viewpoint       left aside: the surface contradicts it, or knows better\n");
   }

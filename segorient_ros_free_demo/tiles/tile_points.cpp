@@ -79,7 +79,7 @@ void Reader::readFile(std::uint32_t owner) {
     const auto last = is_near_.begin() + packet.last_cell + 1;
     if (owner != tile_ && std::find(first, last, 1) == last) continue;
     points.clear();
-    if (!unpackPoints(file.part(part), packet.count, {plan_.has_viewpoints, plan_.keep_orientation},
+    if (!unpackPoints(file.part(part), packet.count, {plan_.has_viewpoints, plan_.hasNormals()},
                       points)) {
       file.fail();
     }
@@ -123,7 +123,7 @@ void Reader::push(const StoredPoint& p, TileRole role, double whole) {
   if (plan_.has_viewpoints) {
     out_.viewpoints.insert(out_.viewpoints.end(), p.seen_from.begin(), p.seen_from.end());
   }
-  if (plan_.keep_orientation) {
+  if (plan_.hasNormals()) {
     out_.normals.insert(out_.normals.end(), p.normal.begin(), p.normal.end());
   }
 }

@@ -29,7 +29,7 @@ struct TilePoints {
   std::vector<TileRole> roles;
   std::vector<float> whole;          ///< see workOnTile()
   std::vector<float> viewpoints;     ///< 3 each, relative to the plan's origin; or empty
-  std::vector<float> normals;        ///< 3 each, as they were in the input, 0 = none; or empty
+  std::vector<float> normals;        ///< 3 each, see Plan::hasNormals(), 0 = none; or empty
   std::vector<SharedPoints> shared;  ///< ascending by the neighbour, then by the owner
 };
 

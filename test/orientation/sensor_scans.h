@@ -79,6 +79,38 @@ inline Scan scanFrom(const Vector& station, double step_degrees, const Room& roo
   return scan;
 }
 
+// A lidar of few beams, tilted by 45 degrees, which swings while it is carried about in a room.
+struct Carried {
+  Scan scan;
+  std::vector<Vector> from;  // by row
+};
+
+inline Carried carriedAbout() {
+  Carried out;
+  constexpr int kPoses = 30;
+  for (int i = 0; i < kPoses; ++i) {
+    const double way = 2.0 * kPi * i / kPoses;
+    const Vector place{3.0 + 1.4 * std::cos(way), 2.2 + 0.9 * std::sin(way),
+                       1.4 + 0.1 * std::sin(5.0 * way)};
+    const double heading = way + 0.6 * std::sin(i);
+    for (double e = -14.0; e <= 14.0; e += 4.0) {
+      for (double a = 0.1 * i; a < 360.0; a += 1.5) {
+        const double elevation = e * kPi / 180.0;
+        const double azimuth = a * kPi / 180.0;
+        const Vector d{std::cos(elevation) * std::cos(azimuth),
+                       std::cos(elevation) * std::sin(azimuth), std::sin(elevation)};
+        // About x by 45 degrees, then about z.
+        const double y = (d[1] - d[2]) * std::sqrt(0.5);
+        const double z = (d[1] + d[2]) * std::sqrt(0.5);
+        out.scan.add(place, {std::cos(heading) * d[0] - std::sin(heading) * y,
+                             std::sin(heading) * d[0] + std::cos(heading) * y, z});
+        out.from.push_back(place);
+      }
+    }
+  }
+  return out;
+}
+
 constexpr std::size_t kWidth = 120;
 constexpr std::size_t kHeight = 90;
 

@@ -10,6 +10,7 @@
 #include <random>
 
 #include "run_program.h"
+#include "sensor_scans.h"
 #include "tile_clouds.h"
 
 namespace segorient::test {
@@ -150,6 +151,40 @@ TEST_F(Hints, ARoomFacesItsSensorAsInMemory) {
   ASSERT_EQ(runProgram({"orient", in, whole, "-q", "--viewpoint=0.2,0.1,0.3", "--open"}).status, 0);
   expectRuns({"orient", in, out, "--viewpoint=0.2,0.1,0.3", "--open"});
   EXPECT_EQ(sameSides(whole, out), 6000U);
+}
+
+// No search finds the places, and no tile could tell from its own points that there were any.
+TEST_F(Hints, ARoomFacesWhoWasCarriedAboutInItAsInMemory) {
+  const Carried carried = carriedAbout();
+  const PointView points = carried.scan.view();
+  std::vector<double> xyz;
+  for (std::size_t i = 0; i < points.size; ++i) {
+    xyz.insert(xyz.end(), points[i], points[i] + 3);
+  }
+  const std::string in = writeDoubles(scratch.file("in.ply"), xyz);
+  const std::string whole = scratch.file("whole.ply");
+  ASSERT_EQ(runProgram({"orient", in, whole, "-q"}).status, 0);
+  const std::string report = scratch.file("report.json");
+  const auto tiles = [&](const char* threads, const std::string& to) {
+    return runProgram({"orient", in, to, "-q", "--memory", "1G", "--tile-points", "20000",
+                       "--threads", threads, "--report", report})
+        .status;
+  };
+  ASSERT_EQ(tiles("1", out), 0);
+  EXPECT_NE(readFile(report).find("\"seen_within\": true"), std::string::npos) << readFile(report);
+  EXPECT_GE(sameSides(whole, out) + points.size / 10000, points.size);
+  const std::string other = scratch.file("other.ply");
+  ASSERT_EQ(tiles("3", other), 0);
+  EXPECT_EQ(readFile(other), readFile(out));
+  std::size_t facing = 0;
+  const program::CloudTable cloud = program::readCloud(out);
+  for (std::size_t i = 0; i < points.size; ++i) {
+    const auto n = cloud.triple(cloud.normals(), i);
+    double sum = 0.0;
+    for (std::size_t a = 0; a < 3; ++a) sum += n[a] * (carried.from[i][a] - xyz[3 * i + a]);
+    facing += sum > 0.0 ? 1 : 0;
+  }
+  EXPECT_GT(static_cast<double>(facing), 0.99 * static_cast<double>(points.size));
 }
 
 // A landscape goes on behind its hills as seen from below, which no single place could have seen:
