@@ -50,6 +50,37 @@ void takeNoise(const PointView& points, const Neighborhoods& neighborhoods, floa
   takeNoiseField(points, neighborhoods, noise, threads, found);
 }
 
+// Of rows that repeat a point, what the one says that stands for it.
+struct FieldCloud {
+  PreparedCloud cloud;
+  std::vector<float> normals;
+  std::vector<float> confidences;
+
+  FieldCloud(const PointView& places, const std::vector<float>& of_rows,
+             const std::vector<float>& sure, int threads)
+      : cloud(places, nullptr, threads) {
+    cloud.findNeighbors(kRing, false);
+    for (std::size_t i = 0; i < cloud.size(); ++i) {
+      const float* n = &of_rows[4 * cloud.rowOf(i)];
+      normals.insert(normals.end(), n, n + 4);
+      confidences.push_back(sure[cloud.rowOf(i)]);
+    }
+  }
+};
+
+CloudField cellsOf(const NoiseField& noise, float unit) {
+  CloudField out;
+  if (noise.empty()) return out;
+  out.noise = noise.consistent ? CloudField::kConsistentNoise : CloudField::kNoise;
+  out.radius = unit * noise.radius;
+  addCells(noise.places, unit, noise.dipoles, unit * unit, out);
+  for (std::size_t c = 0; c < out.cells.size(); ++c) {
+    out.cells[c].value = unit * unit * noise.dipoles[4 * c + 3];
+    if (!noise.keeps.empty()) out.cells[c].keeps = noise.keeps[c];
+  }
+  return out;
+}
+
 void takeSigns(const PointView& points, float unit, const CloudField& field, int threads,
                AutoNormals& found) {
   CellSigns signs;
@@ -67,28 +98,25 @@ void takeSigns(const PointView& points, float unit, const CloudField& field, int
 
 CloudField findNoise(const PointView& places, const std::vector<float>& normals,
                      const std::vector<float>& confidences, bool consistent, int threads) {
-  PreparedCloud cloud(places, nullptr, threads);
-  cloud.findNeighbors(kRing, false);
-  std::vector<float> of_points;
-  std::vector<float> sure;
-  for (std::size_t i = 0; i < cloud.size(); ++i) {
-    const float* n = &normals[4 * cloud.rowOf(i)];
-    of_points.insert(of_points.end(), n, n + 4);
-    if (!consistent) sure.push_back(confidences[cloud.rowOf(i)]);
-  }
+  FieldCloud of(places, normals, confidences, threads);
+  const Neighborhoods& near = of.cloud.neighborhoods();
+  if (consistent) of.confidences.clear();
   NoiseField noise =
-      findNoiseField(cloud.points(), cloud.neighborhoods(), of_points, threads, sure, consistent);
-  findWhatSheetsKeep(cloud.points(), cloud.neighborhoods(), of_points, threads, noise);
-  CloudField out;
-  if (noise.empty()) return out;
-  const float unit = cloud.unit();
-  out.noise = noise.consistent ? CloudField::kConsistentNoise : CloudField::kNoise;
-  out.radius = unit * noise.radius;
-  addCells(noise.places, unit, noise.dipoles, unit * unit, out);
-  for (std::size_t c = 0; c < out.cells.size(); ++c) {
-    out.cells[c].value = unit * unit * noise.dipoles[4 * c + 3];
-    if (!noise.keeps.empty()) out.cells[c].keeps = noise.keeps[c];
-  }
+      findNoiseField(of.cloud.points(), near, of.normals, threads, of.confidences, consistent);
+  findWhatSheetsKeep(of.cloud.points(), near, of.normals, threads, noise);
+  return cellsOf(noise, of.cloud.unit());
+}
+
+CloudField findFine(const PointView& places, const std::vector<float>& normals,
+                    const std::vector<float>& confidences, int threads) {
+  FieldCloud of(places, normals, confidences, threads);
+  AutoNormals found;
+  found.normals = std::move(of.normals);
+  found.confidences = std::move(of.confidences);
+  const NoiseField fine =
+      takeFineField(of.cloud.points(), of.cloud.neighborhoods(), threads, found);
+  CloudField out = cellsOf(fine, of.cloud.unit());
+  out.averaged_below = fine.averaged_below;
   return out;
 }
 

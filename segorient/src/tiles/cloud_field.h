@@ -2,6 +2,7 @@
 // Copyright (c) 2026, the segorient authors
 #pragma once
 
+#include <segorient/common/export.h>
 #include <segorient/common/point_view.h>
 #include <segorient/orientation/orientation_result.h>
 
@@ -22,6 +23,11 @@ namespace segorient::detail {
 CloudField findNoise(const PointView& places, const std::vector<float>& normals,
                      const std::vector<float>& confidences, bool consistent, int threads);
 
+/// The same without noise, see takeFineField(); often nothing.
+SEGORIENT_TILES_EXPORT CloudField findFine(const PointView& places,
+                                           const std::vector<float>& normals,
+                                           const std::vector<float>& confidences, int threads);
+
 /// What the field says of bodies that touch, see findCellSigns(); often nothing.
 /// \param normals 4 floats a point of the cloud, oriented \param spacing in the cloud's unit
 CloudField findSigns(const PreparedCloud& cloud, const std::vector<float>& normals, float spacing,
@@ -29,7 +35,8 @@ CloudField findSigns(const PreparedCloud& cloud, const std::vector<float>& norma
 
 /// Gives a tile's points what the field tells of them. \param points of the tile, with neighbours
 /// \param unit theirs \param field relative to the tile's origin
-void takeField(const PointView& points, const Neighborhoods& neighborhoods, float unit,
-               const CloudField& field, int threads, AutoNormals& found);
+SEGORIENT_TILES_EXPORT void takeField(const PointView& points, const Neighborhoods& neighborhoods,
+                                      float unit, const CloudField& field, int threads,
+                                      AutoNormals& found);
 
 }  // namespace segorient::detail

@@ -128,10 +128,12 @@ CloudField TileJoiner::Impl::findField(const AutoOrientation& orientation, const
     const auto sign = static_cast<float>(orientation.result.point_signs[i]);
     for (std::size_t a = 0; a < 3; ++a) normals[4 * i + a] *= sign;
   }
-  if (!options.traits.hasField()) {
+  const bool fine = !options.traits.hasField();
+  if (fine) {
     if (!orientation.toward.empty()) return {};
-    return detail::findSigns(cloud.cloud, normals, median(cloud.spacing),
-                             orientation.result.components, options.threads);
+    CloudField signs = detail::findSigns(cloud.cloud, normals, median(cloud.spacing),
+                                         orientation.result.components, options.threads);
+    if (!signs.cells.empty()) return signs;
   }
   if (field_points.empty()) return {};  // tiles whose sensors were known did not ask
   std::vector<float> places;
@@ -146,8 +148,10 @@ CloudField TileJoiner::Impl::findField(const AutoOrientation& orientation, const
     const float of_piece = p.piece < 0 ? 1.F : orientation.result.segments[at(p.piece)].confidence;
     confidences.push_back(std::min(p.confidence, of_piece));
   }
-  CloudField out = detail::findNoise({places.data(), 3, field_points.size()}, of_rows, confidences,
-                                     options.traits.consistent != 0, options.threads);
+  const PointView points{places.data(), 3, field_points.size()};
+  if (fine) return detail::findFine(points, of_rows, confidences, options.threads);
+  CloudField out = detail::findNoise(points, of_rows, confidences, options.traits.consistent != 0,
+                                     options.threads);
   // Means of several points do not tell directions.
   if (options.patch_points == 1)
     out.averaged_below = options.traits.noisy != 0 ? 1.F : detail::kAcross;

@@ -33,7 +33,8 @@ struct TileTraits {
   std::uint8_t level_thin = 0;   ///< `thin` of the level
   std::uint8_t noisy = 0;        ///< whether borders tell too little of which way sheets go on
   std::uint8_t consistent = 0;   ///< see NoiseField
-  std::uint8_t unused[3] = {};   ///< no hidden bytes: traits are stored as they are
+  std::uint8_t judged = 0;       ///< whether signs contradict each other somewhere
+  std::uint8_t unused[2] = {};   ///< no hidden bytes: traits are stored as they are
   float surface_noise = 0.F;     ///< standard deviation, in the points' unit
   float surface_ratio = 0.F;     ///< the same, in spacings
 
@@ -46,6 +47,10 @@ struct TileTraits {
 
   /// Whether the field of all points goes before what borders tell.
   bool hasField() const { return noisy != 0 || level > 0.F; }
+  /// Whether all points are asked for one: of means of several, parts of a spacing are no more.
+  bool wantsFieldPoints(std::uint32_t patch_points) const {
+    return hasField() || (judged != 0 && patch_points == 1);
+  }
 };
 
 /// Orients the points by the default method, and takes what it measured on the way.

@@ -249,20 +249,21 @@ void takeNoiseField(const PointView& points, const Neighborhoods& neighborhoods,
   }
 }
 
-void takeFineField(const PointView& points, const Neighborhoods& neighborhoods, int threads,
-                   AutoNormals& found) {
+NoiseField takeFineField(const PointView& points, const Neighborhoods& neighborhoods, int threads,
+                         AutoNormals& found) {
   NoiseField field = findNoiseField(points, neighborhoods, found.normals, threads,
                                     found.confidences, false, kFineField);
-  if (field.empty() || field.most < 1.F) return;
+  if (field.empty() || field.most < 1.F) return {};
   field.averaged_below = kAcross;
   AutoNormals other;
   other.normals = found.normals;
   other.confidences = found.confidences;
   takeNoiseField(points, neighborhoods, field, threads, other);
   const SignJudge judge(points, neighborhoods, threads);
-  if (!(judge.judge(other.normals).total() < judge.judge(found.normals).total())) return;
+  if (!(judge.judge(other.normals).total() < judge.judge(found.normals).total())) return {};
   found.normals = std::move(other.normals);
   found.confidences = std::move(other.confidences);
+  return field;
 }
 
 }  // namespace segorient::detail

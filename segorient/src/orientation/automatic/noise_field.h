@@ -91,9 +91,11 @@ SEGORIENT_ORIENTATION_EXPORT void takeNoiseField(const PointView& points,
 /// The same without noise, where signs contradict each other on parts hardly thicker than points
 /// are apart: from a field as fine as the points. It is taken where the surface is closed and the
 /// energy of the signs (SignJudge) is less.
-/// \param points finite, near ones side by side \param found normals and confidences may change
-SEGORIENT_ORIENTATION_EXPORT void takeFineField(const PointView& points,
-                                                const Neighborhoods& neighborhoods, int threads,
-                                                AutoNormals& found);
+/// \param points finite, near ones side by side \param neighborhoods eight at least
+/// \param found normals and confidences may change
+/// \return what was taken; often nothing
+SEGORIENT_ORIENTATION_EXPORT NoiseField takeFineField(const PointView& points,
+                                                      const Neighborhoods& neighborhoods,
+                                                      int threads, AutoNormals& found);
 
 }  // namespace segorient::detail
