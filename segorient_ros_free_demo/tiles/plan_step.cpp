@@ -108,11 +108,11 @@ class Viewpoints {
   Place header_{0, 0, 0};
 };
 
-// What coordinates are rounded to, so that they take fewer bits: a millionth of the smallest
-// spacing, which is all that floats tell but near 0. 0 = not at all.
+// What coordinates are rounded to, so that they take fewer bits: the last digit of a float that is
+// the smallest spacing. Floats lose nothing but nearer to 0 than that. 0 = not at all.
 double roundingStep(const TileTree& tree) {
   constexpr double kSpacingsInReach = 20.0;
-  constexpr int kBits = 20;
+  constexpr int kBits = std::numeric_limits<float>::digits - 1;
   double least = std::numeric_limits<double>::infinity();
   for (const TileTree::Node& node : tree.nodes()) {
     if (node.axis < 0 && node.reach > 0.0) least = std::min(least, node.reach);
