@@ -109,10 +109,7 @@ class Choice {
   // \return the radius of the best, 0 if it is the cloud itself
   float take(AutoNormals& out) {
     for (ScaleEnergy& scale : tried_) scale.taken = scale.radius == chosen_;
-    if (chosen_ > 0.F) {
-      mendLines(best_.around, best_.found.normals);
-      out = std::move(best_.found);
-    }
+    if (chosen_ > 0.F) out = std::move(best_.found);
     out.scales = std::move(tried_);
     return chosen_;
   }
@@ -166,9 +163,7 @@ CoarseLevel makeLevel(const PointView& points, float radius, int threads, const 
 
 void followLevel(const PointView& points, CoarseLevel& level, float radius, int threads,
                  AutoNormals& fine) {
-  Handed coarse = handDown(points, level, radius, threads, fine);
-  mendLines(coarse.around, coarse.found.normals);
-  fine = std::move(coarse.found);
+  fine = handDown(points, level, radius, threads, fine).found;
 }
 
 float followCoarserLevels(const PointView& points, const Neighborhoods& neighborhoods,

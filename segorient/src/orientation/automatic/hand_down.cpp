@@ -119,15 +119,4 @@ Handed handDown(const PointView& points, CoarseLevel& level, float radius, int t
   return out;
 }
 
-void mendLines(const std::vector<float>& around, std::vector<float>& normals) {
-  constexpr float kFarOff = 0.5F;  // 60 degrees
-  for (std::size_t i = 0; i < around.size() / 4; ++i) {
-    const float* mean = &around[4 * i];
-    float* n = &normals[4 * i];
-    const float twice = 2.F * mean[3] * mean[3] - 1.F;  // the cosine of twice the angle
-    if (!isFinite(n) || std::fabs(dot(n, mean)) >= std::min(kFarOff, twice)) continue;
-    std::copy_n(mean, 3, n);
-  }
-}
-
 }  // namespace segorient::detail

@@ -26,8 +26,4 @@ struct Handed {
 Handed handDown(const PointView& points, CoarseLevel& level, float radius, int threads,
                 const AutoNormals& fine);
 
-/// A line far off those of the level around it, and more than twice as far as they are off their
-/// mean, was fitted to points of several layers: their mean takes its place.
-void mendLines(const std::vector<float>& around, std::vector<float>& normals);
-
 }  // namespace segorient::detail
