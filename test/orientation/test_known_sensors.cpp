@@ -235,6 +235,10 @@ TEST(KnownSensors, FromFarAwayABodyHidesItsBackAsWell) {
     const OrientedCloud cloud = orient(xyz, seenFrom({0.0, distance, 0.0}));
     ASSERT_EQ(cloud.report.known_sensors.size(), 1U);
     EXPECT_GT(cloud.report.known_sensors[0].hidden, 0.3F) << distance;
+    // Nor is that the place of an open surface, whoever says that it is open.
+    OrientationHints told = seenFrom({0.0, distance, 0.0});
+    told.surface = SurfaceKind::OPEN;
+    EXPECT_GE(shareOutward(orient(xyz, told).normals, xyz), 0.99) << distance;
   }
 }
 

@@ -25,8 +25,8 @@ bool HidingPlace::isPlausible(const PointView& points, const std::vector<float>&
 HidingPlace lookFrom(const PointView& points, const std::array<float, 3>& place, int threads) {
   std::vector<std::uint32_t> rows(points.size);
   std::iota(rows.begin(), rows.end(), 0U);
-  Scan scan(points, rows, place, nullptr, threads);
-  const std::vector<std::uint8_t> hidden = scan.hidden(false);
+  const Scan scan(points, rows, place, nullptr, threads);
+  const std::vector<std::uint8_t> hidden = scan.hidden();
   HidingPlace out;
   out.report.hidden = shareOf(hidden);
   out.report.position = place;

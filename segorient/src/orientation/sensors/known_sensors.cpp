@@ -131,11 +131,10 @@ class Finder {
     KnownSensor& report = out_.scans[s];
     if (report.moving || report.points < kLeastPoints) return;
     const std::vector<std::uint32_t> rows(rows_.begin() + start_[s], rows_.begin() + start_[s + 1]);
-    Scan scan(points_, rows, report.position, &nb_, threads_);
+    const Scan scan(points_, rows, report.position, &nb_, threads_);
     const Scan::Density density = scan.density();
     report.density = density.ratio;
-    std::vector<std::uint8_t> hidden = scan.hidden(false);
-    report.hidden = shareOf(hidden);
+    report.hidden = shareOf(scan.hidden());
     // Of what was not seen from one place, the part nearest to it may have such a density, too.
     const bool hides = report.hidden > kMostHidden;
     if (report.density < kConfirmed && !(out_.common && hides && !hints_.place_found)) {
@@ -154,27 +153,7 @@ class Finder {
       out_.doubtful = out_.allowed || hides || denied || density.constant < kVaries;
       if (out_.allowed) return;
     }
-    if (out_.common) {
-      if (hides) keepVisible(rows, scan.hidden(true));
-    } else if (hides || (denied && report.hidden > kFewHidden)) {
-      report.used = false;
-    }
-  }
-
-  // Gaps in what hides others let some through: only what lies among visible points is left.
-  void keepVisible(const std::vector<std::uint32_t>& rows,
-                   const std::vector<std::uint8_t>& hidden) {
-    constexpr int kAround = 16;
-    std::vector<std::uint8_t> behind(points_.size, 1);
-    for (std::size_t k = 0; k < rows.size(); ++k) behind[rows[k]] = hidden[k];
-    for (const std::uint32_t i : rows) {
-      bool visible = true;
-      const int count = std::min(nb_.count(i), kAround + 1);
-      for (int j = 0; j < count; ++j) {
-        visible = visible && behind[static_cast<std::size_t>(nb_.indices(i)[j])] == 0;
-      }
-      if (!visible) std::fill_n(&out_.toward[3 * std::size_t{i}], 3, 0.F);
-    }
+    if (!out_.common && (hides || (denied && report.hidden > kFewHidden))) report.used = false;
   }
 
   // Scans against each other, and against themselves: the worst one is in the wrong, which may

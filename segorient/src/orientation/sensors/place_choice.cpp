@@ -67,7 +67,7 @@ PlaceChoice choosePlaces(const PointView& points, const OrientationHints& given,
   }
   as_given.place_found = found.sensors.sure() && !found.sensors.sensors[0].suggested;
   const bool is_fact = as_given.place_found || !given.viewpoints.empty();
-  if (is_fact || given.surface == SurfaceKind::OPEN || !as_given.shadows.deny()) return as_given;
+  if (is_fact || !as_given.shadows.deny()) return as_given;
   // What was found in that very place is no more than compared, either.
   if (found.sensors.sure()) found = findOthers(points, asIfNotThere(given, *place), cloud, threads);
   found.hiding = lookFrom(cloud.points(), cloud.inUnit(*place), threads);

@@ -25,7 +25,6 @@ constexpr int kPlane = 24;
 // ns a point, see resolveThreads().
 constexpr double kRayTime = 2000.0;
 constexpr double kPairTime = 1000.0;
-constexpr double kSpacingTime = 20.0;
 
 Plane planeOf(const PointView& points, const Neighborhoods& nb, std::size_t i, int k) {
   return detail::planeOf(points, i, nb.indices(i), std::min(nb.count(i), k + 1));
@@ -93,7 +92,6 @@ void Scan::nearest(std::size_t i, int entries, Row& out) const {
 }
 
 float Scan::spacingOf(std::size_t i) const {
-  if (!spacing_.empty()) return spacing_[i];
   Row row;
   nearest(i, kFirstRing + 1, row);
   return meanDistance(view_, i, row.indices + 1, row.count - 1);
@@ -103,17 +101,8 @@ EveryNth Scan::sample() const {
   return {size(), kSamples};
 }
 
-std::vector<std::uint8_t> Scan::hidden(bool all) {
-  if (all && near_ == nullptr) {
-    index_.nearestKAll(kPlane + 1, own_, false);
-    near_ = &own_;
-  }
-  if (all && spacing_.empty()) {
-    std::vector<float> spacing(size());
-    parallelFor(size(), threads_, kSpacingTime, [&](std::size_t i) { spacing[i] = spacingOf(i); });
-    spacing_ = std::move(spacing);
-  }
-  const EveryNth some = all ? EveryNth(size(), std::max<std::size_t>(1, size())) : sample();
+std::vector<std::uint8_t> Scan::hidden() const {
+  const EveryNth some = sample();
   const std::size_t n = some.size();
   const search::MedianHashIndex directions = seen_.index(threads_);
   std::vector<std::uint8_t> out(n, 0);

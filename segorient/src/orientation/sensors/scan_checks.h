@@ -42,13 +42,12 @@ class Scan {
 
   std::size_t size() const { return seen_.size(); }
 
-  /// Which of some thousand points, or of all, lie behind others: the point's ray passes two of
-  /// them within their own spacing, well before it arrives.
-  /// \return one a point that was looked at
-  std::vector<std::uint8_t> hidden(bool all);
-
-  /// Those some thousand.
+  /// Some thousand points.
   EveryNth sample() const;
+
+  /// Which of these lie behind others: the point's ray passes two of them within their own spacing,
+  /// well before it arrives.
+  std::vector<std::uint8_t> hidden() const;
 
   struct Density {
     /// Scatter of log density about that of a sensor here, over that about a constant.
@@ -71,9 +70,7 @@ class Scan {
   SeenFrom seen_;
   float extent_ = 0.F;  ///< diagonal of its box
   search::MedianHashIndex index_;
-  const Neighborhoods* near_ = nullptr;  ///< null unless they are known, or all were asked for
-  Neighborhoods own_;                    ///< those, where they were not known
-  std::vector<float> spacing_;           ///< empty until all are asked for
+  const Neighborhoods* near_ = nullptr;  ///< null unless they are known
   int threads_;
 };
 
