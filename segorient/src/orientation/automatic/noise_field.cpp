@@ -13,7 +13,7 @@
 #include "common/dot.h"
 #include "common/every_nth.h"
 #include "common/median.h"
-#include "common/threads.h"
+#include "common/parallel_for.h"
 #include "features/sheet_fit.h"
 #include "orientation/automatic/even_cells.h"
 #include "orientation/automatic/field_patches.h"
@@ -89,11 +89,8 @@ bool hidesTwoSides(const PointView& points, const Neighborhoods& table,
   constexpr double kTwoSides = -0.25;
   const EveryNth rows(points.size, kRows);
   std::vector<float> offsets(rows.size());
-#pragma omp parallel for num_threads(resolveThreads(threads, offsets.size(), 300.0)) \
-    schedule(static)
-  for (std::size_t r = 0; r < offsets.size(); ++r) {
-    offsets[r] = offsetOf(points, table, normals, rows[r]);
-  }
+  parallelFor(offsets.size(), threads, 300.0,
+              [&](std::size_t r) { offsets[r] = offsetOf(points, table, normals, rows[r]); });
   double count = 0.0;
   double squares = 0.0;
   double fourths = 0.0;
