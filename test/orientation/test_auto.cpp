@@ -112,6 +112,29 @@ TEST(Auto, OpenGroundFacesUp) {
   }
 }
 
+// Roofs without walls, one to two spacings above the ground: the chords between nearest points
+// rise as steeply as those around the rim of a plate, but each layer goes on to its own side of
+// them.
+TEST(Auto, RoofsFaceAsTheGroundDoes) {
+  constexpr std::size_t kPoints = 12000;
+  const float spacing = 10.F / std::sqrt(static_cast<float>(kPoints));
+  for (const float height : {1.F, 1.5F, 2.F}) {
+    std::mt19937 rng(51);
+    std::uniform_real_distribution<float> unit(0.F, 10.F);
+    std::vector<float> xyz;
+    for (std::size_t i = 0; i < kPoints; ++i) {
+      const float x = unit(rng);
+      const float y = unit(rng);
+      const bool roof = std::fmod(x, 2.5F) < 1.F && std::fmod(y, 2.5F) < 1.2F;
+      xyz.insert(xyz.end(), {x, y, roof ? height * spacing : 0.F, 0.F});
+    }
+    const OrientedCloud town = orient(xyz);
+    std::size_t up = 0;
+    for (std::size_t i = 0; i < kPoints; ++i) up += town.normals[4 * i + 2] > 0.F ? 1 : 0;
+    EXPECT_GT(up, kPoints * 999 / 1000) << height;
+  }
+}
+
 // What faces up is a share of columns, whatever the number of points.
 TEST(Auto, GroundOfAMillionPointsFacesUp) {
   constexpr std::size_t kPoints = 1050000;

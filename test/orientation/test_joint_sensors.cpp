@@ -193,6 +193,18 @@ TEST(Sensors, UnevenGroundIsSeenFromAbove) {
   EXPECT_GT(static_cast<double>(up), 0.99 * static_cast<double>(points.size));
 }
 
+// Roofs of a town, .7 wide and .9 high, whose edges stand in a third of the columns.
+TEST(Sensors, RoofsAreSeenFromAboveAsTheGroundIs) {
+  std::vector<float> rows = hills(30000, 0.F);
+  for (std::size_t i = 0; i < rows.size(); i += 3) {
+    const bool roof = std::fmod(rows[i], 1.25F) < 0.7F && std::fmod(rows[i + 1], 1.25F) < 0.7F;
+    if (roof) rows[i + 2] += 0.9F;
+  }
+  const SensorReport report = findSensors({rows.data(), 3, rows.size() / 3});
+  ASSERT_EQ(report.sensors.size(), 1U) << report.why;
+  EXPECT_EQ(report.sensors[0].kind, SensorKind::ABOVE);
+}
+
 // A pit in level ground, 2 deep and 8 wide at its bottom.
 double pit(double x, double y) {
   return std::clamp(0.8 * (std::hypot(x, y) - 6.5), -2.0, 0.0);
@@ -262,8 +274,8 @@ TEST(Sensors, StripsOfAnAircraftAreNotSeenFromFarBelow) {
   EXPECT_LT(least, 0.01 * static_cast<double>(points.size));
 }
 
-TEST(Sensors, ThinPlatesAreNotSeenFromAbove) {
-  for (const float thickness : {0.1F, 0.2F, 0.4F, 1.F}) {
+TEST(Sensors, PlatesAreNotSeenFromAbove) {
+  for (const float thickness : {0.1F, 0.2F, 0.4F, 1.F, 2.F}) {
     const std::vector<float> rows = hills(30000, thickness);
     const SensorReport report = findSensors({rows.data(), 3, rows.size() / 3});
     EXPECT_TRUE(report.sensors.empty()) << thickness;

@@ -309,5 +309,38 @@ TEST(LooseParts, MayBeTheLargest) {
   }
 }
 
+// A plane of two segments, between which more of the border says the wrong thing than the right
+// one.
+TEST(Ground, FacesOneWayWhereItsBordersHardlyTell) {
+  Balls plane;
+  std::mt19937 rng(7);
+  std::uniform_real_distribution<float> unit(0.F, 40.F);
+  Segmentation segmentation;
+  segmentation.segments.resize(2);
+  for (int i = 0; i < 1600; ++i) {
+    const float x = unit(rng);
+    const float y = unit(rng);
+    const int segment = x < 28.F ? 0 : 1;
+    const bool wrong = x >= 28.F && x < 30.F && std::fmod(y, 4.F) < 2.5F;
+    plane.xyz.insert(plane.xyz.end(), {x, y, 0.F, 0.F});
+    plane.normals.insert(plane.normals.end(), {0.F, 0.F, 1.F, 0.F});
+    plane.spacing.push_back(1.F);
+    segmentation.labels.push_back(segment);
+    segmentation.signs.push_back(wrong ? -1 : 1);
+    ++segmentation.segments[static_cast<std::size_t>(segment)].size;
+  }
+  const OneSheet sheet(plane);
+  const Neighborhoods table = neighborsOf(plane.xyz);
+  for (const SurfaceKind told : {SurfaceKind::UNKNOWN, SurfaceKind::CLOSED}) {
+    PointHints hints;
+    hints.surface = told;
+    const AutoOrientation out = orientSheets(
+        viewOf(plane.xyz), table, sheet.field, segmentation,
+        borderVotes(viewOf(plane.xyz), table, sheet.field, segmentation), 1600, {}, hints);
+    EXPECT_EQ(out.result.segments[0].sign, 1);
+    EXPECT_EQ(out.result.segments[1].sign, told == SurfaceKind::CLOSED ? -1 : 1);
+  }
+}
+
 }  // namespace
 }  // namespace segorient::test

@@ -178,7 +178,8 @@ std::vector<BorderVote> borderVotes(const PointView& points, const Neighborhoods
       v.wall_counts = walls_count;
       v.count = sheet.count;
       v.where = votes[i + (j - i) / 2].point;
-      if (v.count >= kLong && v.unanimity() < kNineOfTen) {
+      const bool unsure = v.unanimity() < kNineOfTen;
+      if (v.count >= kLong && (unsure || walls_count)) {
         border.clear();
         for (std::size_t k = i; k < j; ++k) {
           const bool counted = walls_count || !votes[k].wall;
@@ -186,7 +187,8 @@ std::vector<BorderVote> borderVotes(const PointView& points, const Neighborhoods
           if (counted && !known) border.push_back(votes[k].point);
         }
         const float again = wide.vote(border, v.a, v.b);
-        v.by_planes = std::fabs(again) > kNineOfTen;
+        const bool contrary = (again < 0.F) != (v.weight < 0.F);
+        v.by_planes = std::fabs(again) > kNineOfTen && (unsure || contrary);
         if (v.by_planes) {
           v.weight = again * v.absolute;
           v.wall = Evidence{};

@@ -62,7 +62,9 @@ struct BorderVote : Evidence {
 /// other are walls, too; see Evidence::letsCount().
 ///
 /// Where the points of a longer border contradict each other, as noise across a sharp crease makes
-/// them, planes of more points on either side of it decide, if these agree.
+/// them, planes of more points on either side of it decide, if these agree. So they do where walls
+/// have a say, but the planes are those of terraces: chords from one to the other rise as steeply
+/// as those around the rim of a plate.
 ///
 /// \param segmentation with a segment for each label
 /// \param voters one a point: 0 for those that have no vote; null = all vote

@@ -59,20 +59,28 @@ class Columns {
     if (highest == kNone || points[i][2] > points[highest][2]) highest = i;
   }
 
-  float facingUp(const SheetSigns& sheets) const {
-    float sum = 0.F;
-    float count = 0.F;
+  /// \param act called with the lowest and the highest point of each column, how far its normal
+  /// faces up by the signs so far, and whether the column has one layer
+  template <typename Act>
+  void forEachEnd(const SheetSigns& sheets, const Act& act) const {
     for (std::size_t c = 0; c < lowest_.size(); ++c) {
       if (lowest_[c] == kNone) continue;
       const bool one_layer =
           sheets.points[highest_[c]][2] - sheets.points[lowest_[c]][2] < kApart * side_;
       for (const std::uint32_t i : {lowest_[c], highest_[c]}) {
         const float up = sheets.pointSign(i) * sheets.field.normals[4 * std::size_t{i} + 2];
-        if (std::fabs(up) < kSteep) continue;
-        count += 1.F;
-        if (one_layer) sum += up > 0.F ? 1.F : -1.F;
+        if (std::fabs(up) >= kSteep) act(i, up > 0.F ? 1.F : -1.F, one_layer);
       }
     }
+  }
+
+  float facingUp(const SheetSigns& sheets) const {
+    float sum = 0.F;
+    float count = 0.F;
+    forEachEnd(sheets, [&](std::uint32_t, float up, bool one_layer) {
+      count += 1.F;
+      if (one_layer) sum += up;
+    });
     return std::fabs(sum) > kByChance * std::sqrt(count) ? sum / count : 0.F;
   }
 
@@ -85,32 +93,56 @@ class Columns {
   std::vector<std::uint32_t> highest_;
 };
 
+// Of each component, be there one or thousands, so many points or all.
+std::vector<Columns> columnsOver(const SheetSigns& sheets, const std::vector<bool>& asked,
+                                 std::size_t most) {
+  std::vector<std::size_t> sizes(asked.size(), 0);
+  const auto forEachPoint = [&](const auto& act) {
+    for (std::size_t i = 0; i < sheets.points.size; ++i) {
+      const std::int32_t c = sheets.componentOf(i);
+      if (c >= 0 && asked[at(c)]) act(at(c), static_cast<std::uint32_t>(i));
+    }
+  };
+  forEachPoint([&](std::size_t c, std::uint32_t) { ++sizes[c]; });
+  std::vector<std::size_t> seen;
+  const auto forEachOfSample = [&](const auto& act) {
+    seen.assign(asked.size(), 0);
+    forEachPoint([&](std::size_t c, std::uint32_t i) {
+      if (seen[c]++ % std::max<std::size_t>(1, sizes[c] / most) == 0) act(c, i);
+    });
+  };
+  std::vector<Columns> out(asked.size());
+  forEachOfSample([&](std::size_t c, std::uint32_t i) { out[c].include(sheets.points[i]); });
+  for (Columns& columns : out) columns.divide();
+  forEachOfSample([&](std::size_t c, std::uint32_t i) { out[c].add(sheets.points, i); });
+  return out;
+}
+
 }  // namespace
 
 std::vector<float> facingUp(const SheetSigns& sheets) {
   const std::size_t count = sheets.windings.size();
   if (sheets.hints.surface == SurfaceKind::CLOSED) return std::vector<float>(count, 0.F);
-  std::vector<std::size_t> sizes(count, 0);
-  for (std::size_t i = 0; i < sheets.points.size; ++i) {
-    if (sheets.componentOf(i) >= 0) ++sizes[at(sheets.componentOf(i))];
-  }
-  // Each component has a sample of its own, be there one or thousands.
-  std::vector<std::size_t> seen;
-  const auto forEachPoint = [&](const auto& act) {
-    seen.assign(count, 0);
-    for (std::size_t i = 0; i < sheets.points.size; ++i) {
-      if (sheets.componentOf(i) < 0) continue;
-      const std::size_t c = at(sheets.componentOf(i));
-      const std::size_t step = std::max<std::size_t>(1, sizes[c] / kSample);
-      if (seen[c]++ % step == 0) act(c, static_cast<std::uint32_t>(i));
-    }
-  };
-  std::vector<Columns> columns(count);
-  forEachPoint([&](std::size_t c, std::uint32_t i) { columns[c].include(sheets.points[i]); });
-  for (Columns& c : columns) c.divide();
-  forEachPoint([&](std::size_t c, std::uint32_t i) { columns[c].add(sheets.points, i); });
   std::vector<float> out;
-  for (const Columns& c : columns) out.push_back(c.facingUp(sheets));
+  for (const Columns& c : columnsOver(sheets, std::vector<bool>(count, true), kSample)) {
+    out.push_back(c.facingUp(sheets));
+  }
+  return out;
+}
+
+std::vector<Ballot> groundVotes(const SheetSigns& sheets, const std::vector<float>& up) {
+  std::vector<Ballot> out(sheets.clusters.size());
+  const std::vector<Columns> columns =
+      columnsOver(sheets, sheets.ground, std::numeric_limits<std::size_t>::max());
+  for (std::size_t c = 0; c < columns.size(); ++c) {
+    const float side = up[c] < 0.F ? -1.F : 1.F;
+    columns[c].forEachEnd(sheets, [&](std::uint32_t i, float facing, bool one_layer) {
+      if (!one_layer) return;
+      Ballot& ballot = out[at(sheets.clusters.of(at(sheets.segmentation.labels[i])))];
+      ballot.balance += side * facing;
+      ballot.total += 1.F;
+    });
+  }
   return out;
 }
 

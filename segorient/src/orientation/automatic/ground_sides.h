@@ -14,4 +14,8 @@ namespace segorient::detail {
 /// bottom, and where only walls are. 0 where the user says that the surface is closed.
 std::vector<float> facingUp(const SheetSigns& sheets);
 
+/// What a layer of ground that is alone over its column says of the cluster that it belongs to: it
+/// faces as its component does. \param up what facingUp() says of components
+std::vector<Ballot> groundVotes(const SheetSigns& sheets, const std::vector<float>& up);
+
 }  // namespace segorient::detail

@@ -23,10 +23,11 @@ constexpr float kMostRelief = 0.3F;
 constexpr float kColumn = 3.F;
 constexpr std::size_t kFilled = 3;
 constexpr float kMostlyFilled = 0.9F;
-// Layers: as far apart as two columns are wide. Aircraft: .01 to .09 of the columns (walls, trees);
-// solids and rooms .15 and more.
+// Layers: as far apart as two columns are wide. What is under something else fills squares of two
+// by two columns, edges of roofs and walls only lines: aircraft up to .01 of the columns, solids,
+// rooms and woods .2 and more.
 constexpr float kApart = 2.F;
-constexpr float kFewLayered = 0.12F;
+constexpr float kFewLayered = 0.05F;
 // Layers closer than that, in the neighbourhood of a flat piece: thin plates have them everywhere.
 constexpr int kAround = 96;
 constexpr float kBehind = 1.F;  // spacings
@@ -50,6 +51,24 @@ Ground groundOf(const PointView& points) {
   return out;
 }
 
+// Columns are numbered by x in the upper half of the bits, y in the lower.
+constexpr std::uint64_t columnAt(float x, float y) {
+  return (static_cast<std::uint64_t>(x) << 32U) | static_cast<std::uint64_t>(y);
+}
+
+// How many of these, in rising order, are the first of a square of two by two.
+std::size_t countSquares(const std::vector<std::uint64_t>& columns) {
+  constexpr std::uint64_t kNextX = columnAt(1.F, 0.F);
+  constexpr std::uint64_t kNextY = columnAt(0.F, 1.F);
+  const auto has = [&](std::uint64_t column) {
+    return std::binary_search(columns.begin(), columns.end(), column);
+  };
+  return static_cast<std::size_t>(
+      std::count_if(columns.begin(), columns.end(), [&](std::uint64_t c) {
+        return has(c + kNextY) && has(c + kNextX) && has(c + kNextX + kNextY);
+      }));
+}
+
 void measureColumns(const PointView& points, const Ground& ground, float side, HeightField& out) {
   std::vector<std::pair<std::uint64_t, float>> heights;
   for (std::size_t i = 0; i < points.size; ++i) {
@@ -58,13 +77,12 @@ void measureColumns(const PointView& points, const Ground& ground, float side, H
     if (x < 0.F || y < 0.F || points[i][0] > ground.high[0] || points[i][1] > ground.high[1]) {
       continue;
     }
-    const auto column = (static_cast<std::uint64_t>(x) << 32U) | static_cast<std::uint64_t>(y);
-    heights.emplace_back(column, points[i][2]);
+    heights.emplace_back(columnAt(x, y), points[i][2]);
   }
   std::sort(heights.begin(), heights.end());
   std::size_t columns = 0;
   std::size_t filled = 0;
-  std::size_t layered = 0;
+  std::vector<std::uint64_t> layered;
   for (std::size_t begin = 0; begin < heights.size();) {
     std::size_t end = begin + 1;
     float gap = 0.F;
@@ -74,13 +92,13 @@ void measureColumns(const PointView& points, const Ground& ground, float side, H
     ++columns;
     if (end - begin >= kFilled) {
       ++filled;
-      layered += gap > kApart * side ? 1 : 0;
+      if (gap > kApart * side) layered.push_back(heights[begin].first);
     }
     begin = end;
   }
   if (filled == 0) return;
   out.filled = static_cast<float>(filled) / static_cast<float>(columns);
-  out.layered = static_cast<float>(layered) / static_cast<float>(filled);
+  out.layered = static_cast<float>(countSquares(layered)) / static_cast<float>(filled);
 }
 
 float shareBacked(const PointView& points, const search::MedianHashIndex& index,

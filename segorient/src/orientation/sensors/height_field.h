@@ -11,7 +11,7 @@ namespace segorient::detail {
 struct HeightField {
   float relief = 0.F;   ///< height over the diagonal of the ground, of the middle 96 per cent
   float filled = 0.F;   ///< share of the columns that have some points and not just one or two
-  float layered = 1.F;  ///< share of those that have two layers far apart
+  float layered = 1.F;  ///< share of those that have two layers far apart, as their neighbours do
   float backed = 1.F;   ///< share of flat pieces with another layer close behind or before them
 
   /// Whether it was seen from above for sure. Even sampling of an open sheet looks the same: let
