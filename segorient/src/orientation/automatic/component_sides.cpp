@@ -125,8 +125,10 @@ void turnComponentsOut(SheetSigns& sheets) {
   }
   const std::vector<float> up = facingUp(sheets);
   for (std::size_t c = 0; c < up.size(); ++c) sheets.ground[c] = std::fabs(up[c]) > kLies;
-  // One layer over a plane is on one side of it throughout, be it closed at its borders or not.
-  sheets.turnClusters(sheets.outvoted(groundVotes(sheets, up), kSureBorders));
+  if (std::find(sheets.ground.begin(), sheets.ground.end(), true) != sheets.ground.end()) {
+    // One layer over a plane is on one side of it throughout.
+    sheets.turnClusters(sheets.outvoted(groundVotes(sheets, up), kSureBorders));
+  }
   const std::vector<std::int8_t> conventional = conventions(sheets, up);
   std::vector<HintVotes> hinted(sheets.windings.size());
   for (std::size_t s = 0; s < sheets.signs.size(); ++s) {

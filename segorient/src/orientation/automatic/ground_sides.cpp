@@ -59,8 +59,8 @@ class Columns {
     if (highest == kNone || points[i][2] > points[highest][2]) highest = i;
   }
 
-  /// \param act called with the lowest and the highest point of each column, how far its normal
-  /// faces up by the signs so far, and whether the column has one layer
+  /// \param act called with the lowest and the highest point of each column, unless its surface is
+  /// steep; 1 or -1 as it faces up or down by the signs so far; whether the column has one layer
   template <typename Act>
   void forEachEnd(const SheetSigns& sheets, const Act& act) const {
     for (std::size_t c = 0; c < lowest_.size(); ++c) {
@@ -93,7 +93,8 @@ class Columns {
   std::vector<std::uint32_t> highest_;
 };
 
-// Of each component, be there one or thousands, so many points or all.
+// Over each component that is asked for, be there one or thousands, by a sample of its own: all
+// points or every n-th, up to some two times `most` of them.
 std::vector<Columns> columnsOver(const SheetSigns& sheets, const std::vector<bool>& asked,
                                  std::size_t most) {
   std::vector<std::size_t> sizes(asked.size(), 0);
