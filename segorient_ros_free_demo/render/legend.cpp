@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <array>
 
-#include "render/text_line.h"
+#include "render/vtk/vtk_module.h"
 #include "support/colors.h"
 
 namespace segorient::program {
@@ -37,7 +37,7 @@ class Pen {
   }
   // A line of text whose middle is at a height; returns where it ends.
   int text(int left, int middle, const std::string& text) {
-    const TextLine line = textLine(text, size_);
+    const TextLine line = vtkModule().text_line(text, size_);
     for (int y = 0; y < line.height; ++y) {
       for (int x = 0; x < line.width; ++x) {
         const auto at = static_cast<std::size_t>(y) * static_cast<std::size_t>(line.width) +

@@ -2,12 +2,9 @@
 // Copyright (c) 2026, the segorient authors
 #include "render/picture.h"
 
-#include <vtkImageData.h>
-#include <vtkNew.h>
-#include <vtkPNGWriter.h>
-#include <vtkUnsignedCharArray.h>
-
 #include <algorithm>
+
+#include "render/vtk/vtk_module.h"
 
 namespace segorient::program {
 
@@ -41,22 +38,8 @@ Picture halved(const Picture& picture) {
 }
 
 void writePng(const Picture& picture, OutputFile& file) {
-  vtkNew<vtkImageData> image;
-  image->SetDimensions(static_cast<int>(picture.width), static_cast<int>(picture.height), 1);
-  image->AllocateScalars(VTK_UNSIGNED_CHAR, 3);
-  auto* to = static_cast<std::uint8_t*>(image->GetScalarPointer());
-  const std::size_t row = 3 * picture.width;
-  for (std::size_t y = 0; y < picture.height; ++y) {  // VTK's rows begin at the bottom
-    std::copy_n(picture.rgb.data() + (picture.height - 1 - y) * row, row, to + y * row);
-  }
-  vtkNew<vtkPNGWriter> writer;
-  writer->SetInputData(image);
-  writer->WriteToMemoryOn();
-  writer->Write();
-  const vtkUnsignedCharArray* png = writer->GetResult();
-  if (png == nullptr) throw std::bad_alloc();
-  file.write(const_cast<vtkUnsignedCharArray*>(png)->GetPointer(0),
-             static_cast<std::size_t>(png->GetNumberOfValues()));
+  const std::vector<std::uint8_t> png = vtkModule().png(picture);
+  file.write(png.data(), png.size());
 }
 
 }  // namespace segorient::program

@@ -3,7 +3,6 @@
 #pragma once
 
 #include <cstdint>
-#include <string>
 #include <vector>
 
 namespace segorient::program {
@@ -15,10 +14,5 @@ struct TextLine {
   int height = 0;
   std::vector<std::uint8_t> ink;
 };
-
-/// Sets text in VTK's own sans-serif font: no font need be installed, and the pixels are the same
-/// everywhere.
-/// \param size of the font, in pixels
-TextLine textLine(const std::string& text, int size);
 
 }  // namespace segorient::program

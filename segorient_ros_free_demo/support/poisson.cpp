@@ -2,9 +2,6 @@
 // Copyright (c) 2026, the segorient authors
 #include "support/poisson.h"
 
-#include <pcl/conversions.h>
-#include <pcl/point_types.h>
-#include <pcl/surface/poisson.h>
 #include <segorient/search/median_hash_index.h>
 
 #include <algorithm>
@@ -15,6 +12,7 @@
 #include "io/cloud_writer.h"
 #include "io/output_file.h"
 #include "render/scene.h"
+#include "render/vtk/vtk_module.h"
 #include "support/silence.h"
 
 namespace segorient::program {
@@ -22,41 +20,32 @@ namespace {
 
 // The surface over the points that have a normal, as a table with triangles.
 CloudTable poissonSurface(const LocalPoints& points, const std::vector<float>& normals, int depth) {
-  pcl::PointCloud<pcl::PointNormal>::Ptr cloud(new pcl::PointCloud<pcl::PointNormal>);
+  std::vector<std::array<float, 3>> places;
+  std::vector<std::array<float, 3>> directions;
   for (std::size_t i = 0; i < points.view().size; ++i) {
-    if (!std::isfinite(normals[4 * i]) || !isFinite(points.view()[i])) continue;
-    pcl::PointNormal p;
-    std::copy_n(points.view()[i], 3, p.data);
-    std::copy_n(&normals[4 * i], 3, p.normal);
-    cloud->push_back(p);
+    const float* p = points.view()[i];
+    const float* n = &normals[4 * i];
+    if (!std::isfinite(n[0]) || !isFinite(p)) continue;
+    places.push_back({p[0], p[1], p[2]});
+    directions.push_back({n[0], n[1], n[2]});
   }
   CloudTable table;
   for (const char* name : {"x", "y", "z"}) table.addField(name, 'F', 8);
-  if (cloud->empty()) return table;
-  pcl::Poisson<pcl::PointNormal> poisson;
-  poisson.setDepth(depth);
-  poisson.setInputCloud(cloud);
-  pcl::PointCloud<pcl::PointNormal> vertices;
-  std::vector<pcl::Vertices> polygons;
-  {
+  if (places.empty()) return table;
+  const auto surface = [&] {
     // PCL's own remarks are no part of what this program says.
     const Silence silence;
-    poisson.performReconstruction(vertices, polygons);
-  }
-  table.size = table.width = vertices.size();
+    return vtkModule().poisson(places, directions, depth);
+  }();
+  table.size = table.width = surface.vertices.size();
   table.rows.resize(table.size * table.row_bytes);
   for (std::size_t i = 0; i < table.size; ++i) {
     for (std::size_t a = 0; a < 3; ++a) {
-      const double v = static_cast<double>(vertices[i].data[a]) + points.origin()[a];
+      const double v = static_cast<double>(surface.vertices[i][a]) + points.origin()[a];
       std::memcpy(table.at(table.fields[a], i), &v, sizeof(v));
     }
   }
-  for (const pcl::Vertices& p : polygons) {
-    if (p.vertices.size() != 3) continue;
-    table.triangles.push_back({static_cast<std::uint32_t>(p.vertices[0]),
-                               static_cast<std::uint32_t>(p.vertices[1]),
-                               static_cast<std::uint32_t>(p.vertices[2])});
-  }
+  table.triangles = surface.triangles;
   return table;
 }
 

@@ -26,5 +26,6 @@ if(EXISTS ${WORK}/root/usr/lib/python3/dist-packages/segorient)
   execute_process(COMMAND ${CMAKE_COMMAND} -E env PYTHONPATH=${WORK}/root/usr/lib/python3/dist-packages
     PYTHONDONTWRITEBYTECODE=1 ${loader} ${PYTHON} -c "import segorient" COMMAND_ERROR_IS_FATAL ANY)
 endif()
-execute_process(COMMAND ${CMAKE_COMMAND} -E env ${loader} ${WORK}/root/usr/bin/segorient orient ${DATA} ${WORK}/oriented.pcd
-  COMMAND_ERROR_IS_FATAL ANY)
+set(program ${CMAKE_COMMAND} -E env ${loader} ${WORK}/root/usr/bin/segorient)
+execute_process(COMMAND ${program} orient ${DATA} ${WORK}/oriented.pcd COMMAND_ERROR_IS_FATAL ANY)
+execute_process(COMMAND ${program} render ${WORK}/oriented.pcd ${WORK}/oriented.png COMMAND_ERROR_IS_FATAL ANY)

@@ -41,6 +41,8 @@ endif()
 run(${WORK}/build/consumer)
 run(${WORK}/build/consumer_of_all)
 run(${prefix}/bin/segorient orient ${DATA} ${WORK}/oriented.ply)
+# With the module that is loaded for pictures.
+run(${prefix}/bin/segorient render ${WORK}/oriented.ply ${WORK}/oriented.png)
 # The Python package, if there is one, finds the libraries where they were installed.
 file(GLOB package ${prefix}/lib/python*/*-packages)
 if(package)

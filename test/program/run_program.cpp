@@ -18,9 +18,9 @@ std::string quoted(const std::string& word) {
 
 }  // namespace
 
-Outcome runProgram(const std::vector<std::string>& words) {
+Outcome runProgram(const std::vector<std::string>& words, const std::string& program) {
   const ScratchDirectory directory;
-  std::string command = quoted(SEGORIENT_PROGRAM);
+  std::string command = quoted(program.empty() ? SEGORIENT_PROGRAM : program);
   for (const std::string& word : words) command += " " + quoted(word);
   command += " > " + directory.file("out") + " 2> " + directory.file("err") + " < /dev/null";
   const int status = std::system(command.c_str());

@@ -17,7 +17,8 @@ struct Outcome {
 };
 
 /// Runs the program segorient with these words and waits for its end.
-Outcome runProgram(const std::vector<std::string>& words);
+/// \param program another copy of it; empty = where it was built
+Outcome runProgram(const std::vector<std::string>& words, const std::string& program = {});
 
 /// One line of text that ends with a newline.
 bool isOneLine(const std::string& text);

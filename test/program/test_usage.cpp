@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <filesystem>
 
 #include "run_program.h"
 
@@ -147,6 +148,22 @@ TEST(Usage, InputAndOutputMayBeTheSameFile) {
   ASSERT_EQ(runProgram({"orient", both, both, "--quiet"}).status, 0);
   const Outcome run = runProgram({"evaluate", fandisk(), both});
   EXPECT_EQ(run.status, 0) << run.err;
+}
+
+// What draws is loaded when it is asked for: all else works without it.
+TEST(Usage, WithoutTheModuleForPicturesOnlyPicturesFail) {
+  const ScratchDirectory directory;
+  const std::string alone = directory.file("segorient");
+  std::filesystem::copy_file(SEGORIENT_PROGRAM, alone);
+  const std::string out = directory.file("out.pcd");
+  EXPECT_EQ(runProgram({"normals", fandisk(), out, "--quiet"}, alone).status, 0);
+  EXPECT_EQ(runProgram({"render", out, directory.file("page.html")}, alone).status, 0);
+  const Outcome run = runProgram({"render", out, directory.file("out.png")}, alone);
+  EXPECT_EQ(run.status, 1);
+  EXPECT_TRUE(isOneLine(run.err)) << run.err;
+  EXPECT_NE(run.err.find("segorient_vtk"), std::string::npos) << run.err;
+  EXPECT_FALSE(std::filesystem::exists(directory.file("out.png")));
+  EXPECT_EQ(runProgram({"render", out, directory.file("out.png")}).status, 0);
 }
 
 }  // namespace

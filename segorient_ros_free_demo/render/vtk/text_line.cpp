@@ -1,17 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026, the segorient authors
-#include "render/text_line.h"
-
 #include <vtkFreeTypeTools.h>
 #include <vtkImageData.h>
 #include <vtkNew.h>
 #include <vtkStdString.h>
 #include <vtkTextProperty.h>
 
-#include <algorithm>
 #include <array>
 
-namespace segorient::program {
+#include "render/vtk/parts.h"
+
+namespace segorient::program::vtk {
 namespace {
 
 constexpr int kDotsPerInch = 72;  // a point is a pixel
@@ -42,4 +41,4 @@ TextLine textLine(const std::string& text, int size) {
   return line;
 }
 
-}  // namespace segorient::program
+}  // namespace segorient::program::vtk
