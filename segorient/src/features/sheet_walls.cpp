@@ -5,54 +5,71 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
 
 namespace segorient::detail {
+namespace {
+
+constexpr std::size_t kMost = kSheetNeighbors + 1;
+using Values = std::array<float, kMost>;
+
+// Each value's place is the number of those before it: a thousand comparisons without a branch take
+// a quarter of the time of std::sort, and this is asked of every point.
+Values sorted(const Values& t, std::size_t n) {
+  Values out{};
+  for (std::size_t i = 0; i < n; ++i) {
+    std::uint32_t before = 0;
+    for (std::size_t j = 0; j < i; ++j) before += t[j] <= t[i] ? 1U : 0U;
+    for (std::size_t j = i + 1; j < n; ++j) before += t[j] < t[i] ? 1U : 0U;
+    out[before] = t[i];
+  }
+  return out;
+}
+
+}  // namespace
 
 WallSplit splitWalls(const Offsets& o, const Eigen::Vector3f& normal, float most_apart) {
   constexpr std::size_t kLeast = 4;  // fewer points have no plane with a residual
-  std::array<float, kSheetNeighbors + 1> t;
   const auto n = static_cast<std::size_t>(o.n) + 1;
   WallSplit split;
   // In spacings: nearer than that, offsets of neighbours do not fall into two groups.
   constexpr float kLeastApart = 0.35F;
   if (n < 2 * kLeast) return split;
-  t[0] = 0.F;
+  Values offsets{};
   float lowest = 0.F;
   float highest = 0.F;
   for (std::size_t j = 1; j < n; ++j) {
-    t[j] = o.along(j - 1, normal);
-    lowest = std::min(lowest, t[j]);
-    highest = std::max(highest, t[j]);
+    offsets[j] = o.along(j - 1, normal);
+    lowest = std::min(lowest, offsets[j]);
+    highest = std::max(highest, offsets[j]);
   }
   if (highest - lowest <= kLeastApart) return split;
-  std::sort(t.begin(), t.begin() + static_cast<std::ptrdiff_t>(n));
+  const Values t = sorted(offsets, n);
+  Values left;  // sums up to each
   float sum = 0.F;
   float squares = 0.F;
   for (std::size_t j = 0; j < n; ++j) {
     sum += t[j];
     squares += t[j] * t[j];
+    left[j] = sum;
   }
   const auto count = static_cast<float>(n);
   const float total = squares - sum * sum / count;
   if (!(total > 0.F)) return split;
 
-  float left = 0.F;
-  float between = -1.F;
-  float apart = 0.F;
-  std::size_t at = 0;
-  for (std::size_t j = 0; j + kLeast < n; ++j) {
-    left += t[j];
-    if (j + 1 < kLeast) continue;
-    const auto a = static_cast<float>(j + 1);
+  const std::size_t last = n - kLeast;
+  Values gap;
+  Values value;
+  for (std::size_t j = kLeast - 1; j < last; ++j) {
+    const auto a = static_cast<float>(static_cast<int>(j) + 1);
     const float b = count - a;
-    const float gap = (sum - left) / b - left / a;
-    const float value = a * b / count * gap * gap;
-    if (value > between) {
-      between = value;
-      apart = gap;
-      at = j;
-    }
+    gap[j] = (sum - left[j]) / b - left[j] / a;
+    value[j] = a * b / count * gap[j] * gap[j];
   }
+  const auto* best = std::max_element(&value[kLeast - 1], &value[last]);
+  const auto at = static_cast<std::size_t>(best - value.data());
+  const float between = *best;
+  const float apart = gap[at];
   const float low = t[at];
   const float high = t[at + 1];
   if (apart > most_apart) return split;
