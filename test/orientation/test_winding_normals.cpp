@@ -41,6 +41,8 @@ TEST(WindingNumber, FallsAsItsDefinitionDoes) {
   }
   WindingNumber winding;
   winding.build(compact.view(), dipoles, {});
+  DipoleList points;
+  for (std::size_t i = 0; i < compact.size(); ++i) points.add(compact.view()[i], &dipoles[4 * i]);
   const auto radius = static_cast<float>(cloud.spacing / static_cast<double>(compact.unit));
   const double step = 1e-3 * static_cast<double>(radius);
   for (std::size_t k = 0; k < 60; ++k) {
@@ -58,7 +60,7 @@ TEST(WindingNumber, FallsAsItsDefinitionDoes) {
     // At the ball's center, and at its rim.
     const float reach = k % 2 == 0 ? 0.F : 4 * radius;
     const float center[3] = {p[0] + reach, p[1], p[2]};
-    winding.listDipoles(center, 1.01F * reach, seen);
+    winding.listDipoles(center, 1.01F * reach, points, seen);
     EXPECT_LT(seen.size(), compact.size());
     steepestDescent(seen, p, radius, got.data());
     EXPECT_LT((got.cast<double>() - falls).norm(), 0.05 * falls.norm()) << k;

@@ -46,18 +46,31 @@ std::vector<Run> cutRuns(const PointView& at, const RadiusAt& radius) {
   return runs;
 }
 
+// \param rows empty = all
+DipoleList listOf(const DipoleCloud& from, const std::vector<std::uint32_t>& rows) {
+  DipoleList out;
+  const std::size_t count = rows.empty() ? from.points.size : rows.size();
+  for (std::size_t i = 0; i < count; ++i) {
+    const std::size_t row = rows.empty() ? i : rows[i];
+    out.add(from.points[row], &from.dipoles[4 * row]);
+  }
+  return out;
+}
+
 template <typename RadiusAt, typename Evaluate>
 void forEachPlace(const PointView& at, const DipoleCloud& from, const RadiusAt& radius, int threads,
                   Evaluate&& evaluate) {
   const std::vector<Run> runs = cutRuns(at, radius);
   WindingNumber tree;
   const std::vector<std::uint32_t> all;
-  tree.build(from.points, from.dipoles, from.rows != nullptr ? *from.rows : all);
+  const std::vector<std::uint32_t>& rows = from.rows != nullptr ? *from.rows : all;
+  tree.build(from.points, from.dipoles, rows);
+  const DipoleList points = listOf(from, rows);
   parallelFor(
       runs.size(), threads, 30000.0, [] { return DipoleList(); },
       [&](std::size_t r, DipoleList& seen) {
         seen.clear();
-        tree.listDipoles(runs[r].center.data(), runs[r].reach + runs[r].radius, seen);
+        tree.listDipoles(runs[r].center.data(), runs[r].reach + runs[r].radius, points, seen);
         for (std::size_t i = runs[r].first; i < runs[r].last; ++i) evaluate(seen, i);
       });
 }

@@ -153,6 +153,7 @@ std::vector<float> FieldSolver::solve(const std::vector<float>& evidence,
     const auto length = static_cast<float>(squares / bend);
     if (!std::isfinite(length)) break;
     add(way, length, added);
+    if (step + 1 == kSteps) break;
     add(change, -length, lack);
     gradient = growthOf(lack);
     for (std::size_t i = 0; i < added.size(); ++i) gradient[i] -= weights[i / 4] * added[i];

@@ -129,7 +129,7 @@ float total(const std::array<float, kLanes>& lanes) {
 }  // namespace
 
 void DipoleList::grow() {
-  for (std::vector<float>* v : {&x, &y, &z, &mx, &my, &mz}) v->resize(2 * size_ + 64);
+  for (std::vector<float>* v : {&x, &y, &z, &mx, &my, &mz}) v->resize(2 * size_ + 4 * kBlock);
 }
 
 void steepestDescent(const DipoleList& dipoles, const float* x, float radius, float* descent) {

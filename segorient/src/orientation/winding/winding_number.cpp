@@ -120,7 +120,9 @@ float WindingNumber::evaluate(const float* x, float radius) const {
   return static_cast<float>(sum) * kOneOver4Pi;
 }
 
-void WindingNumber::listDipoles(const float* center, float reach, DipoleList& out) const {
+void WindingNumber::listDipoles(const float* center, float reach, const DipoleList& points,
+                                DipoleList& out) const {
+  static_assert(kLeaf <= DipoleList::kBlock, "a leaf is appended at once");
   // Of dipoles this far away the field changes little, and its gradient less.
   constexpr float kFarFromBall = 2.F;
   for (std::uint32_t i = 0; i < nodes_.size();) {
@@ -133,9 +135,7 @@ void WindingNumber::listDipoles(const float* center, float reach, DipoleList& ou
       i = node.skip;
       continue;
     }
-    for (std::uint32_t j = node.first; j < node.first + node.size; ++j) {
-      out.add(points_[row(j)], dipoles_ + 4 * row(j));
-    }
+    if (node.size > 0) out.append(points, node.first, node.size);
     ++i;
   }
 }

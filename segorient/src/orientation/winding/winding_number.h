@@ -6,6 +6,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <cstring>
 #include <limits>
 #include <vector>
 
@@ -15,16 +16,19 @@ namespace segorient {
 constexpr float kOneOver4Pi = 0.07957747F;
 
 /// Dipoles as separate arrays: places, and area-weighted normals. They are as long as they ever
-/// were; the first size() count.
+/// were, and a block longer than the list; the first size() count.
 class DipoleList {
  public:
+  /// Most dipoles that are appended at once.
+  static constexpr std::size_t kBlock = 16;
+
   std::vector<float> x, y, z;
   std::vector<float> mx, my, mz;
 
   std::size_t size() const { return size_; }
   void clear() { size_ = 0; }
   void add(const float* place, const float* moment) {
-    if (size_ == x.size()) grow();
+    if (size_ + kBlock >= x.size()) grow();
     x[size_] = place[0];
     y[size_] = place[1];
     z[size_] = place[2];
@@ -32,6 +36,21 @@ class DipoleList {
     my[size_] = moment[1];
     mz[size_] = moment[2];
     ++size_;
+  }
+  /// Whole blocks are copied, of which what is too much counts for nothing.
+  /// \param count at most kBlock
+  void append(const DipoleList& from, std::size_t first, std::size_t count) {
+    if (size_ + kBlock >= x.size()) grow();
+    const auto copy = [&](const std::vector<float>& source, std::vector<float>& target) {
+      std::memcpy(target.data() + size_, source.data() + first, kBlock * sizeof(float));
+    };
+    copy(from.x, x);
+    copy(from.y, y);
+    copy(from.z, z);
+    copy(from.mx, mx);
+    copy(from.my, my);
+    copy(from.mz, mz);
+    size_ += count;
   }
 
  private:
@@ -75,7 +94,9 @@ class WindingNumber {
   /// Appends dipoles that stand for all points when seen from a ball: points near it themselves,
   /// others together.
   /// \param center of the ball \param reach its radius
-  void listDipoles(const float* center, float reach, DipoleList& out) const;
+  /// \param points all that this was built from, in the order of its rows
+  void listDipoles(const float* center, float reach, const DipoleList& points,
+                   DipoleList& out) const;
 
   bool empty() const { return nodes_.empty(); }
 
