@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "orientation/automatic/coarse_levels.h"
+#include "orientation/automatic/hand_down.h"
 #include "orientation/automatic/stages.h"
 #include "search/prepared_cloud.h"
 #include "tiles/cloud_field.h"
@@ -188,7 +189,7 @@ void Tile::goByLevel(const PointView& points, const AutomaticOptions& settings,
   detail::MoreNeighbors more(coarse_.points, options_.threads);
   level_.found = detail::orientPoints(more, level_.cloud.neighborhoods(), settings, PointHints(),
                                       options_.threads, {}, &coarse_.record);
-  detail::followLevel(points, level_, radius, options_.threads, fine);
+  fine = detail::handDown(points, level_, radius, options_.threads, fine).found;
 }
 
 // The signs of pieces, as most of their points have them.

@@ -161,11 +161,6 @@ CoarseLevel makeLevel(const PointView& points, float radius, int threads, const 
   return level;
 }
 
-void followLevel(const PointView& points, CoarseLevel& level, float radius, int threads,
-                 AutoNormals& fine) {
-  fine = handDown(points, level, radius, threads, fine).found;
-}
-
 float followCoarserLevels(const PointView& points, const Neighborhoods& neighborhoods,
                           const PointHints& hints, const OrientOneScale& orient, int threads,
                           AutoNormals& fine) {

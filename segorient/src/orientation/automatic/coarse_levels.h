@@ -35,10 +35,6 @@ struct CoarseLevel {
 SEGORIENT_ORIENTATION_EXPORT CoarseLevel makeLevel(const PointView& points, float radius,
                                                    int threads, const Bounds* frame = nullptr);
 
-/// Gives a cloud's own normals the signs that a level found.
-SEGORIENT_ORIENTATION_EXPORT void followLevel(const PointView& points, CoarseLevel& level,
-                                              float radius, int threads, AutoNormals& fine);
-
 /// Takes the signs of a coarser scale where a cloud's own points contradict each other: scans that
 /// lie half a spacing to a spacing apart are two surfaces at the scale of the points, which cross,
 /// and one at twice that scale.

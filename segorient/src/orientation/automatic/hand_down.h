@@ -2,6 +2,7 @@
 // Copyright (c) 2026, the segorient authors
 #pragma once
 
+#include <segorient/common/export.h>
 #include <segorient/common/point_view.h>
 
 #include <vector>
@@ -23,7 +24,7 @@ struct Handed {
 /// \param level oriented; what it knows of its orientation is moved out
 /// \param radius of its subset, in the unit of the points
 /// \param fine the points' own normals
-Handed handDown(const PointView& points, CoarseLevel& level, float radius, int threads,
-                const AutoNormals& fine);
+SEGORIENT_ORIENTATION_EXPORT Handed handDown(const PointView& points, CoarseLevel& level,
+                                             float radius, int threads, const AutoNormals& fine);
 
 }  // namespace segorient::detail
