@@ -9,9 +9,9 @@
 
 #include "common/box.h"
 #include "common/dot.h"
-#include "common/median.h"
 #include "common/parallel_for.h"
 #include "features/sheet_fit.h"
+#include "orientation/sensors/density_patches.h"
 #include "search/index_of.h"
 
 namespace segorient::detail {
@@ -28,14 +28,6 @@ constexpr double kPairTime = 1000.0;
 
 Plane planeOf(const PointView& points, const Neighborhoods& nb, std::size_t i, int k) {
   return detail::planeOf(points, i, nb.indices(i), std::min(nb.count(i), k + 1));
-}
-
-float scatterOf(std::vector<float> r) {
-  constexpr float kMost = 1.5F;  // a factor of four and more: another surface, or an outlier
-  const float middle = median(r);
-  double sum = 0.0;
-  for (const float v : r) sum += static_cast<double>(std::min(std::fabs(v - middle), kMost));
-  return r.empty() ? 0.F : static_cast<float>(sum / static_cast<double>(r.size()));
 }
 
 }  // namespace
@@ -183,10 +175,10 @@ Scan::Density Scan::density() const {
   }
   Density out;
   if (constant.size() < kFewest) return out;
-  out.constant = scatterOf(constant);
+  out.constant = deviation(constant);
   if (!(out.constant > 0.F)) return out;
-  for (const std::vector<float>& law : laws) {
-    out.ratio = std::min(out.ratio, scatterOf(law) / out.constant);
+  for (std::vector<float>& law : laws) {
+    out.ratio = std::min(out.ratio, deviation(law) / out.constant);
   }
   return out;
 }
