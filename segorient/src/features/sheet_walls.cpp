@@ -10,6 +10,7 @@
 namespace segorient::detail {
 namespace {
 
+// A point and all its neighbours.
 constexpr std::size_t kMost = kSheetNeighbors + 1;
 using Values = std::array<float, kMost>;
 
