@@ -197,7 +197,7 @@ struct Votes {
 };
 
 /// Accepts what the points around and along the same border agree with.
-std::vector<Recomputed> elect(const RecomputationScene& scene, bool edged,
+std::vector<Recomputed> elect(const RecomputationScene& scene, bool edged, bool on_edges,
                               const std::vector<Proposal>& proposals,
                               std::vector<LookState>& state) {
   std::map<std::pair<std::int32_t, std::int32_t>, Votes> votes;
@@ -211,7 +211,6 @@ std::vector<Recomputed> elect(const RecomputationScene& scene, bool edged,
   }
   std::vector<Recomputed> results;
   results.reserve(proposals.size());
-  const bool on_edges = includeEdges(proposals);
   for (const Proposal& p : proposals) {
     results.push_back(p.result);
     results.back().on_edge = edged && on_edges && p.to_other_face < kHalfRow;
@@ -235,8 +234,9 @@ struct OneSidedRule::Rounds {
   Round last;
 };
 
-OneSidedRule::OneSidedRule(const RecomputationOptions& options, OneSidedNormal which)
-    : options_(options), which_(which), rounds_(std::make_unique<Rounds>()) {}
+OneSidedRule::OneSidedRule(const RecomputationOptions& options, OneSidedNormal which,
+                           std::optional<KnownEdges> known)
+    : options_(options), which_(which), known_(known), rounds_(std::make_unique<Rounds>()) {}
 OneSidedRule::~OneSidedRule() = default;
 
 std::vector<Recomputed> OneSidedRule::apply(const RecomputationScene& scene) {
@@ -246,9 +246,10 @@ std::vector<Recomputed> OneSidedRule::apply(const RecomputationScene& scene) {
   Proposer proposer(scene, options_, which_, rounds_->last, now);
   const Looks& looks = now.looks;
   proposer.run(looks.sample.size(), [&](std::size_t p) { return looks.sample[p]; });
-  const bool edged = seesEdges(scene, looks, now.proposals);
+  const bool edged = known_ ? known_->any : seesEdges(scene, looks, now.proposals);
   if (edged) proposer.run(looks.patches.size(), [](std::size_t p) { return p; });
-  std::vector<Recomputed> results = elect(scene, edged, now.proposals, state);
+  const bool on_edges = known_ ? known_->with_points : includeEdges(now.proposals);
+  std::vector<Recomputed> results = elect(scene, edged, on_edges, now.proposals, state);
   now.labels = scene.labels;
   rounds_->last = std::move(now);
   return results;

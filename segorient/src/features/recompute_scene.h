@@ -8,6 +8,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "features/recompute_normals.h"
@@ -86,11 +87,19 @@ enum class OneSidedNormal : std::uint8_t {
   EXPECTED
 };
 
+/// What shares of all points tell the one-sided rule; of a part of a cloud they would tell others.
+struct KnownEdges {
+  bool any = false;          ///< whether the cloud has edges at all
+  bool with_points = false;  ///< and many points on them
+};
+
 /// Round after round on one cloud, whose labels and normals may change in between.
 class SEGORIENT_FEATURES_EXPORT OneSidedRule {
  public:
+  /// \param known of the cloud that the points are part of; none = measured in each round
   explicit OneSidedRule(const RecomputationOptions& options,
-                        OneSidedNormal which = OneSidedNormal::LIKELIEST);
+                        OneSidedNormal which = OneSidedNormal::LIKELIEST,
+                        std::optional<KnownEdges> known = {});
   ~OneSidedRule();
   OneSidedRule(const OneSidedRule&) = delete;
   OneSidedRule& operator=(const OneSidedRule&) = delete;
@@ -104,6 +113,7 @@ class SEGORIENT_FEATURES_EXPORT OneSidedRule {
 
   RecomputationOptions options_;
   OneSidedNormal which_;
+  std::optional<KnownEdges> known_;
   std::unique_ptr<Rounds> rounds_;
 };
 std::vector<Recomputed> applyModifiedNeighborhoods(const RecomputationScene& scene,

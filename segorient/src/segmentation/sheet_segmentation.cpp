@@ -53,6 +53,8 @@ Segmentation segmentSheets(const PointView& points, const Neighborhoods& neighbo
   segmentation::setKinds(growth, state);
   Segmentation out = segmentation::rank(state, state.labels, state.signs);
   if (finished != nullptr) {
+    float& offset = finished->typical_offset;
+    offset = state.typical_offset = offset >= 0.F ? offset : state.typical_offset;
     // What goes over to a segment from now on follows no segment's sign any more.
     state.support = 0;
     segmentation::setCurvature(field.curvature, state);

@@ -26,6 +26,9 @@ struct SheetSegmentationOptions {
 struct FinishedSegments {
   SegmentationOptions options;  ///< of the clean-up; what they say about growing is not used
   Segmentation segmentation;    ///< the result, members not listed: see collectMembers()
+  /// GrowthState::typical_offset: what it is of the whole cloud, where these are a part of it, else
+  /// negative, and what was measured afterwards.
+  float typical_offset = -1.F;
 };
 
 /// Segments that do not mix the two sides of a wall: growing and clean-up as in section 2.3 of the

@@ -138,6 +138,8 @@ void Tile::run() {
   record.final_traits.surfaces.analytic = traits.analytic != 0;
   record.final_traits.surfaces.cubic_edges = traits.cubic_edges != 0;
   record.final_traits.edges = traits.edges != 0;
+  record.final_traits.edges_sampled = traits.edges_sampled != 0;
+  record.typical_offset = traits.typical_offset;
   record.denoise = traits.denoise != 0;
   hints_ = resolveHints(options_.hints, cloud_);
   hints_.shadows = options_.place.shadows;

@@ -27,16 +27,18 @@ struct TileTraits {
   std::uint8_t denoise = 0;  ///< whether positions are smoothed first
 
   // Of the surfaces that final normals come from.
-  std::uint8_t edges = 0;        ///< whether there are sharp edges
-  std::uint8_t analytic = 0;     ///< whether the surface is as smooth as one that a formula makes
-  std::uint8_t cubic_edges = 0;  ///< whether cubic surfaces fit edges better
-  std::uint8_t level_thin = 0;   ///< `thin` of the level
-  std::uint8_t noisy = 0;        ///< whether borders tell too little of which way sheets go on
-  std::uint8_t consistent = 0;   ///< see NoiseField
-  std::uint8_t judged = 0;       ///< whether signs contradict each other somewhere
-  std::uint8_t unused[2] = {};   ///< no hidden bytes: traits are stored as they are
-  float surface_noise = 0.F;     ///< standard deviation, in the points' unit
-  float surface_ratio = 0.F;     ///< the same, in spacings
+  std::uint8_t edges = 0;          ///< whether there are sharp edges
+  std::uint8_t analytic = 0;       ///< whether the surface is as smooth as one that a formula makes
+  std::uint8_t cubic_edges = 0;    ///< whether cubic surfaces fit edges better
+  std::uint8_t level_thin = 0;     ///< `thin` of the level
+  std::uint8_t noisy = 0;          ///< whether borders tell too little of which way sheets go on
+  std::uint8_t consistent = 0;     ///< see NoiseField
+  std::uint8_t judged = 0;         ///< whether signs contradict each other somewhere
+  std::uint8_t edges_sampled = 0;  ///< whether there are points on sharp edges themselves
+  std::uint8_t unused[1] = {};     ///< no hidden bytes: traits are stored as they are
+  float surface_noise = 0.F;       ///< standard deviation, in the points' unit
+  float surface_ratio = 0.F;       ///< the same, in spacings
+  float typical_offset = 0.F;      ///< see FinishedSegments
 
   // Of the coarser level whose signs the cloud takes, see followCoarserLevels().
   float level = 0.F;         ///< its radius in spacings, 0 = none

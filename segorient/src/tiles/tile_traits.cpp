@@ -29,6 +29,8 @@ TileTraits measureTileTraits(const PointView& points, int k, const OrientationHi
   out.denoise = found.denoised ? 1 : 0;
   const AutomaticNormalTraits& surfaces = found.final_traits.surfaces;
   out.edges = found.final_traits.edges ? 1 : 0;
+  out.edges_sampled = found.final_traits.edges_sampled ? 1 : 0;
+  out.typical_offset = found.typical_offset;
   out.analytic = surfaces.analytic ? 1 : 0;
   out.cubic_edges = surfaces.cubic_edges ? 1 : 0;
   out.surface_noise = static_cast<float>(surfaces.noise.length) * cloud.unit();

@@ -8,6 +8,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "common/dot.h"
@@ -59,8 +60,12 @@ class FinalNormals {
     if (!toward_.empty() && tooNoisy()) return {};
     fitSurfaces(only_known);
     if (static_cast<double>(noise_) <= kCubicNoise) recomputeAtEdges();
-    if (known_ != nullptr) has_edges_ = known_->edges;
+    if (known_ != nullptr) {
+      has_edges_ = known_->edges;
+      edges_sampled_ = known_->edges_sampled;
+    }
     traits_.edges = has_edges_;
+    traits_.edges_sampled = edges_sampled_;
     if (noise_ < kClean) sure_.assign(points_.size, 0);
     parallelFor(points_.size, threads_, 50.0, [&](std::size_t i) {
       std::array<float, 4> chosen;
@@ -124,7 +129,10 @@ class FinalNormals {
       regular.push_back(s.kind == SegmentKind::REGULAR ? 1 : 0);
     }
     const int entries = std::min(kEdgeNeighbors + 1, table_.k());
-    OneSidedRule rule({}, OneSidedNormal::EXPECTED);
+    std::optional<KnownEdges> known;
+    if (known_ != nullptr)
+      known = KnownEdges{known_->edges || known_->edges_sampled, known_->edges_sampled};
+    OneSidedRule rule({}, OneSidedNormal::EXPECTED, known);
     for (int round = 0; round < kRounds; ++round) {
       const RecomputationScene scene{points_, table_, regular, labels, fitted_, entries, threads_};
       for (const Recomputed& r : rule.apply(scene)) {

@@ -49,14 +49,16 @@ struct AutoNormals {
 /// What fitFinalNormals() measures of a whole cloud; for a part of one it is told.
 struct FinalTraits {
   AutomaticNormalTraits surfaces;
-  bool edges = false;  ///< whether there are sharp ones
+  bool edges = false;          ///< whether there are sharp ones
+  bool edges_sampled = false;  ///< and points on them, as vertices of meshes are
 };
 
 /// For a cloud that is part of a larger one: what is known of that, and what it needs to know.
 struct SheetRecord {
-  SheetTraits traits;        ///< of the whole
-  FinalTraits final_traits;  ///< of the whole
-  bool denoise = false;      ///< whether the whole asks for smoothed positions
+  SheetTraits traits;           ///< of the whole
+  FinalTraits final_traits;     ///< of the whole
+  float typical_offset = -1.F;  ///< of the whole, see FinishedSegments
+  bool denoise = false;         ///< whether the whole asks for smoothed positions
   /// One a point: whose votes are kept, see borderVotes().
   const std::vector<std::uint8_t>* voters = nullptr;
   /// One a point: within what distance all is there. Points with neighbours farther away have no

@@ -105,10 +105,12 @@ AutoStages runAutoStages(PreparedCloud& cloud, const PipelineOptions& options,
   FinishedSegments finished;
   finished.options = segmentation::inUnitOf(cloud, {options.segmentation});
   finished.options.threads = options.threads;
+  if (record != nullptr) finished.typical_offset = record->typical_offset;
   MoreNeighbors more(points, options.threads, cloud.takeIndex());
   static_cast<AutoNormals&>(out) =
       orientPoints(more, table, settings, hints, options.threads, begin, record, &finished);
   out.segmentation = std::move(finished.segmentation);
+  out.typical_offset = finished.typical_offset;
   // What sensors or the user know is better than what the field tells.
   if (record != nullptr) {
     if (record->field) record->field(points, out);

@@ -22,6 +22,7 @@ struct AutoStages : AutoNormals {
   bool denoised = false;    ///< whether positions were smoothed first
   bool consistent = false;  ///< see NoiseField
   FinalTraits final_traits;
+  float typical_offset = 0.F;  ///< see FinishedSegments
 };
 
 /// The default method, from distinct points to oriented normals and segments: neighbours, sheet
