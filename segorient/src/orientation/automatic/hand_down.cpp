@@ -79,7 +79,6 @@ void listen(const PointView& points, CoarseLevel& level, float radius, int threa
       }
     }
     heard.mean(&out.around[4 * i]);
-    if (!out.found.by_sensor.empty() && out.found.by_sensor[i] != 0) return;
     out.found.confidences[i] = heard.confidence();
     if (!heard.against()) return;
     for (std::size_t a = 0; a < 3; ++a) n[a] = -n[a];
@@ -111,7 +110,6 @@ Handed handDown(const PointView& points, CoarseLevel& level, float radius, int t
   out.found.spacing = fine.spacing;
   out.found.normals = fine.normals;
   out.found.confidences = fine.confidences;
-  out.found.by_sensor = fine.by_sensor;
   out.found.components.assign(points.size, -1);
   out.around.assign(4 * points.size, 0.F);
   listen(points, level, radius, threads, out);

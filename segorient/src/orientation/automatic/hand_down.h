@@ -19,8 +19,7 @@ struct Handed {
   std::vector<float> around;
 };
 
-/// Gives each point the sign of the points of the level that are near; what its sensor decided
-/// stays.
+/// Gives each point the sign of the points of the level that are near.
 /// \param level oriented; what it knows of its orientation is moved out
 /// \param radius of its subset, in the unit of the points
 /// \param fine the points' own normals

@@ -12,7 +12,6 @@
 #include "features/sheet_normals.h"
 #include "orientation/automatic/coarse_levels.h"
 #include "orientation/automatic/grazing_normals.h"
-#include "orientation/automatic/sensor_signs.h"
 #include "orientation/automatic/sheet_filter.h"
 #include "orientation/winding/winding_normals.h"
 #include "segmentation/sheet_segmentation.h"
@@ -107,11 +106,8 @@ AutoNormals orientAtOneScale(MoreNeighbors& more, const Neighborhoods& neighborh
   if (settings.winding_normals && settings.filter_rounds > 0) {
     refineByWinding(points, sheets.spacing, sheets.residual, threads, filtered);
   }
-  if (!out.orientation.toward.empty()) {
-    out.by_sensor = faceSensors(out.orientation.toward, filtered);
-    if (sheets.traits.scan_scales) {
-      replaceGrazingNormals(more, out.orientation.toward, threads, filtered);
-    }
+  if (!out.orientation.toward.empty() && sheets.traits.scan_scales) {
+    replaceGrazingNormals(more, out.orientation.toward, threads, filtered);
   }
   out.normals = std::move(filtered.normals);
   parallelFor(points.size, threads, 5.0, [&](std::size_t i) {

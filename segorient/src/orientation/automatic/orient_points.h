@@ -37,8 +37,6 @@ struct AutoNormals {
   /// rounding and a little noise do, and agrees with the filtered one; empty where none is.
   std::vector<std::uint8_t> sure;
   AutoOrientation orientation;  ///< of the sheets' segments
-  /// Whether a point's sensor decided its side; empty where no sensor is known.
-  std::vector<std::uint8_t> by_sensor;
   float spacing = 0.F;              ///< median
   float level = 0.F;                ///< see followCoarserLevels()
   std::vector<ScaleEnergy> scales;  ///< see PipelineReport

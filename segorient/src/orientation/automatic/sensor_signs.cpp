@@ -93,26 +93,4 @@ std::vector<bool> turnToSensors(const std::vector<Ballot>& ballots,
   return by_sensors;
 }
 
-std::vector<std::uint8_t> faceSensors(const std::vector<float>& toward, FilteredNormals& filtered) {
-  // The mean of unit normals that scatter by s radians has a length of 1 - s^2 / 2. About eight of
-  // them count. Where they scatter so much that this is more than an edge would leave, the surface
-  // knows its side no better than the sensor does.
-  constexpr float kCounting = 8.F;
-  constexpr float kMost = 0.3F;
-  constexpr float kBend = 0.02F;
-  std::vector<std::uint8_t> decided(filtered.confidences.size(), 0);
-  for (std::size_t i = 0; i < filtered.confidences.size(); ++i) {
-    float* n = filtered.normals.data() + 4 * i;
-    const float cosine = dot(n, &toward[3 * i]);
-    const float scatter2 = 2.F * (1.F - filtered.confidences[i]);
-    const float error = kBend + std::sqrt(std::max(scatter2, 0.F) / kCounting);
-    if (!(std::fabs(cosine) >= std::min(kClear * error, kMost))) continue;
-    decided[i] = 1;
-    if (cosine < 0.F) {
-      for (std::size_t a = 0; a < 3; ++a) n[a] = -n[a];
-    }
-  }
-  return decided;
-}
-
 }  // namespace segorient::detail

@@ -2,8 +2,6 @@
 // Copyright (c) 2026, the segorient authors
 #pragma once
 
-#include <segorient/common/export.h>
-#include <segorient/common/point_view.h>
 #include <segorient/segmentation/segmentation.h>
 
 #include <cstddef>
@@ -11,7 +9,6 @@
 #include <vector>
 
 #include "orientation/automatic/border_votes.h"
-#include "orientation/automatic/sheet_filter.h"
 #include "orientation/sensors/hint_votes.h"
 #include "orientation/sensors/known_sensors.h"
 #include "segmentation/sheet_segmentation.h"
@@ -37,11 +34,5 @@ std::vector<bool> turnToSensors(const std::vector<Ballot>& ballots,
 
 /// Whether that many standard errors leave no doubt, so that the point need not ask its surface.
 bool isClear(float facing);
-
-/// Final normals turn to their sensors wherever their own error leaves no doubt.
-/// \param toward see AutoOrientation
-/// \return by point, whether its sensor decided
-SEGORIENT_ORIENTATION_EXPORT std::vector<std::uint8_t> faceSensors(const std::vector<float>& toward,
-                                                                   FilteredNormals& filtered);
 
 }  // namespace segorient::detail
