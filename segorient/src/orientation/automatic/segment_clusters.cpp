@@ -6,12 +6,13 @@
 
 namespace segorient::detail {
 SegmentClusters::SegmentClusters(const Segmentation& segmentation,
-                                 const std::vector<BorderVote>& votes, const Rules& rules) {
+                                 const std::vector<BorderVote>& votes, bool contract_certain,
+                                 std::size_t points) {
   const std::size_t n = segmentation.segments.size();
   std::vector<std::uint32_t> sizes(n);
   for (std::size_t s = 0; s < n; ++s) sizes[s] = segmentation.segments[s].size;
   ClusterGraph graph(sizes, votes);
-  if (rules.contract_certain) {
+  if (contract_certain) {
     ClusterGraph::Rule certain;
     certain.unanimity = 0.9F;
     certain.weight = 4.F;  // a border of a few points
@@ -26,7 +27,7 @@ SegmentClusters::SegmentClusters(const Segmentation& segmentation,
     // Two large clusters are joined only with all evidence on the table.
     ClusterGraph::Rule likely;
     likely.unanimity = 0.6F;
-    likely.both_larger = static_cast<std::uint32_t>(rules.points / 50);
+    likely.both_larger = static_cast<std::uint32_t>(points / 50);
     graph.contract({likely});
   }
   of_.resize(n);

@@ -17,12 +17,10 @@ namespace segorient::detail {
 /// borders together. A cluster is named by one of its segments.
 class SegmentClusters {
  public:
-  struct Rules {
-    bool contract_certain = true;
-    std::size_t points = 0;  ///< of the whole cloud
-  };
+  /// \param contract_certain see AutomaticOptions
+  /// \param points of the whole cloud
   SegmentClusters(const Segmentation& segmentation, const std::vector<BorderVote>& votes,
-                  const Rules& rules);
+                  bool contract_certain, std::size_t points);
 
   /// One more than the largest name: the number of segments.
   std::size_t size() const { return of_.size(); }

@@ -26,7 +26,7 @@ SheetSigns::SheetSigns(const PointView& all, const Neighborhoods& neighborhoods,
       hint_votes(hintVotes(all, sheet_field, segments, known)),
       sensors(findKnownSensors(all, neighborhoods, sheet_field.spacing, known, most_threads)),
       votes(std::move(border_votes)),
-      clusters(segments, votes, {settings.contract_certain, count}) {
+      clusters(segments, votes, settings.contract_certain, count) {
   numberComponents();
 }
 

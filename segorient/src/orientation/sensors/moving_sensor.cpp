@@ -65,6 +65,21 @@ std::vector<Position> placesAlong(const Line& line) {
   return out;
 }
 
+// As an ANGLE_GRID about z would have it, and the elevation's bin.
+void beamShares(const DensityPatches& patches, const Position& place, std::vector<float>& row,
+                std::vector<std::uint8_t>& bins) {
+  static const ElevationBins kBins;
+  ratios(patches, {place, {0.0, 0.0, 1.0}, SamplingLaw::ANGLE_GRID}, row);
+  bins.resize(patches.size());
+  for (std::size_t i = 0; i < bins.size(); ++i) {
+    const float x = patches.x[i] - static_cast<float>(place[0]);
+    const float y = patches.y[i] - static_cast<float>(place[1]);
+    const float z = patches.z[i] - static_cast<float>(place[2]);
+    const float d = std::sqrt(std::max(x * x + y * y + z * z, 1e-12F));
+    bins[i] = static_cast<std::uint8_t>(kBins.of(z / d));
+  }
+}
+
 // What the places leave on the pieces, and how it depends on the beams.
 class TrackModel {
  public:
@@ -123,23 +138,6 @@ class TrackModel {
     }
   }
 
- public:
-  // As an ANGLE_GRID about z would have it, and the elevation's bin.
-  static void beamShares(const DensityPatches& patches, const Position& place,
-                         std::vector<float>& row, std::vector<std::uint8_t>& bins) {
-    static const ElevationBins kBins;
-    ratios(patches, {place, {0.0, 0.0, 1.0}, SamplingLaw::ANGLE_GRID}, row);
-    bins.resize(patches.size());
-    for (std::size_t i = 0; i < bins.size(); ++i) {
-      const float x = patches.x[i] - static_cast<float>(place[0]);
-      const float y = patches.y[i] - static_cast<float>(place[1]);
-      const float z = patches.z[i] - static_cast<float>(place[2]);
-      const float d = std::sqrt(std::max(x * x + y * y + z * z, 1e-12F));
-      bins[i] = static_cast<std::uint8_t>(kBins.of(z / d));
-    }
-  }
-
- private:
   const DensityPatches& patches_;
   std::vector<std::vector<float>> rows_;
   std::vector<std::vector<std::uint8_t>> bins_;
@@ -268,7 +266,7 @@ std::vector<std::int32_t> placeOf(const DensityPatches& patches, const Occupancy
   std::vector<std::uint8_t> bins;
   std::vector<float> seen(patches.size());
   for (std::size_t j = 0; j < rows.size(); ++j) {
-    TrackModel::beamShares(patches, track.places[j], rows[j], bins);
+    beamShares(patches, track.places[j], rows[j], bins);
     occupancy.visibility(patches, track.places[j], seen.data());
     for (std::size_t i = 0; i < seen.size(); ++i) rows[j][i] *= track.beams[bins[i]] * seen[i];
   }

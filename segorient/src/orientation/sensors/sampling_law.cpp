@@ -88,10 +88,6 @@ std::array<std::array<double, 3>, 2> across(const std::array<double, 3>& axis) {
   return {a, b};
 }
 
-}  // namespace
-
-namespace {
-
 void densitiesAt(const DensityPatches& patches, const Place& place, std::vector<float>& out) {
   out.resize(patches.size());
   switch (place.law) {

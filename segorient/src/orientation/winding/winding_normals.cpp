@@ -6,6 +6,9 @@
 #include <cmath>
 #include <cstdint>
 
+#include "common/dot.h"
+#include "common/in_double.h"
+#include "common/unit_vector.h"
 #include "orientation/winding/dipole_fields.h"
 
 namespace segorient {
@@ -30,15 +33,8 @@ std::vector<std::uint32_t> listDoubtful(const std::vector<float>& spacing,
 
 // \param n which way the field falls \return whether the normal is another one now
 bool tilt(const float* n, float* normal) {
-  // In double: far from all others the field is so weak that squares leave float's range.
-  const auto square = [](float v) { return static_cast<double>(v) * static_cast<double>(v); };
-  const double length = std::sqrt(square(n[0]) + square(n[1]) + square(n[2]));
-  if (!std::isfinite(length) || !(length > 0.0)) return false;
   // Which of two near sheets a point is on is the segments' to say.
-  if (!(n[0] * normal[0] + n[1] * normal[1] + n[2] * normal[2] > 0.F)) return false;
-  for (std::size_t a = 0; a < 3; ++a)
-    normal[a] = static_cast<float>(static_cast<double>(n[a]) / length);
-  return true;
+  return dot(n, normal) > 0.F && unitVector(inDouble(n), normal);
 }
 
 }  // namespace
