@@ -49,9 +49,14 @@ struct Box {
     for (std::size_t a = 0; a < 3; ++a) squares += (high[a] - low[a]) * (high[a] - low[a]);
     return std::sqrt(squares);
   }
-  float longestSide() const {
-    return std::max({high[0] - low[0], high[1] - low[1], high[2] - low[2]});
+  std::size_t longestAxis() const {
+    std::size_t axis = 0;
+    for (std::size_t a = 1; a < 3; ++a) {
+      if (high[a] - low[a] > high[axis] - low[axis]) axis = a;
+    }
+    return axis;
   }
+  float longestSide() const { return high[longestAxis()] - low[longestAxis()]; }
 };
 
 }  // namespace segorient

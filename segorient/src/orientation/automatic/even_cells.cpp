@@ -4,9 +4,12 @@
 
 #include <segorient/search/median_hash_index.h>
 
+#include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <utility>
 
+#include "common/box.h"
 #include "common/dot.h"
 #include "common/parallel_for.h"
 #include "features/sheet_fit.h"
@@ -20,6 +23,40 @@ constexpr int kAround = 9;  // the cell itself and eight neighbours
 // Area per square of the mean distance to the six nearest of a blue-noise subset (measured; .866 of
 // a hexagonal grid).
 constexpr float kAreaPerSquare = 0.92F;
+
+using Row = std::vector<std::uint32_t>::iterator;
+
+// Halves at the median of the longest side, and so on: what is in any half, quarter ... of the
+// order lies in a box of its own.
+void halve(const PointView& places, Row first, Row last) {
+  if (last - first < 3) return;
+  Box box;
+  for (Row r = first; r != last; ++r) box.add(places[*r]);
+  const std::size_t axis = box.longestAxis();
+  const Row middle = first + (last - first) / 2;
+  std::nth_element(first, middle, last, [&](std::uint32_t a, std::uint32_t b) {
+    const float in_a = places[a][axis];
+    const float in_b = places[b][axis];
+    return in_a != in_b ? in_a < in_b : a < b;
+  });
+  halve(places, first, middle);
+  halve(places, middle, last);
+}
+
+// Numbers cells anew, so that near ones are side by side.
+void sortCells(EvenCells& cells) {
+  std::vector<std::uint32_t> order(cells.size());
+  std::iota(order.begin(), order.end(), 0U);
+  halve(cells.points(), order.begin(), order.end());
+  std::vector<std::uint32_t> place(order.size());
+  std::vector<float> places(cells.places.size(), 0.F);
+  for (std::size_t c = 0; c < order.size(); ++c) {
+    place[order[c]] = static_cast<std::uint32_t>(c);
+    std::copy_n(&cells.places[std::size_t{4} * order[c]], 3, &places[4 * c]);
+  }
+  cells.places = std::move(places);
+  for (std::uint32_t& c : cells.cell_of) c = place[c];
+}
 
 }  // namespace
 
@@ -36,6 +73,7 @@ EvenCells gatherCells(const PointView& points, const std::vector<float>& normals
   if (n == 0) return out;
   out.places = meanPlaces(points, cells);
   out.cell_of = std::move(cells.cell_of);
+  sortCells(out);
   out.normals.assign(4 * n, 0.F);
   for (std::size_t i = 0; i < points.size; ++i) {
     if (!isFinite(&normals[4 * i])) continue;

@@ -24,7 +24,7 @@ struct Run {
 
 template <typename RadiusAt>
 std::vector<Run> cutRuns(const PointView& at, const RadiusAt& radius) {
-  constexpr float kWidest = 4.F;       // in radii: what is nearer is seen point by point
+  constexpr float kWidest = 6.F;       // in radii; 4 and 9 take a tenth longer
   constexpr std::size_t kPlaces = 32;  // listing costs a tenth of the sums then
   std::vector<Run> runs;
   for (std::size_t first = 0; first < at.size;) {

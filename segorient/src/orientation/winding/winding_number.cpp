@@ -123,8 +123,8 @@ float WindingNumber::evaluate(const float* x, float radius) const {
 void WindingNumber::listDipoles(const float* center, float reach, const DipoleList& points,
                                 DipoleList& out) const {
   static_assert(kLeaf <= DipoleList::kBlock, "a leaf is appended at once");
-  // Of dipoles this far away the field changes little, and its gradient less.
-  constexpr float kFarFromBall = 2.F;
+  // A node has another distance from each of its points then, by a third at most.
+  constexpr float kFarFromBall = 3.F;
   for (std::uint32_t i = 0; i < nodes_.size();) {
     const Node& node = nodes_[i];
     const float d[3] = {node.center[0] - center[0], node.center[1] - center[1],
@@ -138,6 +138,7 @@ void WindingNumber::listDipoles(const float* center, float reach, const DipoleLi
     if (node.size > 0) out.append(points, node.first, node.size);
     ++i;
   }
+  out.fillBlock();
 }
 
 }  // namespace segorient

@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the segorient authors
+#include "orientation/winding/dipole_sums.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+
+#include "common/compiler.h"
+#include "common/instruction_set.h"
+#include "common/vectors.h"
+
+namespace segorient {
+namespace {
+
+// As many as the widest registers hold, whatever the machine's are: the same sums everywhere.
+constexpr std::size_t kSums = DipoleList::kBlock;
+
+struct Dipoles {
+  const float* x;
+  const float* y;
+  const float* z;
+  const float* mx;
+  const float* my;
+  const float* mz;
+  std::size_t count;
+};
+
+struct Sums {
+  std::array<float, kSums> x;
+  std::array<float, kSums> y;
+  std::array<float, kSums> z;
+};
+
+}  // namespace
+
+#define SEGORIENT_KERNELS "orientation/winding/dipole_lanes.inl"
+#include "features/each_width.inl"
+#undef SEGORIENT_KERNELS
+
+namespace {
+
+struct Kernels {
+  using Add = void (*)(const Dipoles&, const float*, float, Sums&);
+  Add numbers = &portable::addNumbers;
+  Add descents = &portable::addDescents;
+  Add pulls = &portable::addPulls;
+};
+
+Kernels chooseKernels() {
+#if SEGORIENT_X86
+  if (instructionSet() >= InstructionSet::Avx512) {
+    return {&avx512::addNumbers, &avx512::addDescents, &avx512::addPulls};
+  }
+  if (instructionSet() >= InstructionSet::Avx2) {
+    return {&avx2::addNumbers, &avx2::addDescents, &avx2::addPulls};
+  }
+#endif
+  return {};
+}
+
+const Kernels& kernels() {
+  static const Kernels chosen = chooseKernels();
+  return chosen;
+}
+
+// The last block is filled up with dipoles that are 0, so that no sum has a remainder.
+Dipoles blocksOf(const DipoleList& list) {
+  return {list.x.data(),  list.y.data(),  list.z.data(), list.mx.data(),
+          list.my.data(), list.mz.data(), list.size()};
+}
+
+float total(const std::array<float, kSums>& parts) {
+  float sum = 0.F;
+  for (const float v : parts) sum += v;
+  return kOneOver4Pi * sum;
+}
+
+}  // namespace
+
+void DipoleList::grow() {
+  for (std::vector<float>* v : {&x, &y, &z, &mx, &my, &mz}) v->resize(2 * size_ + 4 * kBlock);
+}
+
+void DipoleList::fillBlock() {
+  if (size_ + kBlock > x.size()) grow();
+  for (std::vector<float>* v : {&x, &y, &z, &mx, &my, &mz}) {
+    std::fill_n(v->begin() + static_cast<std::ptrdiff_t>(size_), kBlock, 0.F);
+  }
+}
+
+void steepestDescent(const DipoleList& dipoles, const float* x, float radius, float* descent) {
+  Sums sums;
+  kernels().descents(blocksOf(dipoles), x, radius * radius, sums);
+  descent[0] = total(sums.x);
+  descent[1] = total(sums.y);
+  descent[2] = total(sums.z);
+}
+
+float windingNumberOf(const DipoleList& dipoles, const float* x, float radius) {
+  Sums sums;
+  kernels().numbers(blocksOf(dipoles), x, radius * radius, sums);
+  return total(sums.x);
+}
+
+void windingPull(const DipoleList& dipoles, const float* x, float radius, float* pull) {
+  Sums sums;
+  kernels().pulls(blocksOf(dipoles), x, radius * radius, sums);
+  pull[0] = total(sums.x);
+  pull[1] = total(sums.y);
+  pull[2] = total(sums.z);
+}
+
+}  // namespace segorient
