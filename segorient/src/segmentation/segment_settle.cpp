@@ -4,7 +4,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <iterator>
+#include <vector>
 
 #include "common/parallel_for.h"
 #include "segmentation/distinct_points.h"
@@ -214,8 +216,9 @@ void move(std::size_t p, std::int32_t into, GrowthState& state) {
 }
 
 // All decide on the old labels; so the order does not matter.
-std::size_t settleOnce(const SegmentationOptions& options, const std::vector<pcl::index_t>& border,
-                       GrowthState& state) {
+// \return those that moved
+std::vector<pcl::index_t> settleOnce(const SegmentationOptions& options,
+                                     const std::vector<pcl::index_t>& border, GrowthState& state) {
   std::vector<std::int32_t> wanted(border.size());
   const Settler settler(options, state);
   parallelFor(
@@ -225,7 +228,7 @@ std::size_t settleOnce(const SegmentationOptions& options, const std::vector<pcl
           state.fetchRow(static_cast<std::size_t>(border[i + kRowsAhead]));
         wanted[i] = settler.settle(static_cast<std::size_t>(border[i]), around);
       });
-  std::size_t moved = 0;
+  std::vector<pcl::index_t> moved;
   for (std::size_t i = 0; i < border.size(); ++i) {
     const auto p = static_cast<std::size_t>(border[i]);
     const std::int32_t own = state.labels[p];
@@ -235,27 +238,61 @@ std::size_t settleOnce(const SegmentationOptions& options, const std::vector<pcl
          state.isFace(own, options.small_size)))
       continue;
     move(p, wanted[i], state);
-    ++moved;
+    moved.push_back(border[i]);
   }
   return moved;
+}
+
+// Of some points, those whose neighbours, or these ones' neighbours, are among the marked.
+std::vector<pcl::index_t> listNear(const std::vector<pcl::index_t>& rows,
+                                   const std::vector<std::uint8_t>& marked, int threads,
+                                   const GrowthState& state) {
+  const Neighborhoods& table = *state.neighborhoods;
+  const auto reach = [&](std::size_t row) { return std::min(table.count(row), kReach + 1); };
+  const auto seesMarked = [&](std::size_t row) {
+    const pcl::index_t* q = table.indices(row);
+    return std::any_of(q, q + reach(row),
+                       [&](pcl::index_t i) { return marked[static_cast<std::size_t>(i)] != 0; });
+  };
+  std::vector<std::uint8_t> near(rows.size(), 0);
+  parallelFor(rows.size(), threads, 500.0, [&](std::size_t i) {
+    const auto p = static_cast<std::size_t>(rows[i]);
+    const pcl::index_t* q = table.indices(p);
+    const bool sees = seesMarked(p) || std::any_of(q, q + reach(p), [&](pcl::index_t j) {
+                        return seesMarked(static_cast<std::size_t>(j));
+                      });
+    near[i] = sees ? 1 : 0;
+  });
+  std::vector<pcl::index_t> out;
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    if (near[i] != 0) out.push_back(rows[i]);
+  }
+  return out;
 }
 
 }  // namespace
 
 std::size_t settleEdges(const SegmentationOptions& options, GrowthState& state) {
-  std::size_t moved = settleOnce(options, state.border, state);
-  if (moved == 0) return 0;
+  std::vector<pcl::index_t> moved = settleOnce(options, state.border, state);
+  std::size_t total = moved.size();
+  if (total == 0) return 0;
   // At a corner the points around it may have been in no face, either.
   const auto settled = [&](pcl::index_t p) {
     return state.isFace(state.labels[static_cast<std::size_t>(p)], options.small_size);
   };
   std::vector<pcl::index_t> loose;
   std::remove_copy_if(state.border.begin(), state.border.end(), std::back_inserter(loose), settled);
-  while (const std::size_t last = settleOnce(options, loose, state)) {
-    moved += last;
+  // What a point wants to be follows from the labels that are near it.
+  std::vector<std::uint8_t> marked(state.labels.size(), 0);
+  while (!moved.empty()) {
+    for (const pcl::index_t p : moved) marked[static_cast<std::size_t>(p)] = 1;
+    const std::vector<pcl::index_t> near = listNear(loose, marked, options.threads, state);
+    for (const pcl::index_t p : moved) marked[static_cast<std::size_t>(p)] = 0;
+    moved = settleOnce(options, near, state);
+    total += moved.size();
     loose.erase(std::remove_if(loose.begin(), loose.end(), settled), loose.end());
   }
-  return moved;
+  return total;
 }
 
 }  // namespace segorient::segmentation
