@@ -3,7 +3,7 @@
 //
 // Planes of growing neighbourhoods for one instruction set; see lanes.inl.
 
-#include "features/lanes.inl"
+#include "common/lanes.inl"
 
 #include "features/plane_lanes.inl"
 

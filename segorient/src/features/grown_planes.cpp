@@ -63,7 +63,7 @@ constexpr auto kSortingPairs = listSortingPairs();
 }  // namespace
 
 #define SEGORIENT_KERNELS "features/grown_lanes.inl"
-#include "features/each_width.inl"
+#include "common/each_width.inl"
 #undef SEGORIENT_KERNELS
 
 Plane GrownPlanes::at(std::size_t i, float length) const {

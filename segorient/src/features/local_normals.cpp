@@ -19,7 +19,7 @@ namespace segorient {
 namespace detail {
 
 #define SEGORIENT_KERNELS "features/local_kernels.inl"
-#include "features/each_width.inl"
+#include "common/each_width.inl"
 #undef SEGORIENT_KERNELS
 
 namespace {

@@ -36,7 +36,7 @@ struct AutoNormals {
   /// Whether a final normal is that of a surface that leaves no more of the points around than
   /// rounding and a little noise do, and agrees with the filtered one; empty where none is.
   std::vector<std::uint8_t> sure;
-  AutoOrientation orientation;  ///< of the sheets' segments
+  AutoOrientation orientation;      ///< of the sheets' segments
   float spacing = 0.F;              ///< median
   float level = 0.F;                ///< see followCoarserLevels()
   std::vector<ScaleEnergy> scales;  ///< see PipelineReport

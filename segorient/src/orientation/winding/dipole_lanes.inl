@@ -3,7 +3,7 @@
 //
 // Sums over dipoles, kSums side by side, for one instruction set; see lanes.inl.
 
-#include "features/lanes.inl"
+#include "common/lanes.inl"
 
 /// That hold kSums.
 constexpr std::size_t kRegisters = kSums / kWidth;

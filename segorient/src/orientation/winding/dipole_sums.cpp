@@ -37,7 +37,7 @@ struct Sums {
 }  // namespace
 
 #define SEGORIENT_KERNELS "orientation/winding/dipole_lanes.inl"
-#include "features/each_width.inl"
+#include "common/each_width.inl"
 #undef SEGORIENT_KERNELS
 
 namespace {
