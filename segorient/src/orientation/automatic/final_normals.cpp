@@ -22,9 +22,6 @@
 namespace segorient::detail {
 namespace {
 
-// Up to this noise, in spacings, a fitted surface is nearer than any mean with its surroundings: it
-// turns the normal of ten neighbours by half a degree.
-constexpr float kClean = 0.05F;
 // Without noise, surfaces of the fewest neighbours are all that is tried.
 constexpr int kFewest = 10;
 // For the surfaces on both sides of an edge, as `normals --recompute` has them.
@@ -35,6 +32,8 @@ constexpr int kRounds = 3;
 constexpr float kOtherWall = -0.8F;
 // 45 degrees: beyond, near edges, the fit and the surroundings speak of different faces.
 constexpr float kSameFace = 0.7F;
+// 20 degrees: what noise explains, and the surroundings confirm, is nobody else's to average.
+constexpr float kConfirmed = 0.94F;
 // 70 degrees: beyond, which side of the fit the surroundings are on is a guess.
 constexpr float kSureSide = 0.35F;
 
@@ -66,7 +65,7 @@ class FinalNormals {
     }
     traits_.edges = has_edges_;
     traits_.edges_sampled = edges_sampled_;
-    if (noise_ < kClean) sure_.assign(points_.size, 0);
+    sure_.assign(points_.size, 0);
     parallelFor(points_.size, threads_, 50.0, [&](std::size_t i) {
       std::array<float, 4> chosen;
       std::copy_n(filtered(i), 4, chosen.begin());
@@ -120,7 +119,9 @@ class FinalNormals {
   }
 
   // Without noise, what a surface explains needs no other one.
-  bool mayRecompute(std::size_t i) const { return noise_ >= kClean || fits_[i] != Fit::EXPLAINED; }
+  bool mayRecompute(std::size_t i) const {
+    return noise_ >= kCleanFit || fits_[i] != Fit::EXPLAINED;
+  }
 
   void recomputeAtEdges() {
     std::vector<std::int32_t> labels = segments_.labels;
@@ -166,13 +167,14 @@ class FinalNormals {
     const float* f = &fitted_[4 * i];
     if (!isFinite(f) || !isFinite(result)) return;
     const bool fits_one_side = fits_[i] == Fit::ONE_SIDED;
-    const bool small = noise_ < kClean && most_ <= kFewest;
+    const bool small = noise_ < kCleanFit && most_ <= kFewest;
     // A few neighbours that one surface explains are of one wall.
     const bool ask_walls = small ? fits_[i] != Fit::EXPLAINED && !fits_one_side : true;
     if (ask_walls && !isOneWall(i)) return;
-    if (noise_ < kClean) {
+    if (noise_ < kCleanFit) {
       takeFit(i, f, result);
     } else {
+      sure_[i] = fits_[i] == Fit::EXPLAINED && dot(f, result) > kConfirmed ? 1 : 0;
       takeMean(f, result);
     }
   }

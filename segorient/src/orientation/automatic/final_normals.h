@@ -10,6 +10,10 @@
 
 namespace segorient::detail {
 
+/// Up to this noise, in spacings, a fitted surface is nearer than any mean with its surroundings:
+/// it turns the normal of ten neighbours by half a degree.
+constexpr float kCleanFit = 0.05F;
+
 /// The most accurate normals that the library has for a cloud, with the signs that were found.
 ///
 /// The filter that settles the signs averages over neighbours, which costs accuracy where a surface

@@ -133,7 +133,8 @@ AutoStages runAutoStages(PreparedCloud& cloud, const PipelineOptions& options,
   }
   labelTheRest(table, out.normals, out.segmentation);
   const NoiseLevel& noise = out.sheets.noise;
-  const bool few_tell = !out.scan_scales || noise.coarse < kSeenByFew * noise.fine;
+  const bool few_tell =
+      !out.scan_scales || noise.coarse < std::max(kCleanFit, kSeenByFew * noise.fine);
   if (settings.fit_normals && !out.denoised && few_tell) {
     begin("recomputation", 0.88);
     out.final_traits =
