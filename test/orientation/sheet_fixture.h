@@ -10,6 +10,7 @@
 
 #include "features/sheet_normals.h"
 #include "labelled_solids.h"
+#include "oriented_shapes.h"
 #include "segmentation/sheet_segmentation.h"
 
 namespace segorient::test {
@@ -39,10 +40,6 @@ struct TrueNormals {
   }
   std::size_t size() const { return xyz.size() / 4; }
 };
-
-inline float dot3(const float* a, const float* b) {
-  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
 
 /// Share of the points whose normal is within `degrees` of the true one, whatever its sign.
 inline double shareWithin(const std::vector<float>& normals, const std::vector<float>& truth,

@@ -4,10 +4,13 @@
 #include <gtest/gtest.h>
 #include <segorient/orientation/pipeline.h>
 
+#include <array>
+#include <memory>
 #include <random>
 
 #include "features/automatic_normals.h"
 #include "features/recompute_scene.h"
+#include "oriented_shapes.h"
 #include "sheet_fixture.h"
 
 namespace segorient::test {
@@ -108,6 +111,33 @@ TEST(FinalNormals, NoiseLeavesThemBetterThanEitherAndTurnsNone) {
               shareOutward(before.normals, cloud.normals) - 2e-4)
         << sigma;
   }
+}
+
+TEST(FinalNormals, AreNoWorseWhereSensorsAreKnown) {
+  // A ring of 1 and .15, some 20 spacings thick: planes of many points bend its normals.
+  const LabelledCloud cloud = sample("ring", {torus(1, 0.15)}, 12000, 7, 0.15);
+  constexpr std::array<std::array<float, 3>, 6> kStations{
+      {{4, 0, 2}, {-4, 0, 2}, {0, 4, -2}, {0, -4, -2}, {0, 0, 5}, {0, 0, -5}}};
+  PipelineOptions options;
+  OrientationHints hints;
+  for (std::size_t i = 0; i < cloud.size(); ++i) {
+    // Of the station that sees the point most face on.
+    std::array<float, 3> best{};
+    float most = -1.F;
+    for (const std::array<float, 3>& station : kStations) {
+      std::array<float, 3> to{};
+      for (std::size_t a = 0; a < 3; ++a) to[a] = station[a] - cloud.xyz[4 * i + a];
+      const float cosine =
+          dot3(to.data(), &cloud.normals[4 * i]) / std::sqrt(dot3(to.data(), to.data()));
+      if (cosine > most) best = station;
+      most = std::max(most, cosine);
+    }
+    hints.viewpoints.insert(hints.viewpoints.end(), best.begin(), best.end());
+  }
+  options.orientation.hints = std::make_shared<OrientationHints>(hints);
+  const OrientedCloud seen = orientCloud(viewOf(cloud.xyz), nullptr, options);
+  EXPECT_LT(rms(seen.normals, cloud.normals), 1.1 * rms(orient(cloud).normals, cloud.normals));
+  EXPECT_EQ(shareOutward(seen.normals, cloud.normals), 1.0);
 }
 
 TEST(FinalNormals, OfThinWallsStayThoseOfTheirOwnSide) {
