@@ -114,7 +114,7 @@ TEST(FinalNormals, NoiseLeavesThemBetterThanEitherAndTurnsNone) {
 }
 
 TEST(FinalNormals, AreNoWorseWhereSensorsAreKnown) {
-  // A ring of 1 and .15, some 20 spacings thick: planes of many points bend its normals.
+  // A ring of 1 and .15, some 14 spacings thick: planes of many points bend its normals.
   const LabelledCloud cloud = sample("ring", {torus(1, 0.15)}, 12000, 7, 0.15);
   constexpr std::array<std::array<float, 3>, 6> kStations{
       {{4, 0, 2}, {-4, 0, 2}, {0, 4, -2}, {0, -4, -2}, {0, 0, 5}, {0, 0, -5}}};
