@@ -282,7 +282,8 @@ std::size_t settleEdges(const SegmentationOptions& options, GrowthState& state) 
   };
   std::vector<pcl::index_t> loose;
   std::remove_copy_if(state.border.begin(), state.border.end(), std::back_inserter(loose), settled);
-  // What a point wants to be follows from the labels that are near it.
+  // What a point wants to be follows from the labels that are near it, but for the mean normals of
+  // whole faces, which single points hardly turn.
   std::vector<std::uint8_t> marked(state.labels.size(), 0);
   while (!moved.empty()) {
     for (const pcl::index_t p : moved) marked[static_cast<std::size_t>(p)] = 1;

@@ -29,7 +29,7 @@ using Row = std::vector<std::uint32_t>::iterator;
 // Halves at the median of the longest side, and so on: what is in any half, quarter ... of the
 // order lies in a box of its own.
 void halve(const PointView& places, Row first, Row last) {
-  if (last - first < 3) return;
+  if (last - first < 2) return;
   Box box;
   for (Row r = first; r != last; ++r) box.add(places[*r]);
   const std::size_t axis = box.longestAxis();

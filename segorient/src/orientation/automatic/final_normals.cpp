@@ -174,7 +174,8 @@ class FinalNormals {
     if (noise_ < kCleanFit) {
       takeFit(i, f, result);
     } else {
-      sure_[i] = fits_[i] == Fit::EXPLAINED && dot(f, result) > kConfirmed ? 1 : 0;
+      const bool explained = fits_[i] == Fit::EXPLAINED && !has(i, ONE_PLANE);
+      sure_[i] = explained && dot(f, result) > kConfirmed ? 1 : 0;
       takeMean(f, result);
     }
   }

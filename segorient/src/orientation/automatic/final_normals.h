@@ -22,7 +22,8 @@ constexpr float kCleanFit = 0.05F;
 /// belongs to each (OneSidedNormal::EXPECTED). With noise it gets the mean of that and of the
 /// filtered one, which err in different ways: the one by noise, the other by what the surface
 /// bends. The filtered normal stays where neighbours are of another wall, at what cannot be fitted
-/// beside sharp edges, and on scans whose noise only many neighbours show (see runAutoStages()).
+/// beside sharp edges, and on scans whose noise only many neighbours show (see runAutoStages()), if
+/// it is more than kCleanFit.
 ///
 /// \param cloud whose neighbours are known
 /// \param more of the same points, which are sought where the noise asks for them, unless

@@ -33,8 +33,8 @@ struct AutoNormals {
   std::vector<std::int32_t> components;  ///< -1 where there is no normal
   std::vector<std::uint8_t> around;      ///< what is around each point: bits of Around
   bool scan_scales = false;              ///< see SheetNormals
-  /// Whether a final normal is that of a surface that leaves no more of the points around than
-  /// rounding and a little noise do, and agrees with the filtered one; empty where none is.
+  /// Whether a final normal comes from a surface that leaves no more of the points around than the
+  /// noise explains, and that agrees with the filtered one; empty where no surfaces were fitted.
   std::vector<std::uint8_t> sure;
   AutoOrientation orientation;      ///< of the sheets' segments
   float spacing = 0.F;              ///< median

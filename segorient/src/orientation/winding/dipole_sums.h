@@ -37,7 +37,7 @@ class DipoleList {
   /// Whole blocks are copied, of which what is too much counts for nothing.
   /// \param count at most kBlock
   void append(const DipoleList& from, std::size_t first, std::size_t count) {
-    if (size_ + kBlock >= x.size()) grow();
+    if (size_ + 2 * kBlock > x.size()) grow();
     const auto copy = [&](const std::vector<float>& source, std::vector<float>& target) {
       std::memcpy(target.data() + size_, source.data() + first, kBlock * sizeof(float));
     };
