@@ -101,7 +101,7 @@ TEST(WindingNumber, TreeIsNearTheSum) {
       scale += std::fabs(dot) / (s * std::sqrt(s));
     }
     EXPECT_NEAR(static_cast<double>(winding.evaluate(x, 0.02F)), sum / (4 * M_PI),
-                0.1 * scale / (4 * M_PI));
+                0.05 * scale / (4 * M_PI));
   }
 }
 

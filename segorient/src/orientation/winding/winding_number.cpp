@@ -11,9 +11,8 @@ namespace {
 // Dipoles that are summed up one by one: as long as opening one more node takes.
 constexpr std::uint32_t kLeaf = 16;
 // A node counts as one dipole beyond this many of its radii (half diagonals of its box, about):
-// errors of less than a tenth of the sum of absolute terms. 2 and 4 give the same signs on 82
-// clouds.
-constexpr float kFar = 3.F;
+// errors of some hundredths of the sum of absolute terms.
+constexpr float kFar = 4.F;
 
 }  // namespace
 
