@@ -10,6 +10,16 @@
 
 namespace segorient {
 
+/// The axis along which a box is longest; the first of several.
+inline std::size_t longestAxis(const float* low, const float* high) {
+  std::size_t axis = 0;
+  for (std::size_t a = 1; a < 3; ++a) {
+    // Halves, since the extent itself may overflow.
+    if (high[a] / 2 - low[a] / 2 > high[axis] / 2 - low[axis] / 2) axis = a;
+  }
+  return axis;
+}
+
 /// The box around some points; empty before the first one.
 struct Box {
   std::array<float, 3> low;
@@ -49,13 +59,7 @@ struct Box {
     for (std::size_t a = 0; a < 3; ++a) squares += (high[a] - low[a]) * (high[a] - low[a]);
     return std::sqrt(squares);
   }
-  std::size_t longestAxis() const {
-    std::size_t axis = 0;
-    for (std::size_t a = 1; a < 3; ++a) {
-      if (high[a] - low[a] > high[axis] - low[axis]) axis = a;
-    }
-    return axis;
-  }
+  std::size_t longestAxis() const { return segorient::longestAxis(low.data(), high.data()); }
   float longestSide() const { return high[longestAxis()] - low[longestAxis()]; }
 };
 

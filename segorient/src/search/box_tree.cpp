@@ -6,6 +6,8 @@
 #include <cstring>
 #include <limits>
 
+#include "common/box.h"
+
 namespace segorient::search {
 namespace {
 
@@ -230,11 +232,7 @@ class RegionBuilder {
       return;
     }
     const Box box = boxOf(points_.data() + begin, count);
-    int axis = 0;
-    for (int a = 1; a < 3; ++a) {
-      // Halves, since the extent itself may overflow.
-      if (box.hi[a] / 2 - box.lo[a] / 2 > box.hi[axis] / 2 - box.lo[axis] / 2) axis = a;
-    }
+    const std::size_t axis = longestAxis(box.lo, box.hi);
     const std::size_t left_parts = parts / 2;
     const std::size_t left = count * left_parts / parts;
     const auto from = points_.begin() + static_cast<std::ptrdiff_t>(begin);

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include "common/box.h"
 #include "common/parallel_for.h"
 #include "search/layout.h"
 
@@ -27,15 +28,6 @@ Box boxOf(const BuildPoint* points, std::size_t count) {
     }
   }
   return {{lo[0], lo[1], lo[2]}, {hi[0], hi[1], hi[2]}};
-}
-
-int longestAxis(const Box& box) {
-  int axis = 0;
-  for (int a = 1; a < 3; ++a) {
-    // Halves, since the extent itself may overflow.
-    if (box.hi[a] / 2 - box.lo[a] / 2 > box.hi[axis] / 2 - box.lo[axis] / 2) axis = a;
-  }
-  return axis;
 }
 
 Box merged(const Box& a, const Box& b) {
@@ -61,7 +53,7 @@ std::size_t sampleSize(std::size_t count) {
                              : std::min(std::max<std::size_t>(count / 16, 64), std::size_t{1024});
 }
 
-Estimate estimate(const BuildPoint* points, std::size_t count, std::size_t rank, int axis) {
+Estimate estimate(const BuildPoint* points, std::size_t count, std::size_t rank, std::size_t axis) {
   std::array<float, 1024> sample{};
   const std::size_t size = sampleSize(count);
   for (std::size_t i = 0; i < size; ++i) sample[i] = points[i * count / size].xyz[axis];
@@ -79,11 +71,12 @@ Estimate estimate(const BuildPoint* points, std::size_t count, std::size_t rank,
   return {lo, sample[high]};
 }
 
-int longestAxisOfSample(const BuildPoint* points, std::size_t count) {
+std::size_t longestAxisOfSample(const BuildPoint* points, std::size_t count) {
   std::array<BuildPoint, 256> sample;
   const std::size_t size = std::min(sample.size(), count);
   for (std::size_t i = 0; i < size; ++i) sample[i] = points[i * count / size];
-  return longestAxis(boxOf(sample.data(), size));
+  const Box box = boxOf(sample.data(), size);
+  return longestAxis(box.lo, box.hi);
 }
 
 // Each step but the last keeps less than half of its points for the next one; what they take is
@@ -95,7 +88,7 @@ constexpr std::size_t kMoreScratch = 64;
 // \param scratch room for `count` points and kMoreScratch more
 // \return the least coordinate behind
 float divideInTwo(const BuildPoint* from, std::size_t count, BuildPoint* to, std::size_t half,
-                  int axis, BuildPoint* scratch) {
+                  std::size_t axis, BuildPoint* scratch) {
   const Estimate guess = estimate(from, count, half, axis);
   BuildPoint* const inside = scratch;
   std::size_t left = 0;
@@ -166,7 +159,7 @@ class Subdivision {
       FastVector<BuildPoint>& scratch = scratch_[static_cast<std::size_t>(omp_get_thread_num())];
       scratch.clear();
       scratch.resize(count + kMoreScratch);
-      const int axis = longestAxisOfSample(from, count);
+      const std::size_t axis = longestAxisOfSample(from, count);
       BuildPoint* to = (level % 2 == 0 ? other_ : points_) + begin;
       const float value = divideInTwo(from, count, to, half, axis, scratch.data());
       layout_.splits[node] = {value, static_cast<std::uint32_t>(axis)};

@@ -37,6 +37,11 @@ constexpr float kTie = 1e-3F;
 /// How many points earlier than it is looked at the memory is asked for a row.
 constexpr std::size_t kRowsAhead = 12;
 
+/// Entries of a row that are looked at.
+int reachOf(const Neighborhoods& neighborhoods, std::size_t row) {
+  return std::min(neighborhoods.count(row), kReach + 1);
+}
+
 class Settler {
  public:
   Settler(const SegmentationOptions& options, const GrowthState& state)
@@ -75,9 +80,7 @@ class Settler {
     return label >= 0 && state_.isFace(label, small_size_);
   }
 
-  int reach(std::size_t row) const {
-    return std::min(state_.neighborhoods->count(row), kReach + 1);
-  }
+  int reach(std::size_t row) const { return reachOf(*state_.neighborhoods, row); }
 
   std::size_t listCandidates(std::size_t p, Candidates& candidates) const {
     std::size_t count = 0;
@@ -248,17 +251,16 @@ std::vector<pcl::index_t> listNear(const std::vector<pcl::index_t>& rows,
                                    const std::vector<std::uint8_t>& marked, int threads,
                                    const GrowthState& state) {
   const Neighborhoods& table = *state.neighborhoods;
-  const auto reach = [&](std::size_t row) { return std::min(table.count(row), kReach + 1); };
   const auto seesMarked = [&](std::size_t row) {
     const pcl::index_t* q = table.indices(row);
-    return std::any_of(q, q + reach(row),
+    return std::any_of(q, q + reachOf(table, row),
                        [&](pcl::index_t i) { return marked[static_cast<std::size_t>(i)] != 0; });
   };
   std::vector<std::uint8_t> near(rows.size(), 0);
   parallelFor(rows.size(), threads, 500.0, [&](std::size_t i) {
     const auto p = static_cast<std::size_t>(rows[i]);
     const pcl::index_t* q = table.indices(p);
-    const bool sees = seesMarked(p) || std::any_of(q, q + reach(p), [&](pcl::index_t j) {
+    const bool sees = seesMarked(p) || std::any_of(q, q + reachOf(table, p), [&](pcl::index_t j) {
                         return seesMarked(static_cast<std::size_t>(j));
                       });
     near[i] = sees ? 1 : 0;

@@ -82,7 +82,7 @@ struct AutomaticOptions {
   bool winding_normals = true;
   /// Surfaces are fitted around each point at last, on one side of sharp edges, as
   /// NormalEstimator::AUTO does it; with noise, averaged with the above. Not where positions were
-  /// smoothed, nor for scans whose noise a few neighbours do not see.
+  /// smoothed, nor for scans whose noise is more than next to none and a few neighbours do not see.
   bool fit_normals = true;
 };
 

@@ -25,7 +25,7 @@ struct Run {
 template <typename RadiusAt>
 std::vector<Run> cutRuns(const PointView& at, const RadiusAt& radius) {
   constexpr float kWidest = 6.F;       // in radii; 4 and 9 take a tenth longer
-  constexpr std::size_t kPlaces = 32;  // listing costs a tenth of the sums then
+  constexpr std::size_t kPlaces = 32;  // more share a list then, but each has more to sum
   std::vector<Run> runs;
   for (std::size_t first = 0; first < at.size;) {
     Box box;

@@ -17,15 +17,35 @@ struct Part {
   }
 };
 
-/// From a place to dipoles, and the square of how far they are, smeared.
-struct Way {
-  Lanes x, y, z, square;
+/// A vector's.
+struct Parts {
+  Part x, y, z;
 
-  Way(const Dipoles& from, std::size_t i, const float* at, float r2)
-      : x(load(from.x + i) - at[0]), y(load(from.y + i) - at[1]), z(load(from.z + i) - at[2]) {
-    square = x * x + y * y + z * z + r2;
+  void add(std::size_t r, Lanes weight, const Lanes3& v) {
+    x.of[r] += weight * v.x;
+    y.of[r] += weight * v.y;
+    z.of[r] += weight * v.z;
+  }
+  void storeTo(Sums& out) const {
+    x.storeTo(out.x);
+    y.storeTo(out.y);
+    z.storeTo(out.z);
   }
 };
+
+/// From a place to dipoles.
+struct Way {
+  Lanes3 d;
+  Lanes inverse;  ///< of the square of how far they are, smeared
+
+  Way(const Dipoles& from, std::size_t i, const float* at, float r2)
+      : d{load(from.x + i) - at[0], load(from.y + i) - at[1], load(from.z + i) - at[2]},
+        inverse(1.F / (dot(d, d) + r2)) {}
+};
+
+inline Lanes3 momentsOf(const Dipoles& from, std::size_t i) {
+  return {load(from.mx + i), load(from.my + i), load(from.mz + i)};
+}
 
 /// Calls for registers full of dipoles. The list ends with dipoles that are 0.
 template <typename Add>
@@ -36,48 +56,32 @@ inline void forRegisters(const Dipoles& from, Add&& add) {
 }
 
 inline void addNumbers(const Dipoles& from, const float* at, float r2, Sums& sums) {
-  const Dipoles d = from;
   Part sum;
-  forRegisters(d, [&](std::size_t i, std::size_t r) SEGORIENT_INLINED {
-    const Way way(d, i, at, r2);
-    const Lanes inverse = 1.F / way.square;
-    const Lanes weight = inverse * squareRoot(inverse);
-    sum.of[r] +=
-        weight * (load(d.mx + i) * way.x + load(d.my + i) * way.y + load(d.mz + i) * way.z);
+  forRegisters(from, [&](std::size_t i, std::size_t r) SEGORIENT_INLINED {
+    const Way way(from, i, at, r2);
+    const Lanes weight = way.inverse * squareRoot(way.inverse);
+    sum.of[r] += weight * dot(momentsOf(from, i), way.d);
   });
   sum.storeTo(sums.x);
 }
 
 inline void addDescents(const Dipoles& from, const float* at, float r2, Sums& sums) {
-  const Dipoles d = from;
-  Part x, y, z;
-  forRegisters(d, [&](std::size_t i, std::size_t r) SEGORIENT_INLINED {
-    const Way way(d, i, at, r2);
-    const Lanes3 m{load(d.mx + i), load(d.my + i), load(d.mz + i)};
-    const Lanes inverse = 1.F / way.square;
-    const Lanes weight = inverse * squareRoot(inverse);
-    const Lanes along = 3.F * inverse * (m.x * way.x + m.y * way.y + m.z * way.z);
-    x.of[r] += weight * (m.x - along * way.x);
-    y.of[r] += weight * (m.y - along * way.y);
-    z.of[r] += weight * (m.z - along * way.z);
+  Parts parts;
+  forRegisters(from, [&](std::size_t i, std::size_t r) SEGORIENT_INLINED {
+    const Way way(from, i, at, r2);
+    const Lanes3 m = momentsOf(from, i);
+    const Lanes weight = way.inverse * squareRoot(way.inverse);
+    const Lanes along = 3.F * way.inverse * dot(m, way.d);
+    parts.add(r, weight, {m.x - along * way.d.x, m.y - along * way.d.y, m.z - along * way.d.z});
   });
-  x.storeTo(sums.x);
-  y.storeTo(sums.y);
-  z.storeTo(sums.z);
+  parts.storeTo(sums);
 }
 
 inline void addPulls(const Dipoles& from, const float* at, float r2, Sums& sums) {
-  const Dipoles d = from;
-  Part x, y, z;
-  forRegisters(d, [&](std::size_t i, std::size_t r) SEGORIENT_INLINED {
-    const Way way(d, i, at, r2);
-    const Lanes inverse = 1.F / way.square;
-    const Lanes weight = load(d.mx + i) * inverse * squareRoot(inverse);
-    x.of[r] -= weight * way.x;
-    y.of[r] -= weight * way.y;
-    z.of[r] -= weight * way.z;
+  Parts parts;
+  forRegisters(from, [&](std::size_t i, std::size_t r) SEGORIENT_INLINED {
+    const Way way(from, i, at, r2);
+    parts.add(r, -1.F * load(from.mx + i) * way.inverse * squareRoot(way.inverse), way.d);
   });
-  x.storeTo(sums.x);
-  y.storeTo(sums.y);
-  z.storeTo(sums.z);
+  parts.storeTo(sums);
 }

@@ -78,6 +78,15 @@ float total(const std::array<float, kSums>& parts) {
   return kOneOver4Pi * sum;
 }
 
+// \param out 3 floats
+void addUp(Kernels::Add add, const DipoleList& dipoles, const float* x, float radius, float* out) {
+  Sums sums;
+  add(blocksOf(dipoles), x, radius * radius, sums);
+  out[0] = total(sums.x);
+  out[1] = total(sums.y);
+  out[2] = total(sums.z);
+}
+
 }  // namespace
 
 void DipoleList::grow() {
@@ -92,11 +101,7 @@ void DipoleList::fillBlock() {
 }
 
 void steepestDescent(const DipoleList& dipoles, const float* x, float radius, float* descent) {
-  Sums sums;
-  kernels().descents(blocksOf(dipoles), x, radius * radius, sums);
-  descent[0] = total(sums.x);
-  descent[1] = total(sums.y);
-  descent[2] = total(sums.z);
+  addUp(kernels().descents, dipoles, x, radius, descent);
 }
 
 float windingNumberOf(const DipoleList& dipoles, const float* x, float radius) {
@@ -106,11 +111,7 @@ float windingNumberOf(const DipoleList& dipoles, const float* x, float radius) {
 }
 
 void windingPull(const DipoleList& dipoles, const float* x, float radius, float* pull) {
-  Sums sums;
-  kernels().pulls(blocksOf(dipoles), x, radius * radius, sums);
-  pull[0] = total(sums.x);
-  pull[1] = total(sums.y);
-  pull[2] = total(sums.z);
+  addUp(kernels().pulls, dipoles, x, radius, pull);
 }
 
 }  // namespace segorient
