@@ -13,13 +13,12 @@ namespace {
 
 namespace dll = boost::dll;
 
-// The library stays loaded: VTK's own objects live until the end of the program.
 const VtkModule& load() {
   const dll::fs::path file = dll::shared_library::decorate(dll::program_location().parent_path() /
                                                            SEGORIENT_MODULES / "segorient_vtk");
   try {
-    auto* const library = new dll::shared_library(file);
-    return library->get<const VtkModule&()>(kVtkModuleEntry)();
+    static const dll::shared_library library(file);
+    return library.get<const VtkModule&()>(kVtkModuleEntry)();
   } catch (const std::exception& e) {  // from the loader's words, or that the function is not there
     const std::string reason = dll::fs::exists(file) ? e.what() : "there is no such file";
     throw FileError(file.lexically_normal().string(), "needed for pictures: " + reason);
