@@ -5,6 +5,9 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdlib>
 #include <numeric>
 #include <random>
 #include <sstream>
@@ -90,6 +93,74 @@ TEST(DeterminismOfOrder, ShuffledPointsHaveTheSameNormals) {
       if (!(n[0] * m[0] + n[1] * m[1] + n[2] * m[2] > 0.999)) ++different;
     }
     EXPECT_EQ(different, 0U);
+  }
+}
+
+std::string noisyFandisk(double deviation) {
+  const program::CloudTable cloud = program::readCloud(fandisk());
+  std::mt19937 random(11);
+  std::normal_distribution<double> noise(0.0, deviation);
+  std::ostringstream text;
+  text.precision(9);
+  for (std::size_t row = 0; row < cloud.size; ++row) {
+    const auto p = cloud.position(row);
+    for (std::size_t a = 0; a < 3; ++a) text << static_cast<double>(p[a]) + noise(random) << ' ';
+    text << '\n';
+  }
+  return text.str();
+}
+
+// The walls of a room as two scanners in it see them, whose rays are equal steps of two angles.
+std::string scannedRoom() {
+  constexpr double kPi = 3.14159265358979323846;
+  constexpr int kSteps = 150;
+  const double room[3] = {6.0, 4.0, 2.5};
+  std::ostringstream text;
+  text.precision(9);
+  for (const std::array<double, 3>& from : {std::array{1.1, 1.0, 1.2}, std::array{4.6, 2.9, 1.5}}) {
+    for (int i = 0; i < kSteps; ++i) {
+      for (int j = 1; j < kSteps / 2; ++j) {
+        const double azimuth = 2.0 * kPi * i / kSteps;
+        const double polar = 2.0 * kPi * j / kSteps;
+        const double ray[3] = {std::cos(azimuth) * std::sin(polar),
+                               std::sin(azimuth) * std::sin(polar), std::cos(polar)};
+        double length = 100.0;
+        for (std::size_t a = 0; a < 3; ++a) {
+          if (ray[a] == 0.0) continue;
+          length = std::min(length, ((ray[a] > 0.0 ? room[a] : 0.0) - from[a]) / ray[a]);
+        }
+        for (std::size_t a = 0; a < 3; ++a) text << from[a] + length * ray[a] << ' ';
+        text << '\n';
+      }
+    }
+  }
+  return text.str();
+}
+
+// Fields of dipoles decide in noise, and densities tell where sensors were.
+TEST(DeterminismOfMachines, SameBytesForAnyInstructionSet) {
+  constexpr double kSpacing = 0.06;
+  const ScratchDirectory directory;
+  const std::string noisy = directory.write("noisy.xyz", noisyFandisk(0.5 * kSpacing));
+  const std::string room = directory.write("room.xyz", scannedRoom());
+  const std::string out = directory.file("out.ply");
+  std::string bytes;
+  std::string report;
+  for (const char* set : {"scalar", "sse2", "avx2", "avx512"}) {
+    SCOPED_TRACE(set);
+    setenv("SEGORIENT_SIMD", set, 1);
+    const Outcome oriented = runProgram({"orient", noisy, out, "-q"});
+    const Outcome sensors = runProgram({"sensors", room});
+    unsetenv("SEGORIENT_SIMD");
+    ASSERT_EQ(oriented.status, 0) << oriented.err;
+    ASSERT_EQ(sensors.status, 0) << sensors.err;
+    if (bytes.empty()) {
+      bytes = readFile(out);
+      report = sensors.out;
+    }
+    EXPECT_TRUE(readFile(out) == bytes);
+    EXPECT_EQ(sensors.out, report);
+    EXPECT_NE(sensors.out.find("station"), std::string::npos) << sensors.out;
   }
 }
 

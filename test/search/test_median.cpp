@@ -43,8 +43,21 @@ TEST(Median, OfManyEqualValues) {
   EXPECT_EQ(2.F, median(values));
 }
 
+// Sorted and with many that are equal: whatever is taken to part by comes again.
+TEST(Median, OfValuesInOrderAndOfFewKinds) {
+  for (const std::size_t count : {17U, 64U, 1000U, 4097U}) {
+    std::vector<float> values(count);
+    for (std::size_t i = 0; i < count; ++i) values[i] = static_cast<float>(i);
+    EXPECT_EQ(sortedMiddle(values), median(values)) << count;
+    std::reverse(values.begin(), values.end());
+    EXPECT_EQ(sortedMiddle(values), median(values)) << count;
+    for (std::size_t i = 0; i < count; ++i) values[i] = static_cast<float>(i * i % 7) / 8.F - 0.5F;
+    EXPECT_EQ(sortedMiddle(values), median(values)) << count;
+  }
+}
+
 // Values that a regular sample sees only the extremes of.
-TEST(Median, DoesNotBelieveASampleThatIsWrong) {
+TEST(Median, DoesNotDependOnWhatASampleSees) {
   constexpr std::size_t kCount = 64U * 1024U;
   for (const float extreme : {-1000.F, 1000.F}) {
     std::vector<float> values = randomValues(kCount);

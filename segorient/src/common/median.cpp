@@ -7,43 +7,66 @@
 #include <utility>
 
 namespace segorient {
-
 namespace {
 
-// Of so many values it pays to look at a sample first.
-constexpr std::size_t kMany = 1U << 14U;
-constexpr std::size_t kSample = 1024;
-// Of ranks in the sample: three standard deviations of a fair coin, sqrt(kSample) / 2 each.
-constexpr std::size_t kMargin = 48;
+// Fewer are sorted.
+constexpr std::size_t kFew = 16;
 
-// Leaves of many values those that the sample says the middle is among, in one pass, and changes
-// the rank accordingly. Changes nothing where the sample was wrong.
-void narrow(std::vector<float>& values, std::size_t& rank) {
-  std::vector<float> sample(kSample);
-  for (std::size_t i = 0; i < kSample; ++i) sample[i] = values[i * values.size() / kSample];
-  std::sort(sample.begin(), sample.end());
-  const float low = sample[kSample / 2 - kMargin];
-  const float high = sample[kSample / 2 + kMargin];
-  std::vector<float> inside;
-  std::size_t below = 0;
-  for (const float v : values) {
-    below += v < low ? 1 : 0;
-    if (v >= low && v <= high) inside.push_back(v);
+float middleOf(float a, float b, float c) {
+  return std::max(std::min(a, b), std::min(std::max(a, b), c));
+}
+
+// Of three triples from all over.
+float pivotOf(const float* values, std::size_t count) {
+  const auto at = [&](std::size_t eighths) { return values[eighths * (count - 1) / 8]; };
+  return middleOf(middleOf(at(0), at(1), at(2)), middleOf(at(3), at(4), at(5)),
+                  middleOf(at(6), at(7), at(8)));
+}
+
+// Copies those that `is_first` says to the front, the others to the back; without a branch, as no
+// processor foretells what values are. \return how many came to the front
+template <typename IsFirst>
+std::size_t part(const float* from, std::size_t count, float* to, const IsFirst& is_first) {
+  std::size_t front = 0;
+  for (std::size_t i = 0; i < count; ++i) {
+    const float v = from[i];
+    to[front] = v;
+    to[count - 1 - (i - front)] = v;
+    front += is_first(v) ? 1 : 0;
   }
-  if (rank < below || rank >= below + inside.size()) return;
-  rank -= below;
-  values = std::move(inside);
+  return front;
 }
 
 }  // namespace
 
 float median(std::vector<float> values) {
   if (values.empty()) return 0.F;
-  std::size_t rank = values.size() / 2;
-  if (values.size() >= kMany) narrow(values, rank);
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(rank);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
+  std::vector<float> other(values.size());
+  float* from = values.data();
+  float* to = other.data();
+  std::size_t count = values.size();
+  std::size_t rank = count / 2;
+  while (count > kFew) {
+    const float pivot = pivotOf(from, count);
+    std::size_t less = part(from, count, to, [pivot](float v) { return v < pivot; });
+    if (less == 0) {
+      // Nothing is less than the pivot: then those that are no more than it are parted from the
+      // rest.
+      less = part(from, count, to, [pivot](float v) { return v <= pivot; });
+      if (rank < less) return pivot;
+    }
+    std::swap(from, to);
+    if (rank < less) {
+      count = less;
+    } else {
+      rank -= less;
+      count -= less;
+      from += less;
+      to += less;
+    }
+  }
+  std::sort(from, from + count);
+  return from[rank];
 }
 
 }  // namespace segorient

@@ -134,6 +134,21 @@ void DensityPatches::add(const float* center, const float* normal, float density
   point.push_back(of_point);
 }
 
+std::vector<float> DensityPatches::heightsOver(const std::array<double, 3>& place) const {
+  const auto px = static_cast<float>(place[0]);
+  const auto py = static_cast<float>(place[1]);
+  const auto pz = static_cast<float>(place[2]);
+  const float* const at[3] = {x.data(), y.data(), z.data()};
+  const float* const normal[3] = {nx.data(), ny.data(), nz.data()};
+  std::vector<float> out(size());
+  float* const height = out.data();
+  for (std::size_t i = 0, n = out.size(); i < n; ++i) {
+    height[i] = (px - at[0][i]) * normal[0][i] + (py - at[1][i]) * normal[1][i] +
+                (pz - at[2][i]) * normal[2][i];
+  }
+  return out;
+}
+
 void DensityPatches::setSparsity() {
   const float middle = median(log_density);
   sparsity.resize(log_density.size());
@@ -189,14 +204,15 @@ std::pair<float, float> rangeWithout(std::size_t cut, std::vector<float> values)
   return {least, *high};
 }
 
-float deviation(std::vector<float>& values) {
+float deviation(const std::vector<float>& values) {
   if (values.empty()) return 0.F;
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  const float median = *middle;
+  const float middle = median(values);
+  const float* const value = values.data();
   double sum = 0.0;
-  for (const float v : values)
-    sum += static_cast<double>(std::min(std::fabs(v - median), kDeviationCut));
+#pragma omp simd reduction(+ : sum)
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    sum += static_cast<double>(std::min(std::fabs(value[i] - middle), kDeviationCut));
+  }
   return static_cast<float>(sum / static_cast<double>(values.size()));
 }
 

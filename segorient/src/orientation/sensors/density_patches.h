@@ -36,6 +36,8 @@ struct DensityPatches {
            (static_cast<float>(place[1]) - y[i]) * ny[i] +
            (static_cast<float>(place[2]) - z[i]) * nz[i];
   }
+  /// Of each piece.
+  std::vector<float> heightsOver(const std::array<double, 3>& place) const;
 
   /// Fills `sparsity` from `log_density`.
   void setSparsity();
@@ -61,7 +63,7 @@ constexpr float kDeviationCut = 1.5F;
 /// The least and the largest of some values, but for `cut` at either end.
 std::pair<float, float> rangeWithout(std::size_t cut, std::vector<float> values);
 
-/// Mean over the values of |value - median|, cut off at kDeviationCut. \param values are reordered
-float deviation(std::vector<float>& values);
+/// Mean over the values of |value - median|, cut off at kDeviationCut.
+float deviation(const std::vector<float>& values);
 
 }  // namespace segorient::detail

@@ -97,8 +97,7 @@ SensorReport searchSensors(PreparedCloud& cloud, const SensorOptions& options) {
     out.why = "too few flat neighbourhoods to measure densities by";
     return out;
   }
-  std::vector<float> densities = patches.log_density;
-  out.deviation = detail::deviation(densities);
+  out.deviation = detail::deviation(patches.log_density);
   out.chance = detail::chanceDeviation(patches.k);
   if (out.deviation < kMoreThanChance * out.chance) {
     out.why = "the density is even";

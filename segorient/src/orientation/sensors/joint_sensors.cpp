@@ -6,6 +6,8 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <limits>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -145,21 +147,21 @@ void lookForTilted(PreparedCloud& cloud, const DensityPatches& patches,
                    const detail::Extent& extent, const detail::Occupancy& occupancy, float left,
                    int threads, SensorReport& report) {
   if (report.deviation < kVariesTilted * report.chance) return;
-  detail::Stations best;
+  std::optional<detail::Stations> best;
   for (std::size_t a = 0; a < 2; ++a) {
     std::array<double, 3> axis{0.0, 0.0, 0.0};
     axis[a] = 1.0;
-    const detail::Stations found = detail::searchStations(patches, occupancy, axis, threads);
-    const bool better = best.positions.empty() || found.cost < best.cost;
-    if (!found.positions.empty() && better) best = found;
+    const std::optional<detail::Stations> found =
+        detail::searchStations(patches, occupancy, axis, threads);
+    if (found && (!best || found->cost < best->cost)) best = found;
   }
-  const float ratio = best.cost / report.deviation;
+  if (!best) return;
+  const float ratio = best->cost / report.deviation;
   const bool much = report.deviation >= kVariesMuch * report.chance;
-  if (best.positions.empty() || ratio > (much ? kSureWhereMuch : kSureSeveral)) return;
-  if (ratio >= left) return;
-  if (!areInside(best.positions, extent)) return;
-  addSensors(best.positions, SensorKind::STATION, best.axis, ratio, report);
-  assignPlaces(cloud, patches, detail::stationOf(patches, occupancy, best), threads, report);
+  if (ratio > (much ? kSureWhereMuch : kSureSeveral) || ratio >= left) return;
+  if (!areInside(best->positions, extent)) return;
+  addSensors(best->positions, SensorKind::STATION, best->axis, ratio, report);
+  assignPlaces(cloud, patches, detail::stationOf(patches, occupancy, *best), threads, report);
   report.why = "several places of scanners that tilt explain the densities";
 }
 
@@ -170,17 +172,21 @@ void detail::findSeveral(PreparedCloud& cloud, const DensityPatches& patches, in
   constexpr std::array<double, 3> kUp{0.0, 0.0, 1.0};
   const detail::Extent extent = detail::extentOf(patches);
   const detail::Occupancy occupancy(cloud.points(), patches, extent);
-  const detail::Stations stations = detail::searchStations(patches, occupancy, kUp, threads);
-  const float ratio = stations.cost / report.deviation;
-  const bool explained = ratio <= kSureSeveral || stations.cost <= report.chance;
-  if (explained && !areOutside(stations.positions, extent)) {
-    addSensors(stations.positions, SensorKind::STATION, kUp, ratio, report);
-    assignPlaces(cloud, patches, detail::stationOf(patches, occupancy, stations), threads, report);
-    report.why = "several places explain the densities";
-    return;
+  const std::optional<detail::Stations> stations =
+      detail::searchStations(patches, occupancy, kUp, threads);
+  if (stations && !areOutside(stations->positions, extent)) {
+    const float ratio = stations->cost / report.deviation;
+    if (ratio <= kSureSeveral || stations->cost <= report.chance) {
+      addSensors(stations->positions, SensorKind::STATION, kUp, ratio, report);
+      assignPlaces(cloud, patches, detail::stationOf(patches, occupancy, *stations), threads,
+                   report);
+      report.why = "several places explain the densities";
+      return;
+    }
   }
-  const detail::Track track = detail::searchTrack(patches, extent, threads);
-  const float left = track.cost / report.deviation;
+  const std::optional<detail::Track> track = detail::searchTrack(patches, extent, threads);
+  const float left =
+      track ? track->cost / report.deviation : std::numeric_limits<float>::infinity();
   const bool is_track = left <= kSureTrack;
   if (!is_track) lookFromAbove(cloud, patches, extent, report);
   if (report.sensors.empty() && left > kSureSeveral) {
@@ -191,8 +197,8 @@ void detail::findSeveral(PreparedCloud& cloud, const DensityPatches& patches, in
     lookWithin(cloud, patches, extent, occupancy, threads, report);
     return;
   }
-  addSensors(track.places, SensorKind::MOVING, kUp, left, report);
-  assignPlaces(cloud, patches, detail::placeOf(patches, occupancy, track), threads, report);
+  addSensors(track->places, SensorKind::MOVING, kUp, left, report);
+  assignPlaces(cloud, patches, detail::placeOf(patches, occupancy, *track), threads, report);
   report.why = "places along a line explain the densities";
 }
 

@@ -71,10 +71,12 @@ void beamShares(const DensityPatches& patches, const Position& place, std::vecto
   static const ElevationBins kBins;
   ratios(patches, {place, {0.0, 0.0, 1.0}, SamplingLaw::ANGLE_GRID}, row);
   bins.resize(patches.size());
-  for (std::size_t i = 0; i < bins.size(); ++i) {
-    const float x = patches.x[i] - static_cast<float>(place[0]);
-    const float y = patches.y[i] - static_cast<float>(place[1]);
-    const float z = patches.z[i] - static_cast<float>(place[2]);
+  const std::array<float, 3> at = toFloat(place);
+  const float* const columns[3] = {patches.x.data(), patches.y.data(), patches.z.data()};
+  for (std::size_t i = 0, n = bins.size(); i < n; ++i) {
+    const float x = columns[0][i] - at[0];
+    const float y = columns[1][i] - at[1];
+    const float z = columns[2][i] - at[2];
     const float d = std::sqrt(std::max(x * x + y * y + z * z, 1e-12F));
     bins[i] = static_cast<std::uint8_t>(kBins.of(z / d));
   }
@@ -96,12 +98,7 @@ class TrackModel {
       std::vector<float> missing(kElevations, 0.F);
       std::vector<float> weight(kElevations, prior);
       for (std::size_t j = 0; j < rows_.size(); ++j) {
-        for (std::size_t i = 0; i < mixed_.size(); ++i) {
-          const std::size_t b = bins_[j][i];
-          const float share = beams_[b] * rows_[j][i] * inverse_[i];
-          missing[b] += share * lacking_[i];
-          weight[b] += share;
-        }
+        addMissing(rows_[j].data(), bins_[j].data(), missing.data(), weight.data());
       }
       for (std::size_t b = 0; b < beams_.size(); ++b) beams_[b] *= std::exp(missing[b] / weight[b]);
     }
@@ -120,12 +117,28 @@ class TrackModel {
     }
   }
 
+  void addMissing(const float* row, const std::uint8_t* bins, float* missing, float* weight) const {
+    const float* const beams = beams_.data();
+    const float* const inverse = inverse_.data();
+    const float* const lacking = lacking_.data();
+    for (std::size_t i = 0, n = mixed_.size(); i < n; ++i) {
+      const std::uint8_t b = bins[i];
+      const float share = beams[b] * row[i] * inverse[i];
+      missing[b] += share * lacking[i];
+      weight[b] += share;
+    }
+  }
+
   // The sum over the places, its logs, and what lacks until it is the median's.
   void mix() {
     const std::size_t n = patches_.size();
     mixed_.assign(n, 1e-30F);
+    const float* const beams = beams_.data();
+    float* const mixed = mixed_.data();
     for (std::size_t j = 0; j < rows_.size(); ++j) {
-      for (std::size_t i = 0; i < n; ++i) mixed_[i] += beams_[bins_[j][i]] * rows_[j][i];
+      const float* const row = rows_[j].data();
+      const std::uint8_t* const bins = bins_[j].data();
+      for (std::size_t i = 0; i < n; ++i) mixed[i] += beams[bins[i]] * row[i];
     }
     logs_ = mixed_;
     takeLogs(logs_);
@@ -221,8 +234,9 @@ double costOf(const Line& line, const Extent& extent, TrackModel& model) {
 
 }  // namespace
 
-Track searchTrack(const DensityPatches& patches, const Extent& extent, int threads) {
+std::optional<Track> searchTrack(const DensityPatches& patches, const Extent& extent, int threads) {
   const DensityPatches some = patches.thinned(kPieces);
+  const double most = static_cast<double>(kHopeless * deviation(some.log_density));
   std::vector<Line> lines;
   for (const double part : kLengths) {
     const std::vector<Line> starts = startLines(some, extent, part);
@@ -240,8 +254,11 @@ Track searchTrack(const DensityPatches& patches, const Extent& extent, int threa
     std::iota(of_length.begin(), of_length.end(), first);
     std::stable_sort(of_length.begin(), of_length.end(),
                      [&](std::size_t a, std::size_t b) { return costs[a] < costs[b]; });
-    order.insert(order.end(), of_length.begin(), of_length.begin() + kStarts);
+    for (std::size_t s = 0; s < kStarts; ++s) {
+      if (costs[of_length[s]] <= most) order.push_back(of_length[s]);
+    }
   }
+  if (order.empty()) return std::nullopt;
   const std::vector<double> steps(5, kStep * extent.diagonal());
   parallelFor(
       order.size(), threads, kEvaluations * kFitTime, [&] { return TrackModel(some); },

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "orientation/sensors/density_patches.h"
@@ -21,7 +22,8 @@ struct Track {
   float cost = 0.F;                           ///< as costOf()
 };
 
-Track searchTrack(const DensityPatches& patches, const Extent& extent, int threads);
+/// Nothing where that is hopeless.
+std::optional<Track> searchTrack(const DensityPatches& patches, const Extent& extent, int threads);
 
 /// For each piece the place of the track that most of its points come from, by the side of the
 /// surface that most of them were seen from.

@@ -30,7 +30,7 @@ Occupancy::Occupancy(const PointView& points, const DensityPatches& patches, con
     low_[a] = static_cast<float>(extent.low[a] - margin);
     count_[a] = 1 + static_cast<int>((extent.high[a] - extent.low[a] + 2.0 * margin) /
                                      static_cast<double>(side_));
-    cubes *= static_cast<std::size_t>(count_[a]);
+    cubes *= static_cast<std::size_t>(count_[a] + 2);
   }
   filled_.assign(cubes, 0);
   for (std::size_t i = 0; i < points.size; ++i) {
@@ -40,7 +40,7 @@ Occupancy::Occupancy(const PointView& points, const DensityPatches& patches, con
       const float at = (points[i][a] - low_[a]) / side_;
       inside = inside && at >= 0.F && at < static_cast<float>(count_[a]);
       if (!inside) break;
-      cell = cell * static_cast<std::size_t>(count_[a]) + static_cast<std::size_t>(at);
+      cell = cell * static_cast<std::size_t>(count_[a] + 2) + static_cast<std::size_t>(at) + 1;
     }
     if (inside) filled_[cell] = 1;
   }
@@ -55,18 +55,24 @@ bool Occupancy::clear(const float* from, const float* to, float distance, float 
     at[a] = (from[a] + start * along - low_[a]) * scale;
     step[a] = along;
   }
-  const int steps = static_cast<int>(std::min((distance - start) * scale - 0.5F, 1000.F));
+  auto steps =
+      static_cast<float>(static_cast<int>(std::min((distance - start) * scale - 0.5F, 1000.F)));
+  // Whoever has left the grid does not come back.
+  for (std::size_t a = 0; a < 3; ++a) {
+    const auto last = static_cast<float>(count_[a]);
+    if (!(at[a] >= 0.F && at[a] < last)) return true;
+    if (step[a] != 0.F) steps = std::min(steps, ((step[a] > 0.F ? last : 0.F) - at[a]) / step[a]);
+    at[a] += 1.F;
+  }
+  const auto row = static_cast<std::uint32_t>(count_[2] + 2);
+  const std::uint32_t layer = row * static_cast<std::uint32_t>(count_[1] + 2);
+  const std::uint8_t* const filled = filled_.data();
   int hits = 0;
-  for (int s = 0; s < steps; ++s) {
-    std::size_t cell = 0;
-    for (std::size_t a = 0; a < 3; ++a) {
-      // Whoever has left the grid does not come back.
-      if (!(at[a] >= 0.F && at[a] < static_cast<float>(count_[a]))) return true;
-      cell = cell * static_cast<std::size_t>(count_[a]) + static_cast<std::size_t>(at[a]);
-      at[a] += step[a];
-    }
-    hits += filled_[cell];
+  for (float s = 0.F; s < steps; s += 1.F) {
+    hits += filled[static_cast<std::uint32_t>(at[0]) * layer +
+                   static_cast<std::uint32_t>(at[1]) * row + static_cast<std::uint32_t>(at[2])];
     if (hits == kHits) return false;
+    for (std::size_t a = 0; a < 3; ++a) at[a] += step[a];
   }
   return true;
 }
@@ -75,12 +81,14 @@ void Occupancy::visibility(const DensityPatches& patches, const std::array<doubl
                            float* out) const {
   const float to[3] = {static_cast<float>(place[0]), static_cast<float>(place[1]),
                        static_cast<float>(place[2])};
-  for (std::size_t i = 0; i < patches.size(); ++i) {
-    const float from[3] = {patches.x[i], patches.y[i], patches.z[i]};
+  const float* const at[3] = {patches.x.data(), patches.y.data(), patches.z.data()};
+  const float* const normal[3] = {patches.nx.data(), patches.ny.data(), patches.nz.data()};
+  for (std::size_t i = 0, n = patches.size(); i < n; ++i) {
+    const float from[3] = {at[0][i], at[1][i], at[2][i]};
     const float v[3] = {to[0] - from[0], to[1] - from[1], to[2] - from[2]};
     const float d = std::sqrt(std::max(v[0] * v[0] + v[1] * v[1] + v[2] * v[2], 1e-12F));
     const float cosine =
-        std::fabs(v[0] * patches.nx[i] + v[1] * patches.ny[i] + v[2] * patches.nz[i]) / d;
+        std::fabs(v[0] * normal[0][i] + v[1] * normal[1][i] + v[2] * normal[2][i]) / d;
     // Far enough to be out of the surface's own cubes.
     const float start = side_ * std::min(std::max(1.5F / std::max(cosine, 0.03F), 2.5F), 12.F);
     out[i] = start >= d || clear(from, to, d, start) ? 1.F : kHidden;

@@ -32,7 +32,7 @@ class Occupancy {
   float side_ = 1.F;
   std::array<float, 3> low_{0.F, 0.F, 0.F};
   std::array<int, 3> count_{0, 0, 0};
-  std::vector<std::uint8_t> filled_;
+  std::vector<std::uint8_t> filled_;  ///< with a layer of empty cubes all around
 };
 
 }  // namespace segorient::detail

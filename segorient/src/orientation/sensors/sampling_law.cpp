@@ -5,8 +5,10 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <cstring>
 
+#include "common/compiler.h"
+#include "common/instruction_set.h"
+#include "common/vectors.h"
 #include "orientation/sensors/simplex.h"
 
 namespace segorient::detail {
@@ -18,56 +20,65 @@ constexpr float kGrazing = 0.03F;
 constexpr float kPole = 0.01F;
 // A pinhole camera sees no more than 84 degrees from its axis.
 constexpr float kWidest = 0.1F;
+constexpr float kNothing = 1e-30F;  // whose logarithm is a number
 
-// Natural logarithm of a positive normal number to 1e-5, which loops can do several at a time: a
-// polynomial for the mantissa (Chebyshev nodes on 1 to 2).
-inline float fastLog(float v) {
-  std::uint32_t bits = 0;
-  std::memcpy(&bits, &v, sizeof(bits));
-  const auto exponent = static_cast<float>(static_cast<std::int32_t>(bits >> 23U) - 127);
-  bits = (bits & 0x007fffffU) | 0x3f800000U;
-  float m = 0.F;
-  std::memcpy(&m, &bits, sizeof(m));
-  const float polynomial =
-      -1.93675974F +
-      m * (3.5140873F +
-           m * (-2.44002976F + m * (1.11609003F + m * (-0.283826848F + m * 0.0304490045F))));
-  return 0.693147181F * exponent + polynomial;
+// A place and an axis as floats, and pieces as arrays.
+struct Sight {
+  Sight(const DensityPatches& patches, const Place& place)
+      : x(patches.x.data()),
+        y(patches.y.data()),
+        z(patches.z.data()),
+        nx(patches.nx.data()),
+        ny(patches.ny.data()),
+        nz(patches.nz.data()),
+        count(patches.size()),
+        at(toFloat(place.position)),
+        axis(toFloat(place.axis)) {}
+
+  const float* x;
+  const float* y;
+  const float* z;
+  const float* nx;
+  const float* ny;
+  const float* nz;
+  std::size_t count;
+  std::array<float, 3> at;
+  std::array<float, 3> axis;
+};
+
+}  // namespace
+
+#define SEGORIENT_KERNELS "orientation/sensors/density_lanes.inl"
+#include "common/each_width.inl"
+#undef SEGORIENT_KERNELS
+
+namespace {
+
+struct Kernels {
+  using Law = void (*)(const Sight&, float*);
+  Law solid_angle = &portable::leave<SamplingLaw::SOLID_ANGLE>;
+  Law angle_grid = &portable::leave<SamplingLaw::ANGLE_GRID>;
+  Law pinhole = &portable::leave<SamplingLaw::PINHOLE>;
+  void (*logs)(float*, std::size_t) = &portable::logs;
+};
+
+Kernels chooseKernels() {
+#if SEGORIENT_X86
+  if (instructionSet() >= InstructionSet::Avx512) {
+    return {&avx512::leave<SamplingLaw::SOLID_ANGLE>, &avx512::leave<SamplingLaw::ANGLE_GRID>,
+            &avx512::leave<SamplingLaw::PINHOLE>, &avx512::logs};
+  }
+  if (instructionSet() >= InstructionSet::Avx2) {
+    return {&avx2::leave<SamplingLaw::SOLID_ANGLE>, &avx2::leave<SamplingLaw::ANGLE_GRID>,
+            &avx2::leave<SamplingLaw::PINHOLE>, &avx2::logs};
+  }
+#endif
+  return {};
 }
 
-// What the place leaves on each piece.
-template <SamplingLaw law>
-void lawAt(const DensityPatches& patches, const Place& place, float* out) {
-  const auto px = static_cast<float>(place.position[0]);
-  const auto py = static_cast<float>(place.position[1]);
-  const auto pz = static_cast<float>(place.position[2]);
-  const auto ax = static_cast<float>(place.axis[0]);
-  const auto ay = static_cast<float>(place.axis[1]);
-  const auto az = static_cast<float>(place.axis[2]);
-  const std::size_t n = patches.size();
-#pragma omp simd
-  for (std::size_t i = 0; i < n; ++i) {
-    const float vx = px - patches.x[i];
-    const float vy = py - patches.y[i];
-    const float vz = pz - patches.z[i];
-    const float d2 = std::max(vx * vx + vy * vy + vz * vz, 1e-12F);
-    const float d = std::sqrt(d2);
-    const float along = std::fabs(vx * patches.nx[i] + vy * patches.ny[i] + vz * patches.nz[i]);
-    const float facing = std::max(along, kGrazing * d);  // times d
-    float law_density = 0.F;
-    if constexpr (law == SamplingLaw::SOLID_ANGLE) {
-      law_density = facing / (d * d2);
-    } else {
-      const float height = vx * ax + vy * ay + vz * az;
-      if constexpr (law == SamplingLaw::ANGLE_GRID) {
-        law_density = facing / (d2 * std::sqrt(std::max(d2 - height * height, kPole * d2)));
-      } else {
-        const float depth = std::max(-height, kWidest * d);
-        law_density = facing / (depth * depth * depth);
-      }
-    }
-    out[i] = std::max(law_density, 1e-30F);
-  }
+const Kernels& kernels() {
+  static const Kernels chosen = chooseKernels();
+  return chosen;
 }
 
 std::array<double, 3> unit(const std::array<double, 3>& v) {
@@ -90,15 +101,16 @@ std::array<std::array<double, 3>, 2> across(const std::array<double, 3>& axis) {
 
 void densitiesAt(const DensityPatches& patches, const Place& place, std::vector<float>& out) {
   out.resize(patches.size());
+  const Sight sight(patches, place);
   switch (place.law) {
     case SamplingLaw::SOLID_ANGLE:
-      lawAt<SamplingLaw::SOLID_ANGLE>(patches, place, out.data());
+      kernels().solid_angle(sight, out.data());
       break;
     case SamplingLaw::ANGLE_GRID:
-      lawAt<SamplingLaw::ANGLE_GRID>(patches, place, out.data());
+      kernels().angle_grid(sight, out.data());
       break;
     case SamplingLaw::PINHOLE:
-      lawAt<SamplingLaw::PINHOLE>(patches, place, out.data());
+      kernels().pinhole(sight, out.data());
       break;
   }
 }
@@ -106,10 +118,7 @@ void densitiesAt(const DensityPatches& patches, const Place& place, std::vector<
 }  // namespace
 
 void takeLogs(std::vector<float>& values) {
-  float* v = values.data();
-  const std::size_t n = values.size();
-#pragma omp simd
-  for (std::size_t i = 0; i < n; ++i) v[i] = fastLog(std::max(v[i], 1e-30F));
+  kernels().logs(values.data(), values.size());
 }
 
 void residuals(const DensityPatches& patches, const Place& place, std::vector<float>& out) {

@@ -37,10 +37,11 @@ struct Explained {
       : places(std::move(tried)),
         mixture(mixtureOf(patches, occupancy, places, Place{}, threads)),
         logs(patches.size(), 0.0) {
-    for (std::size_t j = 0; j < mixture.rows.size(); ++j) {
+    for (std::size_t j = 0; j < mixture.size(); ++j) {
       const auto weight = static_cast<double>(mixture.weights[j]);
+      const float* const row = mixture.row(j);
       for (std::size_t i = 0; i < logs.size(); ++i) {
-        logs[i] += weight * static_cast<double>(mixture.rows[j][i]);
+        logs[i] += weight * static_cast<double>(row[i]);
       }
     }
     double mean = 0.0;
@@ -78,7 +79,7 @@ Sides sidesOf(const DensityPatches& patches, const Explained& within) {
     double balance = 0.0;
     double total = 0.0;
     Position direction{0.0, 0.0, 0.0};
-    for (std::size_t j = 0; j < within.mixture.rows.size(); ++j) {
+    for (std::size_t j = 0; j < within.mixture.size(); ++j) {
       const Position& place = within.places[within.mixture.place[j]];
       Position way{};
       double square = 0.0;
@@ -87,7 +88,7 @@ Sides sidesOf(const DensityPatches& patches, const Explained& within) {
         square += way[a] * way[a];
       }
       const double got = static_cast<double>(within.mixture.weights[j]) *
-                         static_cast<double>(within.mixture.rows[j][i]);
+                         static_cast<double>(within.mixture.row(j)[i]);
       balance += patches.heightOver(i, place) < 0.F ? -got : got;
       total += got;
       for (std::size_t a = 0; a < 3; ++a) {

@@ -41,18 +41,25 @@ struct SideSums {
 
   // \param densities those of what is seen from behind negative
   void add(const std::vector<float>& densities) {
-    for (std::size_t i = 0; i < front.size(); ++i) {
-      front[i] += std::max(densities[i], 0.F);
-      back[i] += std::max(-densities[i], 0.F);
+    const float* const density = densities.data();
+    float* const in_front = front.data();
+    float* const behind = back.data();
+    for (std::size_t i = 0, n = front.size(); i < n; ++i) {
+      in_front[i] += std::max(density[i], 0.F);
+      behind[i] += std::max(-density[i], 0.F);
     }
   }
 
   // With those of one more station.
   void logsWith(const std::vector<float>& densities, std::vector<float>& out) const {
     out.resize(front.size());
-    for (std::size_t i = 0; i < out.size(); ++i) {
-      out[i] =
-          std::max(front[i] + std::max(densities[i], 0.F), back[i] + std::max(-densities[i], 0.F));
+    const float* const density = densities.data();
+    const float* const in_front = front.data();
+    const float* const behind = back.data();
+    float* const sum = out.data();
+    for (std::size_t i = 0, n = front.size(); i < n; ++i) {
+      sum[i] =
+          std::max(in_front[i] + std::max(density[i], 0.F), behind[i] + std::max(-density[i], 0.F));
     }
     takeLogs(out);
   }
@@ -210,8 +217,12 @@ class Sum {
   void densityAt(const Position& position, const std::vector<float>& seen,
                  std::vector<float>& out) const {
     ratios(patches_, {position, axis_, SamplingLaw::ANGLE_GRID}, out);
-    for (std::size_t i = 0; i < out.size(); ++i) {
-      out[i] *= patches_.heightOver(i, position) < 0.F ? -seen[i] : seen[i];
+    const std::vector<float> heights = patches_.heightsOver(position);
+    const float* const height = heights.data();
+    const float* const share = seen.data();
+    float* const density = out.data();
+    for (std::size_t i = 0, n = out.size(); i < n; ++i) {
+      density[i] *= height[i] < 0.F ? -share[i] : share[i];
     }
   }
 
@@ -247,18 +258,18 @@ class Sum {
 
 }  // namespace
 
-Stations searchStations(const DensityPatches& patches, const Occupancy& occupancy,
-                        const Position& axis, int threads) {
+std::optional<Stations> searchStations(const DensityPatches& patches, const Occupancy& occupancy,
+                                       const Position& axis, int threads) {
   const Extent extent = extentOf(patches);
   const double diagonal = extent.diagonal();
   const DensityPatches some = patches.thinned(kPieces);
-  Stations out;
-  out.axis = axis;
+  const float constant = deviation(some.log_density);
   const std::vector<Position> places = mixturePlaces(some, occupancy, extent, axis, threads);
   Sum sum(some, occupancy, axis, places);
-  if (sum.positions().empty()) return out;
-  sum.setAlternatives(placesInside(extent, kAlternatives), threads);
+  if (sum.positions().empty()) return std::nullopt;
   sum.refine(kStep * diagonal);
+  if (sum.cost() > kHopeless * constant) return std::nullopt;
+  sum.setAlternatives(placesInside(extent, kAlternatives), threads);
   // All numbers of stations down to one.
   std::vector<Stations> tried;
   while (true) {
@@ -271,8 +282,7 @@ Stations searchStations(const DensityPatches& patches, const Occupancy& occupanc
     if (sum.positions().size() == 1) break;
     sum.dropOne();
   }
-  std::vector<float> densities = some.log_density;
-  const float constant = deviation(densities);
+  Stations out;
   float least = tried[0].cost;
   for (const Stations& t : tried) least = std::min(least, t.cost);
   for (const Stations& t : tried) {

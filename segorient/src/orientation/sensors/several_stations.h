@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <optional>
 #include <vector>
 
 #include "orientation/sensors/density_patches.h"
@@ -18,9 +19,10 @@ struct Stations {
   float cost = 0.F;                           ///< as costOf()
 };
 
-/// The smallest number of stations that explains the densities as well as any number does.
-Stations searchStations(const DensityPatches& patches, const Occupancy& occupancy,
-                        const std::array<double, 3>& axis, int threads);
+/// The smallest number of stations that explains the densities as well as any number does; nothing
+/// where that is hopeless.
+std::optional<Stations> searchStations(const DensityPatches& patches, const Occupancy& occupancy,
+                                       const std::array<double, 3>& axis, int threads);
 
 /// For each piece the station that left most of its density.
 std::vector<std::int32_t> stationOf(const DensityPatches& patches, const Occupancy& occupancy,

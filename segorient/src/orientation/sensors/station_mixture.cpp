@@ -3,11 +3,16 @@
 #include "orientation/sensors/station_mixture.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <numeric>
 
+#include "common/compiler.h"
+#include "common/instruction_set.h"
 #include "common/parallel_for.h"
+#include "common/vectors.h"
 #include "orientation/sensors/station_search.h"
 
 namespace segorient::detail {
@@ -22,28 +27,72 @@ constexpr float kNegligible = 1e-4F;  // of all weights
 constexpr float kShare = 0.003F;      // of all weights, of a place that is looked at afterwards
 constexpr double kTogether = 0.07;    // of the extent: the grid's cells are as wide
 constexpr std::size_t kMostPlaces = 10;
+constexpr float kNothing = 1e-30F;  // that one may divide by
+// As many as the widest registers hold, whatever the machine's are: the same sums everywhere.
+constexpr std::size_t kSums = 16;
+
+}  // namespace
+
+#define SEGORIENT_KERNELS "orientation/sensors/mixture_lanes.inl"
+#include "common/each_width.inl"
+#undef SEGORIENT_KERNELS
+
+namespace {
+
+struct Kernels {
+  void (*add)(const float*, float, std::size_t, float*) = &portable::addRow;
+  void (*multiply)(const float*, const float*, std::size_t, float*) = &portable::multiplyRows;
+};
+
+Kernels chooseKernels() {
+#if SEGORIENT_X86
+  if (instructionSet() >= InstructionSet::Avx512) return {&avx512::addRow, &avx512::multiplyRows};
+  if (instructionSet() >= InstructionSet::Avx2) return {&avx2::addRow, &avx2::multiplyRows};
+#endif
+  return {};
+}
+
+const Kernels& kernels() {
+  static const Kernels chosen = chooseKernels();
+  return chosen;
+}
+
+float product(const float* a, const float* b, std::size_t length) {
+  std::array<float, kSums> parts{};
+  kernels().multiply(a, b, length, parts.data());
+  return std::accumulate(parts.begin(), parts.end(), 0.F);
+}
+
+// Of one thread.
+struct Scratch {
+  std::vector<float> seen;
+  std::vector<float> left;
+};
 
 // What each place would leave on each piece, over the density that is there.
 void fillRows(const DensityPatches& patches, const Occupancy& occupancy,
               const std::vector<Position>& places, const Place& law, int threads, Mixture& out) {
-  out.rows.resize(places.size());
+  const std::size_t n = patches.size();
+  out.length = (n + kSums - 1) / kSums * kSums;
+  out.rows.assign(places.size() * out.length, 0.F);
   out.place.resize(places.size());
   std::iota(out.place.begin(), out.place.end(), std::size_t{0});
-  const std::size_t n = patches.size();
   parallelFor(
       places.size(), threads, Occupancy::kTime * static_cast<double>(n),
-      [n] { return std::vector<float>(n); },
-      [&](std::size_t j, std::vector<float>& seen) {
-        std::vector<float>& row = out.rows[j];
-        ratios(patches, {places[j], law.axis, law.law}, row);
-        occupancy.visibility(patches, places[j], seen.data());
+      [n] {
+        return Scratch{std::vector<float>(n), {}};
+      },
+      [&](std::size_t j, Scratch& scratch) {
+        ratios(patches, {places[j], law.axis, law.law}, scratch.left);
+        occupancy.visibility(patches, places[j], scratch.seen.data());
+        float* const row = out.row(j);
         float sum = 0.F;
         for (std::size_t i = 0; i < n; ++i) {
-          row[i] *= seen[i];
+          row[i] = scratch.left[i] * scratch.seen[i];
           sum += row[i];
         }
         const float mean = std::max(sum / static_cast<float>(n), 1e-30F);
-        for (float& v : row) v /= mean;
+        for (std::size_t i = 0; i < n; ++i) row[i] /= mean;
       });
 }
 
@@ -54,39 +103,37 @@ void prune(Mixture& mixture) {
   for (std::size_t j = 0; j < weights.size(); ++j) {
     if (weights[j] < kNegligible * all) continue;
     if (kept != j) {
-      mixture.rows[kept] = std::move(mixture.rows[j]);
+      std::copy_n(mixture.row(j), mixture.length, mixture.row(kept));
       mixture.place[kept] = mixture.place[j];
       weights[kept] = weights[j];
     }
     ++kept;
   }
-  mixture.rows.resize(kept);
+  mixture.rows.resize(kept * mixture.length);
   mixture.place.resize(kept);
   weights.resize(kept);
 }
 
 // Multiplicative updates, as of maximum likelihood, a little overdone to be quicker. Each piece's
-// mixture divides by what is there, so that dense and thin places count the same.
+// mixture divides by what is there, so that dense and thin places count the same. A row's share of
+// the next round's sum is added while the row is at hand.
 void weigh(std::size_t pieces, Mixture& mixture) {
   std::vector<float>& weights = mixture.weights;
-  weights.assign(mixture.rows.size(), 1.F / static_cast<float>(mixture.rows.size()));
-  std::vector<float> mixed(pieces);
+  weights.assign(mixture.size(), 1.F / static_cast<float>(mixture.size()));
+  std::vector<float> inverse(mixture.length);
+  std::vector<float> mixed(mixture.length, kNothing);
+  for (std::size_t j = 0; j < weights.size(); ++j) {
+    kernels().add(mixture.row(j), weights[j], mixture.length, mixed.data());
+  }
   for (int round = 0; round < kRounds; ++round) {
     if (round == kRoundsBeforePruning) prune(mixture);
-    std::fill(mixed.begin(), mixed.end(), 1e-30F);
+    std::transform(mixed.begin(), mixed.end(), inverse.begin(), [](float m) { return 1.F / m; });
+    std::fill(mixed.begin(), mixed.end(), kNothing);
     for (std::size_t j = 0; j < weights.size(); ++j) {
-      const float w = weights[j];
-      const float* row = mixture.rows[j].data();
-      for (std::size_t i = 0; i < pieces; ++i) mixed[i] += w * row[i];
-    }
-    for (float& m : mixed) m = 1.F / m;
-    for (std::size_t j = 0; j < weights.size(); ++j) {
-      const float* row = mixture.rows[j].data();
-      float sum = 0.F;
-#pragma omp simd reduction(+ : sum)
-      for (std::size_t i = 0; i < pieces; ++i) sum += row[i] * mixed[i];
-      const float factor = sum / static_cast<float>(pieces);
+      const float factor =
+          product(mixture.row(j), inverse.data(), mixture.length) / static_cast<float>(pieces);
       weights[j] *= factor * std::sqrt(factor);
+      kernels().add(mixture.row(j), weights[j], mixture.length, mixed.data());
     }
   }
 }

@@ -19,10 +19,15 @@ constexpr int kMixedInside = 800;
 /// as most weights come to nothing.
 struct Mixture {
   /// By place and piece: what it would leave where it can see, over the density that is there, as a
-  /// part of the place's mean.
-  std::vector<std::vector<float>> rows;
+  /// part of the place's mean; 0 after the last piece.
+  std::vector<float> rows;
+  std::size_t length = 0;          ///< of a row
   std::vector<std::size_t> place;  ///< each row's, into those that were tried
   std::vector<float> weights;
+
+  std::size_t size() const { return place.size(); }
+  const float* row(std::size_t j) const { return &rows[j * length]; }
+  float* row(std::size_t j) { return &rows[j * length]; }
 };
 
 /// \param law of all of them, its position unused

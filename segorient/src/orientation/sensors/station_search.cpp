@@ -20,9 +20,6 @@ constexpr std::size_t kCoarse = 400;
 constexpr int kPlacesInside = 1000;  // so the truth is about 5 % of the extent from one of them
 constexpr int kStarts = 6;           // valleys that are followed
 constexpr double kApart = 0.08;      // of the extent, between starts
-// Of the constant's cost: without a step the best of the places has .24 to .62 where there is a
-// single station, 1.0 and more on solids and sheets.
-constexpr float kHopeless = 0.8F;
 constexpr double kCoarseStep = 0.05;
 constexpr double kFineStep = 0.01;
 constexpr int kCoarseEvaluations = 100;
