@@ -87,21 +87,20 @@ inline float dot3(const float* a, const float* b) {
 }
 
 /// Whether a point of another face lies within `spacings` spacings. Brute force.
-inline std::vector<bool> nearEdges(const LabelledCloud& cloud, double spacings) {
+inline bool isNearEdge(const LabelledCloud& cloud, std::size_t i, double spacings) {
   const double limit = spacings * spacings * cloud.spacing * cloud.spacing;
-  std::vector<bool> out(cloud.size(), false);
-  for (std::size_t i = 0; i < cloud.size(); ++i) {
-    for (std::size_t j = 0; j < cloud.size() && !out[i]; ++j) {
-      if (cloud.face[i] == cloud.face[j]) continue;
-      double squared = 0;
-      for (std::size_t a = 0; a < 3; ++a) {
-        const double d = static_cast<double>(cloud.xyz[4 * i + a]) - cloud.xyz[4 * j + a];
-        squared += d * d;
-      }
-      out[i] = squared < limit;
+  const float* const p = &cloud.xyz[4 * i];
+  const float* q = cloud.xyz.data();
+  for (const auto face : cloud.face) {
+    double squared = 0;
+    for (std::size_t a = 0; a < 3; ++a) {
+      const double d = static_cast<double>(p[a]) - q[a];
+      squared += d * d;
     }
+    if (face != cloud.face[i] && squared < limit) return true;
+    q += 4;
   }
-  return out;
+  return false;
 }
 
 /// How many normals point against the true ones, or are none at all.
@@ -112,12 +111,10 @@ struct Agreement {
 
 inline Agreement compareNormals(const LabelledCloud& cloud, const std::vector<float>& normals) {
   Agreement out;
-  std::vector<bool> edge;
   for (std::size_t i = 0; i < cloud.size(); ++i) {
     if (dot3(&normals[4 * i], &cloud.normals[4 * i]) > 0) continue;
-    if (edge.empty()) edge = nearEdges(cloud, 2);
     ++out.wrong;
-    if (!edge[i]) ++out.wrong_off_edges;
+    if (!isNearEdge(cloud, i, 2)) ++out.wrong_off_edges;
   }
   return out;
 }
