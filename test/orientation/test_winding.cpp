@@ -3,8 +3,10 @@
 // Winding numbers of spheres, components inside one another, and the sensor's place.
 #include <gtest/gtest.h>
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <numeric>
+#include <random>
 
 #include "common/compact_cloud.h"
 #include "orientation/automatic/orient_sheets.h"
@@ -70,6 +72,43 @@ TEST(WindingNumber, IsOneInsideAndZeroOutside) {
   EXPECT_NEAR(winding.evaluate(inside, 0.03F), 1.F, 0.01F);
   EXPECT_NEAR(winding.evaluate(outside, 0.03F), 0.F, 0.01F);
   EXPECT_NEAR(winding.evaluate(ball.xyz.data(), 0.03F), 0.5F, 0.05F);
+}
+
+// Blocks that are full and that are not, of places that are near each other and that are not, and
+// with the points of a part only.
+TEST(WindingNumber, OfManyPlacesIsThatOfEach) {
+  Balls balls;
+  addBall(balls, {0, 0, 0}, 1, 3000, 1.F);
+  addBall(balls, {3, 0, 0}, 0.5, 700, -1.F);
+  std::vector<std::uint32_t> part(3500);
+  std::iota(part.begin(), part.end(), 100U);
+  std::mt19937 random(3);
+  std::uniform_real_distribution<float> place(-2.F, 4.F);
+  for (const std::vector<std::uint32_t>& rows : {std::vector<std::uint32_t>{}, part}) {
+    WindingNumber winding;
+    winding.build(viewOf(balls.xyz), balls.dipoles, rows);
+    for (const std::size_t count : {0U, 1U, 15U, 16U, 17U, 400U}) {
+      std::vector<float> at;
+      std::vector<float> radii;
+      for (std::size_t i = 0; i < count; ++i) {
+        const bool on_surface = i % 3 != 0;
+        for (std::size_t a = 0; a < 3; ++a) {
+          at.push_back(on_surface ? balls.xyz[4 * i + a] : place(random));
+        }
+        radii.push_back(0.01F * static_cast<float>(i % 7));
+      }
+      const std::vector<float> all = winding.evaluate({at.data(), 3, count}, radii, 0);
+      ASSERT_EQ(all.size(), count);
+      for (std::size_t i = 0; i < count; ++i) {
+        const float alone = winding.evaluate(&at[3 * i], radii[i]);
+        if (std::isnan(alone)) {
+          EXPECT_TRUE(std::isnan(all[i])) << i;  // on a point, without a radius
+        } else {
+          EXPECT_EQ(alone, all[i]) << i;
+        }
+      }
+    }
+  }
 }
 
 TEST(WindingNumber, TreeIsNearTheSum) {

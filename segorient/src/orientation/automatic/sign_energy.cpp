@@ -121,23 +121,21 @@ SignEnergy SignJudge::judge(const std::vector<float>& normals) const {
   const std::vector<float> dipoles = dipolesOf(normals, areas_);
   WindingNumber winding;
   winding.build(points_, dipoles, {});
-  std::vector<float> in_front(samples_.size(), -1.F);
-  parallelFor(samples_.size(), threads_, 300.0, [&](std::size_t s) {
-    const float* p = points_[samples_[s]];
-    const float* n = &normals[4 * samples_[s]];
-    if (!isFinite(n)) return;
+  std::vector<float> in_front;
+  for (const std::size_t s : samples_) {
+    const float* p = points_[s];
+    const float* n = &normals[4 * s];
+    if (!isFinite(n)) continue;
     const float far = kCell * sixth_;  // nearer, single cells stand out
-    const float x[3] = {p[0] + far * n[0], p[1] + far * n[1], p[2] + far * n[2]};
-    in_front[s] = std::min(std::fabs(winding.evaluate(x, sixth_)), 0.5F);
-  });
-  double sum = 0.0;
-  double count = 0.0;
-  for (const float w : in_front) {
-    if (w < 0.F) continue;
-    sum += static_cast<double>(w);
-    count += 1.0;
+    for (std::size_t a = 0; a < 3; ++a) in_front.push_back(p[a] + far * n[a]);
   }
-  if (count > 0.0) energy.outside = static_cast<float>(sum / count);
+  const std::size_t count = in_front.size() / 3;
+  const std::vector<float> radii(count, sixth_);
+  double sum = 0.0;
+  for (const float w : winding.evaluate({in_front.data(), 3, count}, radii, threads_)) {
+    sum += static_cast<double>(std::min(std::fabs(w), 0.5F));
+  }
+  if (count > 0) energy.outside = static_cast<float>(sum / static_cast<double>(count));
   return energy;
 }
 

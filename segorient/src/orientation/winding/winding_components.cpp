@@ -141,13 +141,15 @@ class Solver {
       if (!boxes_[c].contains(points_[samples_[sample]], margin)) continue;
       reach.push_back({static_cast<std::uint32_t>(sample), 0.F});
     }
-    // Nanoseconds: some nodes of each level of the tree are opened.
-    constexpr double kLevel = 2000.0;
-    const double time = kLevel * std::log2(static_cast<double>(rows_[c].size()) + 1.0);
-    parallelFor(reach.size(), threads, time, [&](std::size_t r) {
-      const std::uint32_t i = samples_[reach[r].sample];
-      reach[r].w = winding.evaluate(points_[i], spacing_[i]);
-    });
+    std::vector<float> places;
+    std::vector<float> radii;
+    for (const Reach& r : reach) {
+      const std::uint32_t i = samples_[r.sample];
+      places.insert(places.end(), points_[i], points_[i] + 3);
+      radii.push_back(spacing_[i]);
+    }
+    const std::vector<float> w = winding.evaluate({places.data(), 3, reach.size()}, radii, threads);
+    for (std::size_t r = 0; r < reach.size(); ++r) reach[r].w = w[r];
   }
 
   // The largest first, each with the sign that suits what is there already.

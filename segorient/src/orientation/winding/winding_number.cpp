@@ -3,7 +3,15 @@
 #include "orientation/winding/winding_number.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstddef>
+#include <cstdint>
+
+#include "common/compiler.h"
+#include "common/instruction_set.h"
+#include "common/parallel_for.h"
+#include "common/vectors.h"
 
 namespace segorient {
 namespace {
@@ -13,6 +21,52 @@ constexpr std::uint32_t kLeaf = 16;
 // A node counts as one dipole beyond this many of its radii (half diagonals of its box, about):
 // errors of some hundredths of the sum of absolute terms.
 constexpr float kFar = 4.F;
+// Of one block: as many as the widest registers hold.
+constexpr std::size_t kPlaces = 16;
+
+struct PlaceBlock {
+  std::array<float, kPlaces> x;
+  std::array<float, kPlaces> y;
+  std::array<float, kPlaces> z;
+  std::array<float, kPlaces> radius;
+
+  // What is left of the last block are its last place again.
+  PlaceBlock(const PointView& at, const std::vector<float>& radii, std::size_t first) {
+    for (std::size_t l = 0; l < kPlaces; ++l) {
+      const std::size_t i = std::min(first + l, at.size - 1);
+      x[l] = at[i][0];
+      y[l] = at[i][1];
+      z[l] = at[i][2];
+      radius[l] = radii[i];
+    }
+  }
+};
+
+struct WindingTree {
+  const WindingNode* nodes;
+  std::uint32_t count;
+  PointView points;
+  const float* dipoles;
+  const std::uint32_t* rows;
+};
+
+}  // namespace
+
+#define SEGORIENT_KERNELS "orientation/winding/winding_lanes.inl"
+#include "common/each_width.inl"
+#undef SEGORIENT_KERNELS
+
+namespace {
+
+using EvaluateBlock = void (*)(const WindingTree&, const PlaceBlock&, float*);
+
+EvaluateBlock chooseKernel() {
+#if SEGORIENT_X86
+  if (instructionSet() >= InstructionSet::Avx512) return &avx512::evaluateBlock;
+  if (instructionSet() >= InstructionSet::Avx2) return &avx2::evaluateBlock;
+#endif
+  return &portable::evaluateBlock;
+}
 
 }  // namespace
 
@@ -118,6 +172,26 @@ float WindingNumber::evaluate(const float* x, float radius) const {
     ++i;
   }
   return static_cast<float>(sum) * kOneOver4Pi;
+}
+
+std::vector<float> WindingNumber::evaluate(const PointView& at, const std::vector<float>& radii,
+                                           int threads) const {
+  static const EvaluateBlock kernel = chooseKernel();
+  const WindingTree tree{nodes_.data(), static_cast<std::uint32_t>(nodes_.size()), points_,
+                         dipoles_, rows_};
+  // Nanoseconds: some nodes of each level of the tree are opened.
+  constexpr double kLevel = 8000.0;
+  const double time = kLevel * std::log2(static_cast<double>(nodes_.size()) + 2.0);
+  std::vector<float> out(at.size);
+  parallelFor((at.size + kPlaces - 1) / kPlaces, threads, time, [&](std::size_t block) {
+    const std::size_t first = block * kPlaces;
+    std::array<float, kPlaces> sums{};
+    kernel(tree, PlaceBlock(at, radii, first), sums.data());
+    for (std::size_t i = first; i < std::min(first + kPlaces, at.size); ++i) {
+      out[i] = sums[i - first] * kOneOver4Pi;
+    }
+  });
+  return out;
 }
 
 void WindingNumber::listDipoles(const float* center, float reach, const DipoleList& points,

@@ -13,6 +13,16 @@
 
 namespace segorient {
 
+/// A node of its tree.
+struct WindingNode {
+  float center[3];
+  float radius;
+  float dipole[3];
+  std::uint32_t skip;   ///< next node when this one is used or done
+  std::uint32_t first;  ///< leaf: first point
+  std::uint32_t size;   ///< leaf: points, 0 for inner nodes
+};
+
 /// Winding number of oriented points (Barill et al. 2018, "Fast winding numbers for soups and
 /// clouds"): w(x) = sum a n.(p - x) / (4 pi max(|p - x|, r)^3): 1 inside a closed outward cloud, 0
 /// outside, 1/2 on it.
@@ -30,6 +40,11 @@ class WindingNumber {
   /// \param x where \param radius below which points are smoothed, usually the spacing
   float evaluate(const float* x, float radius) const;
 
+  /// The same numbers for many places, several at a time. \param at near ones side by side
+  /// \param radii of each, as above \return one of each
+  std::vector<float> evaluate(const PointView& at, const std::vector<float>& radii,
+                              int threads) const;
+
   /// Appends dipoles that stand for all points when seen from a ball: points near it themselves,
   /// others together.
   /// \param center of the ball \param reach its radius
@@ -41,14 +56,7 @@ class WindingNumber {
 
  private:
   static constexpr float kHuge = std::numeric_limits<float>::max();
-  struct Node {
-    float center[3];
-    float radius;
-    float dipole[3];
-    std::uint32_t skip;   // next node when this one is used or done
-    std::uint32_t first;  // leaf: first point
-    std::uint32_t size;   // leaf: points, 0 for inner nodes
-  };
+  using Node = WindingNode;
   struct Extent {
     double area = 0.0;
     float low[3] = {kHuge, kHuge, kHuge};
