@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <limits>
 #include <numeric>
 #include <random>
@@ -97,14 +98,19 @@ TEST(WindingNumber, OfManyPlacesIsThatOfEach) {
         }
         radii.push_back(0.01F * static_cast<float>(i % 7));
       }
-      const std::vector<float> all = winding.evaluate({at.data(), 3, count}, radii, 0);
-      ASSERT_EQ(all.size(), count);
-      for (std::size_t i = 0; i < count; ++i) {
-        const float alone = winding.evaluate(&at[3 * i], radii[i]);
-        if (std::isnan(alone)) {
-          EXPECT_TRUE(std::isnan(all[i])) << i;  // on a point, without a radius
-        } else {
-          EXPECT_EQ(alone, all[i]) << i;
+      for (const char* set : {"scalar", "avx2", "avx512"}) {
+        SCOPED_TRACE(set);
+        setenv("SEGORIENT_SIMD", set, 1);
+        const std::vector<float> all = winding.evaluate({at.data(), 3, count}, radii, 0);
+        unsetenv("SEGORIENT_SIMD");
+        ASSERT_EQ(all.size(), count);
+        for (std::size_t i = 0; i < count; ++i) {
+          const float alone = winding.evaluate(&at[3 * i], radii[i]);
+          if (std::isnan(alone)) {
+            EXPECT_TRUE(std::isnan(all[i])) << i;  // on a point, without a radius
+          } else {
+            EXPECT_EQ(alone, all[i]) << i;
+          }
         }
       }
     }

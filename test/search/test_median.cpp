@@ -3,7 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
+#include <limits>
 #include <random>
 #include <vector>
 
@@ -43,7 +45,32 @@ TEST(Median, OfManyEqualValues) {
   EXPECT_EQ(2.F, median(values));
 }
 
-// Sorted and with many that are equal: whatever is taken to part by comes again.
+TEST(Median, OfFewAndOfInfinities) {
+  for (std::size_t count = 1; count <= 40; ++count) {
+    std::vector<float> values = randomValues(count);
+    EXPECT_EQ(sortedMiddle(values), median(values)) << count;
+    values[count / 2] = std::numeric_limits<float>::infinity();
+    values[count / 3] = -std::numeric_limits<float>::infinity();
+    EXPECT_EQ(sortedMiddle(values), median(values)) << count;
+  }
+}
+
+// As the rows of a scan are; this would take an hour if passes could leave nearly all.
+TEST(Median, OfValuesThatComeAgainAndAgain) {
+  constexpr std::size_t kRows = 8;
+  constexpr std::size_t kColumns = 500000;
+  std::vector<float> values;
+  for (std::size_t i = 0; i < kRows * kColumns; ++i) {
+    values.push_back(std::hypot(1.F, static_cast<float>(i % kColumns) / kColumns));
+  }
+  EXPECT_EQ(sortedMiddle(values), median(values));
+}
+
+TEST(Median, OfNoNumbersEnds) {
+  median(std::vector<float>(100, std::numeric_limits<float>::quiet_NaN()));
+}
+
+// In order, backwards, and of a few values each of which is there many times.
 TEST(Median, OfValuesInOrderAndOfFewKinds) {
   for (const std::size_t count : {17U, 64U, 1000U, 4097U}) {
     std::vector<float> values(count);
@@ -58,7 +85,7 @@ TEST(Median, OfValuesInOrderAndOfFewKinds) {
 
 // Values that a regular sample sees only the extremes of.
 TEST(Median, DoesNotDependOnWhatASampleSees) {
-  constexpr std::size_t kCount = 64U * 1024U;
+  constexpr std::size_t kCount = 64U * 1024U + 1U;  // eighths of it are seen as well
   for (const float extreme : {-1000.F, 1000.F}) {
     std::vector<float> values = randomValues(kCount);
     for (std::size_t i = 0; i < kCount; i += 64) values[i] = extreme;

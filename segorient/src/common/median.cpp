@@ -9,14 +9,17 @@
 namespace segorient {
 namespace {
 
-// Fewer are sorted.
+// So few are left to the library.
 constexpr std::size_t kFew = 16;
+// And those of which a pass has left more than this: values whose period is that of the pivots, or
+// that are no numbers.
+constexpr double kPoor = 7.0 / 8.0;
 
 float middleOf(float a, float b, float c) {
   return std::max(std::min(a, b), std::min(std::max(a, b), c));
 }
 
-// Of three triples from all over.
+// The median of the medians of three triples from all over.
 float pivotOf(const float* values, std::size_t count) {
   const auto at = [&](std::size_t eighths) { return values[eighths * (count - 1) / 8]; };
   return middleOf(middleOf(at(0), at(1), at(2)), middleOf(at(3), at(4), at(5)),
@@ -56,6 +59,7 @@ float median(std::vector<float> values) {
       if (rank < less) return pivot;
     }
     std::swap(from, to);
+    const std::size_t before = count;
     if (rank < less) {
       count = less;
     } else {
@@ -64,8 +68,9 @@ float median(std::vector<float> values) {
       from += less;
       to += less;
     }
+    if (static_cast<double>(count) > kPoor * static_cast<double>(before)) break;
   }
-  std::sort(from, from + count);
+  std::nth_element(from, from + rank, from + count);
   return from[rank];
 }
 

@@ -5,7 +5,8 @@
 
 #include "common/lanes.inl"
 
-/// Sets `out` to `of` each of the values that columns have, kWidth at a time.
+/// Sets out[i] to of(at), kWidth rows at a time, where at(column) are the rows' entries in a
+/// column; after the last row these are 0.
 template <typename Of>
 inline void setEach(std::size_t count, float* out, Of&& of) {
   for (std::size_t i = 0; i < count; i += kWidth) {

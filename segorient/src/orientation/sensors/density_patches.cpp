@@ -209,7 +209,6 @@ float deviation(const std::vector<float>& values) {
   const float middle = median(values);
   const float* const value = values.data();
   double sum = 0.0;
-#pragma omp simd reduction(+ : sum)
   for (std::size_t i = 0; i < values.size(); ++i) {
     sum += static_cast<double>(std::min(std::fabs(value[i] - middle), kDeviationCut));
   }

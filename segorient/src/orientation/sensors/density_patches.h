@@ -30,13 +30,7 @@ struct DensityPatches {
   /// Appends a piece, without its sparsity.
   void add(const float* center, const float* normal, float density, std::size_t of_point);
 
-  /// How far a place is in front of a piece's plane; below 0 behind it.
-  float heightOver(std::size_t i, const std::array<double, 3>& place) const {
-    return (static_cast<float>(place[0]) - x[i]) * nx[i] +
-           (static_cast<float>(place[1]) - y[i]) * ny[i] +
-           (static_cast<float>(place[2]) - z[i]) * nz[i];
-  }
-  /// Of each piece.
+  /// How far a place is in front of each piece's plane; below 0 behind it.
   std::vector<float> heightsOver(const std::array<double, 3>& place) const;
 
   /// Fills `sparsity` from `log_density`.

@@ -132,7 +132,7 @@ class TrackModel {
   // The sum over the places, its logs, and what lacks until it is the median's.
   void mix() {
     const std::size_t n = patches_.size();
-    mixed_.assign(n, 1e-30F);
+    mixed_.assign(n, kNothing);
     const float* const beams = beams_.data();
     float* const mixed = mixed_.data();
     for (std::size_t j = 0; j < rows_.size(); ++j) {

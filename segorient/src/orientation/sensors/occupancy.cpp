@@ -57,7 +57,8 @@ bool Occupancy::clear(const float* from, const float* to, float distance, float 
   }
   auto steps =
       static_cast<float>(static_cast<int>(std::min((distance - start) * scale - 0.5F, 1000.F)));
-  // Whoever has left the grid does not come back.
+  // As far as the grid's end: whoever has left it does not come back. By rounding, the last step
+  // may be just beyond, in the empty layer, which is why cubes are counted from 1.
   for (std::size_t a = 0; a < 3; ++a) {
     const auto last = static_cast<float>(count_[a]);
     if (!(at[a] >= 0.F && at[a] < last)) return true;

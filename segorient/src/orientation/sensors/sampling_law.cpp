@@ -20,7 +20,6 @@ constexpr float kGrazing = 0.03F;
 constexpr float kPole = 0.01F;
 // A pinhole camera sees no more than 84 degrees from its axis.
 constexpr float kWidest = 0.1F;
-constexpr float kNothing = 1e-30F;  // whose logarithm is a number
 
 // A place and an axis as floats, and pieces as arrays.
 struct Sight {

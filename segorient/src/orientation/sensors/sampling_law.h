@@ -14,6 +14,9 @@ inline std::array<float, 3> toFloat(const std::array<double, 3>& v) {
   return {static_cast<float>(v[0]), static_cast<float>(v[1]), static_cast<float>(v[2])};
 }
 
+/// A density so low that it is none, whose logarithm and inverse are numbers.
+constexpr float kNothing = 1e-30F;
+
 /// How a device spreads its rays. Points per area of a surface seen under the angle c from its
 /// normal at distance d are cos(c) / d^2 times the rays per solid angle, which are:
 enum class SamplingLaw : std::uint8_t {

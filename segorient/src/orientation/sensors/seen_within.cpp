@@ -71,36 +71,38 @@ struct Sides {
 };
 
 Sides sidesOf(const DensityPatches& patches, const Explained& within) {
-  Sides out;
-  out.directions.assign(3 * patches.size(), 0.F);
-  for (std::size_t i = 0; i < patches.size(); ++i) {
-    const Position at{static_cast<double>(patches.x[i]), static_cast<double>(patches.y[i]),
-                      static_cast<double>(patches.z[i])};
-    double balance = 0.0;
-    double total = 0.0;
-    Position direction{0.0, 0.0, 0.0};
-    for (std::size_t j = 0; j < within.mixture.size(); ++j) {
-      const Position& place = within.places[within.mixture.place[j]];
-      Position way{};
-      double square = 0.0;
+  const std::size_t n = patches.size();
+  std::vector<double> balance(n, 0.0);
+  std::vector<double> total(n, 0.0);
+  std::vector<Position> direction(n, Position{0.0, 0.0, 0.0});
+  for (std::size_t j = 0; j < within.mixture.size(); ++j) {
+    const Position& place = within.places[within.mixture.place[j]];
+    const std::vector<float> heights = patches.heightsOver(place);
+    const float* const row = within.mixture.row(j);
+    const auto weight = static_cast<double>(within.mixture.weights[j]);
+    for (std::size_t i = 0; i < n; ++i) {
+      const Position way{place[0] - static_cast<double>(patches.x[i]),
+                         place[1] - static_cast<double>(patches.y[i]),
+                         place[2] - static_cast<double>(patches.z[i])};
+      const double square = way[0] * way[0] + way[1] * way[1] + way[2] * way[2];
+      const double got = weight * static_cast<double>(row[i]);
+      balance[i] += heights[i] < 0.F ? -got : got;
+      total[i] += got;
       for (std::size_t a = 0; a < 3; ++a) {
-        way[a] = place[a] - at[a];
-        square += way[a] * way[a];
-      }
-      const double got = static_cast<double>(within.mixture.weights[j]) *
-                         static_cast<double>(within.mixture.row(j)[i]);
-      balance += patches.heightOver(i, place) < 0.F ? -got : got;
-      total += got;
-      for (std::size_t a = 0; a < 3; ++a) {
-        direction[a] += got * way[a] / std::sqrt(std::max(square, 1e-30));
+        direction[i][a] += got * way[a] / std::sqrt(std::max(square, 1e-30));
       }
     }
-    for (std::size_t a = 0; a < 3; ++a) {
-      out.directions[3 * i + a] = static_cast<float>(direction[a] / std::max(total, 1e-30));
-    }
-    out.one_sided += std::fabs(balance) / std::max(total, 1e-30);
   }
-  out.one_sided /= static_cast<double>(patches.size());
+  Sides out;
+  out.directions.assign(3 * n, 0.F);
+  for (std::size_t i = 0; i < n; ++i) {
+    const double all = std::max(total[i], 1e-30);
+    for (std::size_t a = 0; a < 3; ++a) {
+      out.directions[3 * i + a] = static_cast<float>(direction[i][a] / all);
+    }
+    out.one_sided += std::fabs(balance[i]) / all;
+  }
+  out.one_sided /= static_cast<double>(n);
   return out;
 }
 

@@ -9,13 +9,15 @@ namespace segorient::detail {
 std::vector<std::int32_t> strongestPlaces(const DensityPatches& patches,
                                           const std::vector<std::array<double, 3>>& places,
                                           const std::vector<std::vector<float>>& rows) {
+  std::vector<std::vector<float>> heights;
+  for (const std::array<double, 3>& place : places) heights.push_back(patches.heightsOver(place));
   std::vector<std::int32_t> out(patches.size(), 0);
   for (std::size_t i = 0; i < out.size(); ++i) {
     float sum[2] = {0.F, 0.F};
     float most[2] = {-1.F, -1.F};
     std::int32_t best[2] = {0, 0};
     for (std::size_t j = 0; j < places.size(); ++j) {
-      const std::size_t side = patches.heightOver(i, places[j]) > 0.F ? 1 : 0;
+      const std::size_t side = heights[j][i] > 0.F ? 1 : 0;
       sum[side] += rows[j][i];
       if (rows[j][i] <= most[side]) continue;
       most[side] = rows[j][i];

@@ -27,7 +27,6 @@ constexpr float kNegligible = 1e-4F;  // of all weights
 constexpr float kShare = 0.003F;      // of all weights, of a place that is looked at afterwards
 constexpr double kTogether = 0.07;    // of the extent: the grid's cells are as wide
 constexpr std::size_t kMostPlaces = 10;
-constexpr float kNothing = 1e-30F;  // that one may divide by
 // As many as the widest registers hold, whatever the machine's are: the same sums everywhere.
 constexpr std::size_t kSums = 16;
 
@@ -91,7 +90,7 @@ void fillRows(const DensityPatches& patches, const Occupancy& occupancy,
           row[i] = scratch.left[i] * scratch.seen[i];
           sum += row[i];
         }
-        const float mean = std::max(sum / static_cast<float>(n), 1e-30F);
+        const float mean = std::max(sum / static_cast<float>(n), kNothing);
         for (std::size_t i = 0; i < n; ++i) row[i] /= mean;
       });
 }
@@ -114,6 +113,14 @@ void prune(Mixture& mixture) {
   weights.resize(kept);
 }
 
+std::vector<float> mixed(const Mixture& mixture) {
+  std::vector<float> out(mixture.length, kNothing);
+  for (std::size_t j = 0; j < mixture.size(); ++j) {
+    kernels().add(mixture.row(j), mixture.weights[j], mixture.length, out.data());
+  }
+  return out;
+}
+
 // Multiplicative updates, as of maximum likelihood, a little overdone to be quicker. Each piece's
 // mixture divides by what is there, so that dense and thin places count the same. A row's share of
 // the next round's sum is added while the row is at hand.
@@ -121,19 +128,19 @@ void weigh(std::size_t pieces, Mixture& mixture) {
   std::vector<float>& weights = mixture.weights;
   weights.assign(mixture.size(), 1.F / static_cast<float>(mixture.size()));
   std::vector<float> inverse(mixture.length);
-  std::vector<float> mixed(mixture.length, kNothing);
-  for (std::size_t j = 0; j < weights.size(); ++j) {
-    kernels().add(mixture.row(j), weights[j], mixture.length, mixed.data());
-  }
+  std::vector<float> sum = mixed(mixture);
   for (int round = 0; round < kRounds; ++round) {
-    if (round == kRoundsBeforePruning) prune(mixture);
-    std::transform(mixed.begin(), mixed.end(), inverse.begin(), [](float m) { return 1.F / m; });
-    std::fill(mixed.begin(), mixed.end(), kNothing);
+    if (round == kRoundsBeforePruning) {
+      prune(mixture);
+      sum = mixed(mixture);
+    }
+    std::transform(sum.begin(), sum.end(), inverse.begin(), [](float m) { return 1.F / m; });
+    std::fill(sum.begin(), sum.end(), kNothing);
     for (std::size_t j = 0; j < weights.size(); ++j) {
       const float factor =
           product(mixture.row(j), inverse.data(), mixture.length) / static_cast<float>(pieces);
       weights[j] *= factor * std::sqrt(factor);
-      kernels().add(mixture.row(j), weights[j], mixture.length, mixed.data());
+      kernels().add(mixture.row(j), weights[j], mixture.length, sum.data());
     }
   }
 }

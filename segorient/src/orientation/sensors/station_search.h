@@ -10,10 +10,10 @@
 
 namespace segorient::detail {
 
-/// What the best of a few places has to leave of the constant's deviation at most, or no search
-/// goes on from there: .24 to .62 where there is a single station, 1.0 and more on solids and
-/// sheets; .02 to .61 where there are several, once each was moved, and .39 to .72 for lines near
-/// to the path of one that moved, 1.0 and more on layers and bodies.
+/// What places have to leave of the constant's deviation at most, or no search goes on from there:
+/// .24 to .62 where there is a single station, 1.0 and more on solids and sheets; .02 to .61 where
+/// there are several, once each was moved, and .39 to .72 for lines near to the path of one that
+/// moved, 1.0 and more on layers and bodies.
 constexpr float kHopeless = 0.8F;
 
 /// A place and how far the densities deviate from its law.

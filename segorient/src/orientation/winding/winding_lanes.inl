@@ -1,22 +1,22 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026, the segorient authors
 //
-// Winding numbers of kPlaces places side by side, for one instruction set; see lanes.inl. Each lane
-// adds what WindingNumber::evaluate() adds for its place, in the same order.
+// Winding numbers of kPlaces places side by side, times 4 pi, for one instruction set; see
+// lanes.inl. Each lane adds what WindingNumber::evaluate() adds for its place, in the same order.
 
 #include "common/lanes.inl"
 
 using Doubles = SEGORIENT_VECTOR(double, SEGORIENT_LANES);
 
-/// What a dipole adds, where `counts` says so.
+/// Adds a dipole's part, where `counts` says so.
 /// \param d from the place to the dipole \param s its square
-inline Doubles termOf(const float* dipole, const Lanes3& d, Lanes s, Mask counts) {
+inline void addTerm(const float* dipole, const Lanes3& d, Lanes s, Mask counts, Doubles& sum) {
   const Lanes term = (dipole[0] * d.x + dipole[1] * d.y + dipole[2] * d.z) / (s * squareRoot(s));
-  return SEGORIENT_CONVERTED(select(counts, term, Lanes{}), Doubles);
+  sum += SEGORIENT_CONVERTED(select(counts, term, Lanes{}), Doubles);
 }
 
-inline void evaluateSide(const WindingTree& tree, const PlaceBlock& at, std::size_t first,
-                         float* out) {
+inline void evaluateLanes(const WindingTree& tree, const PlaceBlock& at, std::size_t first,
+                          float* out) {
   const Lanes3 x{load(&at.x[first]), load(&at.y[first]), load(&at.z[first])};
   const Lanes radius = load(&at.radius[first]);
   const Lanes r2 = radius * radius;
@@ -30,7 +30,7 @@ inline void evaluateSide(const WindingTree& tree, const PlaceBlock& at, std::siz
     const Mask walks = resume <= static_cast<std::int32_t>(i);
     const Mask far = walks & (s > reach) & (s > 4.F * r2);
     if (any(far)) {
-      sum += termOf(node.dipole, d, s, far);
+      addTerm(node.dipole, d, s, far, sum);
       resume = SEGORIENT_CHOSEN(far, Mask{} + static_cast<std::int32_t>(node.skip), resume);
     }
     const Mask near = walks & ~far;
@@ -42,7 +42,7 @@ inline void evaluateSide(const WindingTree& tree, const PlaceBlock& at, std::siz
       const std::size_t row = tree.rows != nullptr ? tree.rows[j] : j;
       const float* q = tree.points[row];
       const Lanes3 e{q[0] - x.x, q[1] - x.y, q[2] - x.z};
-      sum += termOf(tree.dipoles + 4 * row, e, larger(dot(e, e), r2), near);
+      addTerm(tree.dipoles + 4 * row, e, larger(dot(e, e), r2), near, sum);
     }
     ++i;
   }
@@ -51,6 +51,6 @@ inline void evaluateSide(const WindingTree& tree, const PlaceBlock& at, std::siz
 
 inline void evaluateBlock(const WindingTree& tree, const PlaceBlock& at, float* out) {
   for (std::size_t first = 0; first < kPlaces; first += kWidth) {
-    evaluateSide(tree, at, first, out);
+    evaluateLanes(tree, at, first, out);
   }
 }

@@ -30,7 +30,7 @@ struct PlaceBlock {
   std::array<float, kPlaces> z;
   std::array<float, kPlaces> radius;
 
-  // What is left of the last block are its last place again.
+  // The last block is filled up with its last place.
   PlaceBlock(const PointView& at, const std::vector<float>& radii, std::size_t first) {
     for (std::size_t l = 0; l < kPlaces; ++l) {
       const std::size_t i = std::min(first + l, at.size - 1);
@@ -176,10 +176,10 @@ float WindingNumber::evaluate(const float* x, float radius) const {
 
 std::vector<float> WindingNumber::evaluate(const PointView& at, const std::vector<float>& radii,
                                            int threads) const {
-  static const EvaluateBlock kernel = chooseKernel();
+  const EvaluateBlock kernel = chooseKernel();
   const WindingTree tree{nodes_.data(), static_cast<std::uint32_t>(nodes_.size()), points_,
                          dipoles_, rows_};
-  // Nanoseconds: some nodes of each level of the tree are opened.
+  // Nanoseconds of a block and a level of the tree, of which some nodes are opened.
   constexpr double kLevel = 8000.0;
   const double time = kLevel * std::log2(static_cast<double>(nodes_.size()) + 2.0);
   std::vector<float> out(at.size);

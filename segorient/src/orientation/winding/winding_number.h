@@ -40,8 +40,8 @@ class WindingNumber {
   /// \param x where \param radius below which points are smoothed, usually the spacing
   float evaluate(const float* x, float radius) const;
 
-  /// The same numbers for many places, several at a time. \param at near ones side by side
-  /// \param radii of each, as above \return one of each
+  /// The same numbers for many places, several at a time, to the last bit.
+  /// \param at near ones side by side \param radii one of each, numbers \return one of each
   std::vector<float> evaluate(const PointView& at, const std::vector<float>& radii,
                               int threads) const;
 
