@@ -130,10 +130,8 @@ void weigh(std::size_t pieces, Mixture& mixture) {
   std::vector<float> inverse(mixture.length);
   std::vector<float> sum = mixed(mixture);
   for (int round = 0; round < kRounds; ++round) {
-    if (round == kRoundsBeforePruning) {
-      prune(mixture);
-      sum = mixed(mixture);
-    }
+    // The sum still has what is dropped, which is as good as nothing.
+    if (round == kRoundsBeforePruning) prune(mixture);
     std::transform(sum.begin(), sum.end(), inverse.begin(), [](float m) { return 1.F / m; });
     std::fill(sum.begin(), sum.end(), kNothing);
     for (std::size_t j = 0; j < weights.size(); ++j) {
