@@ -5,8 +5,6 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <array>
-#include <cmath>
 #include <cstdlib>
 #include <numeric>
 #include <random>
@@ -14,6 +12,7 @@
 
 #include "io/readers.h"
 #include "run_program.h"
+#include "sensor_scans.h"
 
 namespace segorient::test {
 namespace {
@@ -103,36 +102,20 @@ std::string noisyFandisk(double deviation) {
   std::ostringstream text;
   text.precision(9);
   for (std::size_t row = 0; row < cloud.size; ++row) {
-    const auto p = cloud.position(row);
-    for (std::size_t a = 0; a < 3; ++a) text << static_cast<double>(p[a]) + noise(random) << ' ';
+    for (const double v : cloud.position(row)) text << v + noise(random) << ' ';
     text << '\n';
   }
   return text.str();
 }
 
-// The walls of a room as two scanners in it see them, whose rays are equal steps of two angles.
+// As two scanners see it.
 std::string scannedRoom() {
-  constexpr double kPi = 3.14159265358979323846;
-  constexpr int kSteps = 150;
-  const double room[3] = {6.0, 4.0, 2.5};
   std::ostringstream text;
   text.precision(9);
-  for (const std::array<double, 3>& from : {std::array{1.1, 1.0, 1.2}, std::array{4.6, 2.9, 1.5}}) {
-    for (int i = 0; i < kSteps; ++i) {
-      for (int j = 1; j < kSteps / 2; ++j) {
-        const double azimuth = 2.0 * kPi * i / kSteps;
-        const double polar = 2.0 * kPi * j / kSteps;
-        const double ray[3] = {std::cos(azimuth) * std::sin(polar),
-                               std::sin(azimuth) * std::sin(polar), std::cos(polar)};
-        double length = 100.0;
-        for (std::size_t a = 0; a < 3; ++a) {
-          if (ray[a] == 0.0) continue;
-          length = std::min(length, ((ray[a] > 0.0 ? room[a] : 0.0) - from[a]) / ray[a]);
-        }
-        for (std::size_t a = 0; a < 3; ++a) text << from[a] + length * ray[a] << ' ';
-        text << '\n';
-      }
-    }
+  for (const Vector& station : {Vector{1.1, 1.0, 1.2}, Vector{4.0, 2.9, 1.5}}) {
+    Scan scan = scanFrom(station, 2.0);
+    const std::vector<float>& rows = scan.rows();
+    for (std::size_t i = 0; i < rows.size(); ++i) text << rows[i] << (i % 3 == 2 ? '\n' : ' ');
   }
   return text.str();
 }

@@ -11,8 +11,8 @@
 #include <vector>
 
 #include "common/compiler.h"
-#include "common/instruction_set.h"
 #include "common/vectors.h"
+#include "common/widest.h"
 
 namespace segorient::detail {
 namespace {
@@ -76,30 +76,13 @@ Plane GrownPlanes::at(std::size_t i, float length) const {
   return plane;
 }
 
-namespace {
-
-struct Kernels {
-  decltype(&portable::fitGrown) fit_grown;
-  decltype(&portable::mediansOf) medians_of;
-};
-
-Kernels chooseKernels() {
-#if SEGORIENT_X86
-  if (instructionSet() >= InstructionSet::Avx512) return {&avx512::fitGrown, &avx512::mediansOf};
-  if (instructionSet() >= InstructionSet::Avx2) return {&avx2::fitGrown, &avx2::mediansOf};
-#endif
-  return {&portable::fitGrown, &portable::mediansOf};
-}
-
-}  // namespace
-
 void fitGrownPlanes(const LocalFitJob& job, const int* sizes, std::size_t count, std::size_t begin,
                     std::size_t end, GrownPlanes* planes) {
-  chooseKernels().fit_grown(job, sizes, count, begin, end, planes);
+  SEGORIENT_WIDEST(fitGrown)(job, sizes, count, begin, end, planes);
 }
 
 void findMedians(const float* values, std::size_t count, float* medians) {
-  chooseKernels().medians_of(values, count, medians);
+  SEGORIENT_WIDEST(mediansOf)(values, count, medians);
 }
 
 }  // namespace segorient::detail

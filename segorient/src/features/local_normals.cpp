@@ -9,9 +9,9 @@
 #include <vector>
 
 #include "common/compiler.h"
-#include "common/instruction_set.h"
 #include "common/parallel_for.h"
 #include "common/vectors.h"
+#include "common/widest.h"
 #include "features/local_fit_job.h"
 #include "features/surface_fit.h"
 
@@ -21,21 +21,6 @@ namespace detail {
 #define SEGORIENT_KERNELS "features/local_kernels.inl"
 #include "common/each_width.inl"
 #undef SEGORIENT_KERNELS
-
-namespace {
-
-using Kernel = void (*)(const LocalFitJob&, std::size_t, std::size_t);
-
-Kernel chooseKernel(bool portable_only) {
-#if SEGORIENT_X86
-  if (!portable_only && instructionSet() >= InstructionSet::Avx512) return &avx512::estimateRows;
-  if (!portable_only && instructionSet() >= InstructionSet::Avx2) return &avx2::estimateRows;
-#endif
-  static_cast<void>(portable_only);
-  return &portable::estimateRows;
-}
-
-}  // namespace
 
 FourFloats::FourFloats(const PointView& points) : data_(points.data) {
   if (points.stride == 4) return;
@@ -80,7 +65,7 @@ void estimateNormals(const PointView& queries, const PointView& points,
   job.residuals = residuals;
 
   constexpr double kPointTime = 300.0;  // ns
-  const Kernel kernel = chooseKernel(options.portable);
+  const auto kernel = options.portable ? &portable::estimateRows : SEGORIENT_WIDEST(estimateRows);
   const std::size_t count = rows ? rows->size() : neighborhoods.size();
   constexpr std::size_t kBlock = 1024;
   const std::size_t blocks = (count + kBlock - 1) / kBlock;

@@ -7,8 +7,8 @@
 #include <cstdint>
 
 #include "common/compiler.h"
-#include "common/instruction_set.h"
 #include "common/vectors.h"
+#include "common/widest.h"
 #include "orientation/sensors/simplex.h"
 
 namespace segorient::detail {
@@ -55,28 +55,14 @@ namespace {
 
 struct Kernels {
   using Law = void (*)(const Sight&, float*);
-  Law solid_angle = &portable::leave<SamplingLaw::SOLID_ANGLE>;
-  Law angle_grid = &portable::leave<SamplingLaw::ANGLE_GRID>;
-  Law pinhole = &portable::leave<SamplingLaw::PINHOLE>;
-  void (*logs)(float*, std::size_t) = &portable::logs;
+  Law solid_angle = SEGORIENT_WIDEST(leave<SamplingLaw::SOLID_ANGLE>);
+  Law angle_grid = SEGORIENT_WIDEST(leave<SamplingLaw::ANGLE_GRID>);
+  Law pinhole = SEGORIENT_WIDEST(leave<SamplingLaw::PINHOLE>);
+  void (*logs)(float*, std::size_t) = SEGORIENT_WIDEST(logs);
 };
 
-Kernels chooseKernels() {
-#if SEGORIENT_X86
-  if (instructionSet() >= InstructionSet::Avx512) {
-    return {&avx512::leave<SamplingLaw::SOLID_ANGLE>, &avx512::leave<SamplingLaw::ANGLE_GRID>,
-            &avx512::leave<SamplingLaw::PINHOLE>, &avx512::logs};
-  }
-  if (instructionSet() >= InstructionSet::Avx2) {
-    return {&avx2::leave<SamplingLaw::SOLID_ANGLE>, &avx2::leave<SamplingLaw::ANGLE_GRID>,
-            &avx2::leave<SamplingLaw::PINHOLE>, &avx2::logs};
-  }
-#endif
-  return {};
-}
-
 const Kernels& kernels() {
-  static const Kernels chosen = chooseKernels();
+  static const Kernels chosen;
   return chosen;
 }
 

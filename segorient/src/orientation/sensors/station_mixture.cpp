@@ -10,9 +10,9 @@
 #include <numeric>
 
 #include "common/compiler.h"
-#include "common/instruction_set.h"
 #include "common/parallel_for.h"
 #include "common/vectors.h"
+#include "common/widest.h"
 #include "orientation/sensors/station_search.h"
 
 namespace segorient::detail {
@@ -39,20 +39,13 @@ constexpr std::size_t kSums = 16;
 namespace {
 
 struct Kernels {
-  void (*add)(const float*, float, std::size_t, float*) = &portable::addRow;
-  void (*multiply)(const float*, const float*, std::size_t, float*) = &portable::multiplyRows;
+  void (*add)(const float*, float, std::size_t, float*) = SEGORIENT_WIDEST(addRow);
+  void (*multiply)(const float*, const float*, std::size_t,
+                   float*) = SEGORIENT_WIDEST(multiplyRows);
 };
 
-Kernels chooseKernels() {
-#if SEGORIENT_X86
-  if (instructionSet() >= InstructionSet::Avx512) return {&avx512::addRow, &avx512::multiplyRows};
-  if (instructionSet() >= InstructionSet::Avx2) return {&avx2::addRow, &avx2::multiplyRows};
-#endif
-  return {};
-}
-
 const Kernels& kernels() {
-  static const Kernels chosen = chooseKernels();
+  static const Kernels chosen;
   return chosen;
 }
 

@@ -9,8 +9,8 @@
 #include <cstdint>
 
 #include "common/compiler.h"
-#include "common/instruction_set.h"
 #include "common/vectors.h"
+#include "common/widest.h"
 
 namespace segorient {
 namespace {
@@ -44,25 +44,13 @@ namespace {
 
 struct Kernels {
   using Add = void (*)(const Dipoles&, const float*, float, Sums&);
-  Add numbers = &portable::addNumbers;
-  Add descents = &portable::addDescents;
-  Add pulls = &portable::addPulls;
+  Add numbers = SEGORIENT_WIDEST(addNumbers);
+  Add descents = SEGORIENT_WIDEST(addDescents);
+  Add pulls = SEGORIENT_WIDEST(addPulls);
 };
 
-Kernels chooseKernels() {
-#if SEGORIENT_X86
-  if (instructionSet() >= InstructionSet::Avx512) {
-    return {&avx512::addNumbers, &avx512::addDescents, &avx512::addPulls};
-  }
-  if (instructionSet() >= InstructionSet::Avx2) {
-    return {&avx2::addNumbers, &avx2::addDescents, &avx2::addPulls};
-  }
-#endif
-  return {};
-}
-
 const Kernels& kernels() {
-  static const Kernels chosen = chooseKernels();
+  static const Kernels chosen;
   return chosen;
 }
 

@@ -9,9 +9,9 @@
 #include <cstdint>
 
 #include "common/compiler.h"
-#include "common/instruction_set.h"
 #include "common/parallel_for.h"
 #include "common/vectors.h"
+#include "common/widest.h"
 
 namespace segorient {
 namespace {
@@ -55,20 +55,6 @@ struct WindingTree {
 #define SEGORIENT_KERNELS "orientation/winding/winding_lanes.inl"
 #include "common/each_width.inl"
 #undef SEGORIENT_KERNELS
-
-namespace {
-
-using EvaluateBlock = void (*)(const WindingTree&, const PlaceBlock&, float*);
-
-EvaluateBlock chooseKernel() {
-#if SEGORIENT_X86
-  if (instructionSet() >= InstructionSet::Avx512) return &avx512::evaluateBlock;
-  if (instructionSet() >= InstructionSet::Avx2) return &avx2::evaluateBlock;
-#endif
-  return &portable::evaluateBlock;
-}
-
-}  // namespace
 
 void WindingNumber::build(const PointView& points, const std::vector<float>& dipoles,
                           const std::vector<std::uint32_t>& rows) {
@@ -176,7 +162,7 @@ float WindingNumber::evaluate(const float* x, float radius) const {
 
 std::vector<float> WindingNumber::evaluate(const PointView& at, const std::vector<float>& radii,
                                            int threads) const {
-  const EvaluateBlock kernel = chooseKernel();
+  const auto kernel = SEGORIENT_WIDEST(evaluateBlock);
   const WindingTree tree{nodes_.data(), static_cast<std::uint32_t>(nodes_.size()), points_,
                          dipoles_, rows_};
   // Nanoseconds of a block and a level of the tree, of which some nodes are opened.
