@@ -168,8 +168,8 @@ inline void storeQuad(float* p, Quad q) {
   copyBytes(p, &q, sizeof(q));
 }
 
-/// x, y, z of one point a lane; p[l] points to 4 floats.
-inline Lanes3 loadPoints(const float* const* p) {
+/// x, y, z of one point a lane; p[l] points to 4 floats. \param fourth gets the last of these
+inline Lanes3 loadRows(const float* const* p, Lanes& fourth) {
 #if SEGORIENT_LANES == 16
   const auto four = [p](int first) SEGORIENT_INLINED {
     const __m512 one = _mm512_castps128_ps512(_mm_loadu_ps(p[first]));
@@ -185,6 +185,7 @@ inline Lanes3 loadPoints(const float* const* p) {
   const __m512 cd = _mm512_maskz_unpacklo_ps(0xffff, c, d);
   const __m512 ab_z = _mm512_maskz_unpackhi_ps(0xffff, a, b);
   const __m512 cd_z = _mm512_maskz_unpackhi_ps(0xffff, c, d);
+  fourth = SEGORIENT_BITS_AS(Lanes, _mm512_maskz_shuffle_ps(0xffff, ab_z, cd_z, 0xee));
   return {SEGORIENT_BITS_AS(Lanes, _mm512_maskz_shuffle_ps(0xffff, ab, cd, 0x44)),
           SEGORIENT_BITS_AS(Lanes, _mm512_maskz_shuffle_ps(0xffff, ab, cd, 0xee)),
           SEGORIENT_BITS_AS(Lanes, _mm512_maskz_shuffle_ps(0xffff, ab_z, cd_z, 0x44))};
@@ -202,6 +203,7 @@ inline Lanes3 loadPoints(const float* const* p) {
   const Pair cd = SEGORIENT_SHUFFLED(c, d, 0, 8, 1, 9, 4, 12, 5, 13);
   const Pair ab_z = SEGORIENT_SHUFFLED(a, b, 2, 10, 3, 11, 6, 14, 7, 15);
   const Pair cd_z = SEGORIENT_SHUFFLED(c, d, 2, 10, 3, 11, 6, 14, 7, 15);
+  fourth = SEGORIENT_SHUFFLED(ab_z, cd_z, 2, 3, 10, 11, 6, 7, 14, 15);
   return {SEGORIENT_SHUFFLED(ab, cd, 0, 1, 8, 9, 4, 5, 12, 13),
           SEGORIENT_SHUFFLED(ab, cd, 2, 3, 10, 11, 6, 7, 14, 15),
           SEGORIENT_SHUFFLED(ab_z, cd_z, 0, 1, 8, 9, 4, 5, 12, 13)};
@@ -214,12 +216,17 @@ inline Lanes3 loadPoints(const float* const* p) {
   const Quad cd = SEGORIENT_SHUFFLED(c, d, 0, 4, 1, 5);
   const Quad ab_z = SEGORIENT_SHUFFLED(a, b, 2, 6, 3, 7);
   const Quad cd_z = SEGORIENT_SHUFFLED(c, d, 2, 6, 3, 7);
+  fourth = SEGORIENT_SHUFFLED(ab_z, cd_z, 2, 3, 6, 7);
   return {SEGORIENT_SHUFFLED(ab, cd, 0, 1, 4, 5), SEGORIENT_SHUFFLED(ab, cd, 2, 3, 6, 7),
           SEGORIENT_SHUFFLED(ab_z, cd_z, 0, 1, 4, 5)};
 #endif
 }
+inline Lanes3 loadPoints(const float* const* p) {
+  Lanes unused;
+  return loadRows(p, unused);
+}
 
-/// The inverse of loadPoints(), with a fourth value a point.
+/// The inverse of loadRows().
 inline void storePoints(float* const* p, const Lanes3& a, Lanes fourth) {
 #if SEGORIENT_LANES == 16
   const auto x = reinterpret_cast<__m512>(a.x);

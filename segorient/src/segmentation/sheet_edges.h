@@ -7,7 +7,9 @@
 #include <segorient/common/point_view.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
@@ -61,6 +63,9 @@ class SheetEdges {
   float offset() const { return offset_; }  ///< off a tangent plane at most, in spacings
 
  private:
+  /// join() with four others: bit i for the i-th.
+  unsigned int joinFour(std::size_t p, const std::array<std::size_t, 4>& others) const;
+
   PointView points_;
   SheetField field_;
   float offset_;
