@@ -101,6 +101,20 @@ struct PairLimits {
   }
 };
 
+/// Which of some points, 32 at most, have a label: bit j for the j-th. Which of them have is
+/// nothing that a processor could guess: no branches.
+inline std::uint32_t labelledAmong(const std::int32_t* labels, const pcl::index_t* points,
+                                   int count, std::int32_t label) {
+  std::uint32_t found = 0;
+  const auto has = [&](int j) { return static_cast<std::uint32_t>(labels[points[j]] == label); };
+  int j = 0;
+  for (; j + 4 <= count; j += 4) {
+    found |= (has(j) | has(j + 1) << 1 | has(j + 2) << 2 | has(j + 3) << 3) << j;
+  }
+  for (; j < count; ++j) found |= has(j) << j;
+  return found;
+}
+
 /// The state that growing and the clean-up passes work on.
 struct GrowthState {
   const Neighborhoods* neighborhoods = nullptr;
@@ -154,15 +168,7 @@ struct GrowthState {
   }
   /// Which of p's neighbours, 32 at most, a segment has: bit j for the j-th, itself not counted.
   std::uint32_t membersAmong(std::size_t p, std::int32_t label) const {
-    const pcl::index_t* row = neighborhoods->indices(p) + 1;
-    const int last = rowSize(p) - 1;
-    // Which of them are in the segment is nothing that a processor could guess: no branches.
-    std::uint32_t members = 0;
-    for (int j = 0; j < last; ++j) {
-      const bool member = labels[static_cast<std::size_t>(row[j])] == label;
-      members |= static_cast<std::uint32_t>(member) << j;
-    }
-    return members;
+    return labelledAmong(labels.data(), neighborhoods->indices(p) + 1, rowSize(p) - 1, label);
   }
   /// Asks the memory for a row of the table that is looked at soon.
   void fetchRow(std::size_t row) const { prefetch(neighborhoods->indices(row)); }

@@ -127,7 +127,9 @@ class Grower {
     std::uint8_t border = 0;
     for (int first = 1; first < count; first += kMaskBits) {
       const int last = std::min(count, first + kMaskBits);
-      const std::uint32_t others = othersAmong(row + first, last - first);
+      const std::uint32_t here = ~0U >> (kMaskBits - (last - first));
+      const std::uint32_t others =
+          here & ~labelledAmong(labels_, row + first, last - first, label_);
       std::uint32_t open = others & edges_.among(p);
       if (open != others) border = 1;
       for (; open != 0; open &= open - 1) {
@@ -137,21 +139,6 @@ class Grower {
       }
     }
     on_border_[p] = border;
-  }
-
-  // Bit j is set if neighbour j is not in this segment. Nearly all are, and which are not is
-  // nothing that a processor could guess: no branches.
-  std::uint32_t othersAmong(const pcl::index_t* neighbors, int count) const {
-    std::uint32_t others = 0;
-    const auto other = [&](int j) {
-      return static_cast<std::uint32_t>(labels_[neighbors[j]] != label_);
-    };
-    int j = 0;
-    for (; j + 4 <= count; j += 4) {
-      others |= (other(j) | other(j + 1) << 1 | other(j + 2) << 2 | other(j + 3) << 3) << j;
-    }
-    for (; j < count; ++j) others |= other(j) << j;
-    return others;
   }
 
   // Without signs the angle to the neighbour is |cos|; the sign that it gives must also bring the

@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <iterator>
 #include <utility>
 
 #include "common/parallel_for.h"
@@ -31,10 +32,10 @@ struct MeanBlock {
   static constexpr std::size_t kPoints = 16;
 
   const pcl::index_t* rows[kPoints];
-  const float* own[kPoints];  // the points themselves
-  float counts[kPoints];      // of neighbours; 0 behind the last point
-  float per_h[kPoints];       // of a spacing
-  std::size_t most = 0;       // neighbours
+  const float* own[kPoints];        // the points themselves
+  std::size_t counts[kPoints];      // of neighbours
+  std::size_t least = 0, most = 0;  // of these
+  float per_h[kPoints];             // of a spacing
   float mean_x[kPoints], mean_y[kPoints], mean_z[kPoints], total[kPoints];
 };
 
@@ -52,19 +53,19 @@ struct Round {
   float half_fit;
   FindMeans findMeans;
 
-  // Of some points, MeanBlock::kPoints at most.
+  // Of some points, MeanBlock::kPoints at most; the first fills the lanes that are left.
   void run(const std::size_t* points, std::size_t count, float* normals, float* confidences) const {
     MeanBlock block;
     for (std::size_t l = 0; l < MeanBlock::kPoints; ++l) {
       const std::size_t p = points[l < count ? l : 0];
-      const int neighbors = nb.count(p);
       constexpr float kMost = 1e36F;  // finite, and so is what distances in the cloud's unit give
       block.rows[l] = nb.indices(p);
       block.own[l] = around.xyz + 4 * p;
-      block.counts[l] = l < count ? static_cast<float>(neighbors) : 0.F;
+      block.counts[l] = static_cast<std::size_t>(nb.count(p));
       block.per_h[l] = spacing[p] > 0.F ? std::min(1.F / spacing[p], kMost) : 0.F;
-      block.most = std::max(block.most, static_cast<std::size_t>(neighbors));
     }
+    block.least = *std::min_element(std::begin(block.counts), std::end(block.counts));
+    block.most = *std::max_element(std::begin(block.counts), std::end(block.counts));
     findMeans(around, block);
     for (std::size_t l = 0; l < count; ++l) {
       const std::array<float, 3> mean{block.mean_x[l], block.mean_y[l], block.mean_z[l]};
