@@ -98,24 +98,22 @@ class Columns {
 std::vector<Columns> columnsOver(const SheetSigns& sheets, const std::vector<bool>& asked,
                                  std::size_t most) {
   std::vector<std::size_t> sizes(asked.size(), 0);
-  const auto forEachPoint = [&](const auto& act) {
-    for (std::size_t i = 0; i < sheets.points.size; ++i) {
-      const std::int32_t c = sheets.componentOf(i);
-      if (c >= 0 && asked[at(c)]) act(at(c), static_cast<std::uint32_t>(i));
-    }
-  };
-  forEachPoint([&](std::size_t c, std::uint32_t) { ++sizes[c]; });
-  std::vector<std::size_t> seen;
-  const auto forEachOfSample = [&](const auto& act) {
-    seen.assign(asked.size(), 0);
-    forEachPoint([&](std::size_t c, std::uint32_t i) {
-      if (seen[c]++ % std::max<std::size_t>(1, sizes[c] / most) == 0) act(c, i);
-    });
-  };
+  for (std::size_t i = 0; i < sheets.component_of.size(); ++i) {
+    sizes[at(sheets.component_of[i])] += sheets.segmentation.segments[i].size;
+  }
   std::vector<Columns> out(asked.size());
-  forEachOfSample([&](std::size_t c, std::uint32_t i) { out[c].include(sheets.points[i]); });
+  std::vector<std::size_t> seen(asked.size(), 0);
+  std::vector<std::uint32_t> sample;
+  for (std::size_t i = 0; i < sheets.points.size; ++i) {
+    const std::int32_t component = sheets.componentOf(i);
+    if (component < 0 || !asked[at(component)]) continue;
+    const std::size_t c = at(component);
+    if (seen[c]++ % std::max<std::size_t>(1, sizes[c] / most) != 0) continue;
+    sample.push_back(static_cast<std::uint32_t>(i));
+    out[c].include(sheets.points[i]);
+  }
   for (Columns& columns : out) columns.divide();
-  forEachOfSample([&](std::size_t c, std::uint32_t i) { out[c].add(sheets.points, i); });
+  for (const std::uint32_t i : sample) out[at(sheets.componentOf(i))].add(sheets.points, i);
   return out;
 }
 
