@@ -6,6 +6,7 @@
 #include "common/lanes.inl"
 
 #include "features/plane_lanes.inl"
+#include "features/sorting_lanes.inl"
 
 // Of (lambda1 - lambda0) (lambda2 - lambda0), of a trace of 1: float leaves errors of 1e-4 rad
 // then.
@@ -96,18 +97,6 @@ void fitGrown(const LocalFitJob& job, const int* sizes, std::size_t count, std::
   }
 }
 
-inline void exchange(Lanes& less, Lanes& more) {
-  const Lanes a = less;
-  less = smaller(a, more);
-  more = larger(a, more);
-}
-
-/// Whatever is compared is known when this is compiled, so that all values stay in registers.
-template <std::size_t... kPair>
-SEGORIENT_INLINED inline void sortLanes(Lanes* values, std::index_sequence<kPair...> /*pairs*/) {
-  (exchange(values[kSortingPairs[kPair].first], values[kSortingPairs[kPair].second]), ...);
-}
-
 /// See findMedians().
 void mediansOf(const float* values, std::size_t count, float* medians) {
   for (std::size_t i = 0; i < GrownPlanes::kRows; i += kWidth) {
@@ -121,7 +110,7 @@ void mediansOf(const float* values, std::size_t count, float* medians) {
       present -= v == v;
       sorted[j] = select(v == v, v, sorted[j]);
     }
-    sortLanes(sorted, std::make_index_sequence<kSortingPairs.size()>());
+    sortLanes<kMostMedian>(sorted);
     const Mask half = present / 2;
     Lanes median = all(std::numeric_limits<float>::quiet_NaN());
     for (std::size_t j = 0; j <= kMostMedian / 2; ++j) {

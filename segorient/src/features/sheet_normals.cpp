@@ -139,11 +139,15 @@ SheetNormals estimateSheetNormals(const PointView& points, const Neighborhoods& 
         job.rows = rows.data();
         fitGrownPlanes(job, kSheetScales.data(), kSheetScales.size(), 0, rows.size(),
                        planes->data());
+        std::vector<PointFit> fits;
+        fits.reserve(rows.size());
         for (std::size_t r = 0; r < rows.size(); ++r) {
-          const auto i = static_cast<std::size_t>(rows[r]);
+          const std::size_t i = job.row(r);
           Neighborhood of(points, nb, i, out.spacing[i], *planes, r);
-          store(fitPoint(of, smallest, noise, options), i, out, lopsided);
+          fits.push_back(fitPoint(of, smallest, noise, options));
         }
+        if (options.split_walls) keepOwnWalls(job, out.spacing.data(), noise.thin, fits);
+        for (std::size_t r = 0; r < rows.size(); ++r) store(fits[r], job.row(r), out, lopsided);
       });
   out.residual = options.known ? options.known->residual : medianResidual(out);
   out.traits.residual = out.residual;

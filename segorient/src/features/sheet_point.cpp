@@ -3,7 +3,11 @@
 #include "features/sheet_point.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstdint>
+#include <iterator>
+#include <utility>
 
 namespace segorient::detail {
 namespace {
@@ -64,13 +68,72 @@ PointFit fitPoint(Neighborhood& of, std::size_t smallest, const NoiseLevel& nois
     const Plane dominant = fitDominant(of.offsets(), fit.plane, 0.1F + 2.F * noise.fine);
     if (dominant.valid) fit.plane = dominant;
   }
-  if (options.split_walls) {
-    const OwnWall own =
-        fitOwnWall(of.offsets(), fit.plane, noise.thin ? kThinWallsApart : kWallsApart);
+  return fit;
+}
+
+namespace {
+
+// Points wait until there are enough of them to look for their walls at once.
+class WallSearch {
+ public:
+  WallSearch(const LocalFitJob& job, const float* spacing, bool thin)
+      : job_(job), spacing_(spacing), most_apart_(thin ? kThinWallsApart : kWallsApart) {
+    look_.xyz = job.xyz;
+    look_.most_apart = most_apart_;
+  }
+
+  void add(std::size_t i, PointFit& fit) {
+    if (!fit.plane.valid || fit.all_on_it) return;
+    // Those with few neighbours are not worth registers.
+    if (job_.neighborhoods->count(i) < static_cast<int>(kWallEntries) || !(spacing_[i] > 0.F)) {
+      keepOwnWall(i, fit);
+      return;
+    }
+    look_.own[count_] = job_.xyz + 4 * i;
+    look_.rows[count_] = job_.neighborhoods->indices(i);
+    look_.normal_x[count_] = fit.plane.normal.x();
+    look_.normal_y[count_] = fit.plane.normal.y();
+    look_.normal_z[count_] = fit.plane.normal.z();
+    look_.per_spacing[count_] = 1.F / spacing_[i];
+    waiting_[count_++] = {i, &fit};
+    if (count_ == WallRows::kRows) finish();
+  }
+
+  void finish() {
+    if (count_ == 0) return;
+    // Lanes that are left look at the first point.
+    std::fill(look_.own + count_, std::end(look_.own), look_.own[0]);
+    std::fill(look_.rows + count_, std::end(look_.rows), look_.rows[0]);
+    const std::uint32_t found = seesTwoWalls(look_);
+    for (std::size_t l = 0; l < count_; ++l) {
+      if ((found >> l & 1U) != 0) keepOwnWall(waiting_[l].first, *waiting_[l].second);
+    }
+    count_ = 0;
+  }
+
+ private:
+  void keepOwnWall(std::size_t i, PointFit& fit) const {
+    const Offsets offsets = gatherOffsets(job_.queries, *job_.neighborhoods, i, spacing_[i]);
+    const OwnWall own = fitOwnWall(offsets, fit.plane, most_apart_);
     fit.plane = own.plane;
     fit.split = own.split;
   }
-  return fit;
+
+  const LocalFitJob& job_;
+  const float* spacing_;
+  float most_apart_;
+  WallRows look_{};
+  std::array<std::pair<std::size_t, PointFit*>, WallRows::kRows> waiting_{};
+  std::size_t count_ = 0;
+};
+
+}  // namespace
+
+void keepOwnWalls(const LocalFitJob& job, const float* spacing, bool thin,
+                  std::vector<PointFit>& fits) {
+  WallSearch search(job, spacing, thin);
+  for (std::size_t r = 0; r < fits.size(); ++r) search.add(job.row(r), fits[r]);
+  search.finish();
 }
 
 }  // namespace segorient::detail

@@ -8,8 +8,10 @@
 #include <array>
 #include <cstddef>
 #include <optional>
+#include <vector>
 
 #include "features/grown_planes.h"
+#include "features/local_fit_job.h"
 #include "features/sheet_fit.h"
 #include "features/sheet_normals.h"
 #include "features/sheet_walls.h"
@@ -48,9 +50,14 @@ class Neighborhood {
   std::optional<Offsets> offsets_;
 };
 
-/// See estimateSheetNormals().
+/// See estimateSheetNormals(); whatever walls there are.
 /// \param smallest number of the smallest of kSheetScales that noise leaves
 PointFit fitPoint(Neighborhood& of, std::size_t smallest, const NoiseLevel& noise,
                   const SheetNormalOptions& options);
+
+/// Points that see two walls keep the plane of their own.
+/// \param job its rows are those of `fits` \param spacing of all points \param thin see NoiseLevel
+void keepOwnWalls(const LocalFitJob& job, const float* spacing, bool thin,
+                  std::vector<PointFit>& fits);
 
 }  // namespace segorient::detail

@@ -6,13 +6,25 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <utility>
+
+#include "common/vectors.h"
+#include "common/widest.h"
+#include "features/sorting_pairs.h"
 
 namespace segorient::detail {
 namespace {
 
-// A point and all its neighbours.
-constexpr std::size_t kMost = kSheetNeighbors + 1;
-using Values = std::array<float, kMost>;
+using Values = std::array<float, kWallEntries>;
+
+// Fewer points have no plane with a residual.
+constexpr std::size_t kLeastOfWall = 4;
+// In spacings: nearer than that, offsets of neighbours do not fall into two groups.
+constexpr float kLeastApart = 0.35F;
+// Two classes, each thin, well apart, with nothing in between, are two walls: of the variance that
+// much at most is left within them, and of the distance of their means that much at least is empty.
+constexpr float kWithin = 0.2F;
+constexpr float kEmpty = 0.15F;
 
 // Each value's place is the number of those before it: a thousand comparisons without a branch take
 // a quarter of the time of std::sort, and this is asked of every point.
@@ -27,15 +39,20 @@ Values sorted(const Values& t, std::size_t n) {
   return out;
 }
 
+#define SEGORIENT_KERNELS "features/wall_lanes.inl"
+#include "common/each_width.inl"
+#undef SEGORIENT_KERNELS
+
 }  // namespace
 
+std::uint32_t seesTwoWalls(const WallRows& of) {
+  return SEGORIENT_WIDEST(findTwoWalls)(of);
+}
+
 WallSplit splitWalls(const Offsets& o, const Eigen::Vector3f& normal, float most_apart) {
-  constexpr std::size_t kLeast = 4;  // fewer points have no plane with a residual
   const auto n = static_cast<std::size_t>(o.n) + 1;
   WallSplit split;
-  // In spacings: nearer than that, offsets of neighbours do not fall into two groups.
-  constexpr float kLeastApart = 0.35F;
-  if (n < 2 * kLeast) return split;
+  if (n < 2 * kLeastOfWall) return split;
   Values offsets{};
   float lowest = 0.F;
   float highest = 0.F;
@@ -58,24 +75,23 @@ WallSplit splitWalls(const Offsets& o, const Eigen::Vector3f& normal, float most
   const float total = squares - sum * sum / count;
   if (!(total > 0.F)) return split;
 
-  const std::size_t last = n - kLeast;
+  const std::size_t last = n - kLeastOfWall;
   Values gap;
   Values value;
-  for (std::size_t j = kLeast - 1; j < last; ++j) {
+  for (std::size_t j = kLeastOfWall - 1; j < last; ++j) {
     const auto a = static_cast<float>(static_cast<int>(j) + 1);
     const float b = count - a;
     gap[j] = (sum - left[j]) / b - left[j] / a;
     value[j] = a * b / count * gap[j] * gap[j];
   }
-  const auto* best = std::max_element(&value[kLeast - 1], &value[last]);
+  const auto* best = std::max_element(&value[kLeastOfWall - 1], &value[last]);
   const auto at = static_cast<std::size_t>(best - value.data());
   const float between = *best;
   const float apart = gap[at];
   const float low = t[at];
   const float high = t[at + 1];
   if (apart > most_apart) return split;
-  // Two classes, each thin, well apart, with nothing in between: two walls.
-  if (total - between >= 0.2F * total || apart <= kLeastApart || high - low <= 0.15F * apart)
+  if (total - between >= kWithin * total || apart <= kLeastApart || high - low <= kEmpty * apart)
     return split;
   split.found = true;
   const float middle = 0.5F * (low + high);

@@ -4,6 +4,8 @@
 
 #include <Eigen/Core>
 
+#include <cstddef>
+#include <cstdint>
 #include <limits>
 
 #include "features/sheet_fit.h"
@@ -26,6 +28,23 @@ constexpr float kWallsApart = 1.25F;
 /// In thin clouds, where noise takes a point as far from its own wall: of walls farther apart, 32
 /// neighbours hardly reach the other one.
 constexpr float kThinWallsApart = 2.F;
+
+/// A point and all its neighbours.
+constexpr std::size_t kWallEntries = kSheetNeighbors + 1;
+
+/// Points of which splitWalls() is asked at once, one a lane.
+struct WallRows {
+  static constexpr std::size_t kRows = 16;
+
+  const float* xyz;                 ///< 4 floats a point
+  const float* own[kRows];          ///< the points themselves
+  const pcl::index_t* rows[kRows];  ///< kWallEntries of each
+  float normal_x[kRows], normal_y[kRows], normal_z[kRows];
+  float per_spacing[kRows];
+  float most_apart;  ///< see splitWalls()
+};
+/// \return bit i: splitWalls() finds two walls at the i-th
+std::uint32_t seesTwoWalls(const WallRows& of);
 
 /// The point's own wall.
 struct OwnWall {
