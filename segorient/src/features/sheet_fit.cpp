@@ -5,53 +5,70 @@
 #include <Eigen/Eigenvalues>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstddef>
 
+#include "common/vectors.h"
+#include "common/widest.h"
 #include "features/symmetric_eigen.h"
 
 namespace segorient::detail {
 namespace {
 
-// How much of the neighbourhood lies on the plane through the point: falls smoothly to 0 at the
-// tolerance.
-float support(const Offsets& o, const Eigen::Vector3f& n, float inverse_tolerance) {
-  const float nx = n.x() * inverse_tolerance;
-  const float ny = n.y() * inverse_tolerance;
-  const float nz = n.z() * inverse_tolerance;
-  float sum = 0.F;
-  for (std::size_t j = 0; j < kSheetNeighbors; ++j) {
-    const float t = o.x[j] * nx + o.y[j] * ny + o.z[j] * nz;
-    const float q = 1.F - t * t;
-    sum += o.weight[j] * (q > 0.F ? q : 0.F);
-  }
-  return sum;
-}
+// Nearest neighbours, two of which make a plane through the point: its own face holds several.
+constexpr int kTriples = 12;
+// Planes of these and the one to begin with, in whole registers.
+constexpr std::size_t kMostPlanes = 80;
+static_assert(kMostPlanes % 16 == 0 && kMostPlanes > kTriples * (kTriples - 1) / 2);
 
+// Planes through a point, and its neighbours.
+struct SupportedPlanes {
+  const float *offset_x, *offset_y, *offset_z, *weight;  // kSheetNeighbors
+  float inverse_tolerance;
+  float x[kMostPlanes], y[kMostPlanes], z[kMostPlanes];  // unit normals
+  std::size_t count;
+
+  void add(const Eigen::Vector3f& n) {
+    x[count] = n.x();
+    y[count] = n.y();
+    z[count] = n.z();
+    ++count;
+  }
+};
+
+#define SEGORIENT_KERNELS "features/support_lanes.inl"
+#include "common/each_width.inl"
+#undef SEGORIENT_KERNELS
+
+// The plane that most of the neighbourhood lies on: what a neighbour counts for falls smoothly to 0
+// at the tolerance.
 Eigen::Vector3f bestSupported(const Offsets& o, const Eigen::Vector3f& start, float tolerance) {
-  constexpr int kNearest = 12;         // 66 planes: the point's own face holds several of these
   constexpr float kLeastSine2 = 0.1F;  // thinner triangles say little about a plane
-  const float inverse = 1.F / tolerance;
-  Eigen::Vector3f best = start;
-  float most = support(o, start, inverse);
-  const int m = std::min(o.n, kNearest);
+  SupportedPlanes planes{};
+  planes.offset_x = o.x.data();
+  planes.offset_y = o.y.data();
+  planes.offset_z = o.z.data();
+  planes.weight = o.weight.data();
+  planes.inverse_tolerance = 1.F / tolerance;
+  planes.add(start);
+  const int m = std::min(o.n, kTriples);
   for (int a = 0; a < m; ++a) {
     const auto i = static_cast<std::size_t>(a);
     const Eigen::Vector3f da(o.x[i], o.y[i], o.z[i]);
     for (int b = a + 1; b < m; ++b) {
       const auto j = static_cast<std::size_t>(b);
       const Eigen::Vector3f db(o.x[j], o.y[j], o.z[j]);
-      Eigen::Vector3f n = da.cross(db);
+      const Eigen::Vector3f n = da.cross(db);
       const float l2 = n.squaredNorm();
-      if (l2 <= kLeastSine2 * da.squaredNorm() * db.squaredNorm()) continue;
-      n /= std::sqrt(l2);
-      const float s = support(o, n, inverse);
-      if (s > most) {
-        most = s;
-        best = n;
-      }
+      if (l2 > kLeastSine2 * da.squaredNorm() * db.squaredNorm()) planes.add(n / std::sqrt(l2));
     }
   }
-  return best;
+  std::array<float, kMostPlanes> support;
+  SEGORIENT_WIDEST(supportPlanes)(planes, support.data());
+  const auto* const best = std::max_element(support.data(), support.data() + planes.count);
+  const auto at = static_cast<std::size_t>(best - support.data());
+  return {planes.x[at], planes.y[at], planes.z[at]};
 }
 
 SymmetricMatrix3 covarianceOf(const Moments& m, double mx, double my, double mz) {
