@@ -64,7 +64,7 @@ void forEachPlace(const PointView& at, const DipoleCloud& from, const RadiusAt& 
   WindingNumber tree;
   const std::vector<std::uint32_t> all;
   const std::vector<std::uint32_t>& rows = from.rows != nullptr ? *from.rows : all;
-  tree.build(from.points, from.dipoles, rows);
+  tree.build(from.points, from.dipoles, rows, threads);
   const DipoleList points = listOf(from, rows);
   parallelFor(
       runs.size(), threads, 30000.0, [] { return DipoleList(); },

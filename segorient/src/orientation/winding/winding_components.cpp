@@ -126,7 +126,7 @@ class Solver {
     // For a WindingNumber, no rows are all points.
     if (rows_[c].empty()) return;
     WindingNumber winding;
-    winding.build(points_, dipoles_, rows_[c]);
+    winding.build(points_, dipoles_, rows_[c], threads);
     auto& reach = reach_[c];
     const float margin = boxes_[c].diagonal();
     // A ball around the box with its margin, and around a single point.

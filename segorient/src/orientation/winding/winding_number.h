@@ -34,8 +34,9 @@ class WindingNumber {
   /// \param points all points, near ones side by side (CompactCloud's order)
   /// \param dipoles 4 floats a point: area-weighted normal, area
   /// \param rows points to use, ascending; empty = all. All three must outlive this object's use
+  /// \param threads see resolveThreads()
   void build(const PointView& points, const std::vector<float>& dipoles,
-             const std::vector<std::uint32_t>& rows);
+             const std::vector<std::uint32_t>& rows, int threads = 1);
 
   /// \param x where \param radius below which points are smoothed, usually the spacing
   float evaluate(const float* x, float radius) const;
@@ -62,7 +63,20 @@ class WindingNumber {
     float low[3] = {kHuge, kHuge, kHuge};
     float high[3] = {-kHuge, -kHuge, -kHuge};
   };
-  Extent buildNode(std::uint32_t first, std::uint32_t last);
+  /// Points [first, last), and the nodes over them from that index on.
+  struct Part {
+    std::uint32_t first, last, index;
+    Extent extent;
+  };
+  static void listParts(std::uint32_t first, std::uint32_t last, std::uint32_t index,
+                        std::vector<Part>& parts);
+  /// The nodes over [first, last); what is over `most` points or less is built by bottom(), called
+  /// with these two and the index.
+  template <typename Bottom>
+  Extent buildDownTo(std::uint32_t most, std::uint32_t first, std::uint32_t last,
+                     std::uint32_t index, const Bottom& bottom);
+  Extent buildLeaf(std::uint32_t first, std::uint32_t last, std::uint32_t index);
+  void finish(std::uint32_t index, std::uint32_t end, const Extent& extent);
   Extent sumLeaf(Node& node) const;
   static Extent sumHalves(const Node& a, const Extent& in_a, const Node& b, const Extent& in_b,
                           Node& node);
