@@ -27,6 +27,28 @@ bool viewable(const CloudTable& table, const std::array<const Field*, 3>& xyz) {
          table.row_bytes % sizeof(float) == 0 && xyz[0]->offset % sizeof(float) == 0;
 }
 
+/// What there is to know before points are made floats near the origin.
+struct Survey {
+  Bounds bulk;
+  std::size_t near = 0;  ///< finite points that are no strays
+  bool has_strays = false;
+};
+
+/// \param position of each of `size` points, an array of three
+template <typename Position>
+Survey surveyOf(std::size_t size, const Position& position) {
+  Survey survey;
+  survey.bulk = bulkBounds(size, position);
+  for (std::size_t i = 0; i < size; ++i) {
+    const std::array<double, 3> p = position(i);
+    const bool finite = std::isfinite(p[0]) && std::isfinite(p[1]) && std::isfinite(p[2]);
+    const bool near = finite && !survey.bulk.isBeyondFloats(p);
+    survey.near += near ? 1 : 0;
+    survey.has_strays = survey.has_strays || (finite && !near);
+  }
+  return survey;
+}
+
 }  // namespace
 
 std::string pclName(std::string name) {
@@ -144,28 +166,26 @@ void CloudTable::makeReal(const std::vector<std::string>& names) {
 
 LocalPoints::LocalPoints(const CloudTable& table) {
   const auto xyz = table.xyz();
-  const auto position = [&](std::size_t i) { return table.triple(xyz, i); };
-  const Bounds bulk = bulkBounds(table.size, position);
+  const bool in_place = table.size > 0 && viewable(table, xyz);
+  if (in_place) {
+    view_.data = reinterpret_cast<const float*>(table.at(*xyz[0], 0));
+    view_.stride = table.row_bytes / sizeof(float);
+    view_.size = table.size;
+  }
+  // Reading floats where they are takes a fraction of the time.
+  const Survey survey =
+      in_place ? surveyOf(table.size, [this](std::size_t i) { return inDouble(view_[i]); })
+               : surveyOf(table.size, [&](std::size_t i) { return table.triple(xyz, i); });
+  const Bounds& bulk = survey.bulk;
   extent_ = bulk.extent();
   reach_ = bulk.reach();
+  finite_ = survey.near;
   const bool move = bulk.isFar();
   if (move) origin_ = bulk.middle();
-  bool has_strays = false;
-  for (std::size_t i = 0; i < table.size; ++i) {
-    const auto p = position(i);
-    const bool finite = std::isfinite(p[0]) && std::isfinite(p[1]) && std::isfinite(p[2]);
-    const bool near = finite && !bulk.isBeyondFloats(p);
-    finite_ += near ? 1 : 0;
-    has_strays = has_strays || (finite && !near);
-  }
+  if (in_place && !move && !survey.has_strays) return;
 
   view_.size = table.size;
   if (table.size == 0) return;
-  if (!move && !has_strays && viewable(table, xyz)) {
-    view_.data = reinterpret_cast<const float*>(table.at(*xyz[0], 0));
-    view_.stride = table.row_bytes / sizeof(float);
-    return;
-  }
   copy_.resize(3 * table.size);
   for (std::size_t i = 0; i < table.size; ++i) {
     const auto p = table.triple(xyz, i);

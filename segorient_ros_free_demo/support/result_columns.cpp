@@ -21,11 +21,13 @@ struct SegmentColumns {
     colors.reserve(size);
     labels.reserve(size);
     kinds.reserve(size);
+    std::vector<std::uint32_t> color_of(segmentation.segments.size());
+    for (std::uint32_t s = 0; s < color_of.size(); ++s) color_of[s] = segmentColor(s);
     for (const std::int32_t label : segmentation.labels) {
+      const auto s = static_cast<std::size_t>(label);
       labels.push_back(label < 0 ? kNoSegment : static_cast<std::uint32_t>(label));
-      colors.push_back(segmentColor(labels.back()));
-      const auto kind = label < 0 ? SegmentKind::ISOLATED
-                                  : segmentation.segments[static_cast<std::size_t>(label)].kind;
+      colors.push_back(label < 0 ? segmentColor(kNoSegment) : color_of[s]);
+      const auto kind = label < 0 ? SegmentKind::ISOLATED : segmentation.segments[s].kind;
       kinds.push_back(static_cast<std::uint8_t>(kind));
     }
   }
