@@ -102,15 +102,19 @@ std::vector<Columns> columnsOver(const SheetSigns& sheets, const std::vector<boo
     sizes[at(sheets.component_of[i])] += sheets.segmentation.segments[i].size;
   }
   std::vector<Columns> out(asked.size());
-  std::vector<std::size_t> seen(asked.size(), 0);
+  std::vector<std::size_t> left_out(asked.size(), 0);  // points until the next one of the sample
   std::vector<std::uint32_t> sample;
   for (std::size_t i = 0; i < sheets.points.size; ++i) {
     const std::int32_t component = sheets.componentOf(i);
     if (component < 0 || !asked[at(component)]) continue;
-    const std::size_t c = at(component);
-    if (seen[c]++ % std::max<std::size_t>(1, sizes[c] / most) != 0) continue;
+    std::size_t& wait = left_out[at(component)];
+    if (wait > 0) {
+      --wait;
+      continue;
+    }
+    wait = std::max<std::size_t>(1, sizes[at(component)] / most) - 1;
     sample.push_back(static_cast<std::uint32_t>(i));
-    out[c].include(sheets.points[i]);
+    out[at(component)].include(sheets.points[i]);
   }
   for (Columns& columns : out) columns.divide();
   for (const std::uint32_t i : sample) out[at(sheets.componentOf(i))].add(sheets.points, i);
