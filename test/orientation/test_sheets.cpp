@@ -2,11 +2,19 @@
 // Copyright (c) 2026, the segorient authors
 // Sheets: normals, denoising, segments and the final filter on thin walls, edges and noise.
 #include <gtest/gtest.h>
+
+#include <Eigen/Core>
+
+#include <algorithm>
 #include <array>
+#include <cmath>
+#include <cstdint>
+#include <limits>
 #include <random>
 
 #include "features/sheet_denoise.h"
 #include "orientation/automatic/sheet_filter.h"
+#include "segmentation/sheet_edges.h"
 #include "sheet_fixture.h"
 
 namespace segorient::test {
@@ -237,6 +245,84 @@ TEST(SheetFilter, GivesANormalToAPointWithoutOne) {
   const FilteredNormals filtered =
       filterOrientedNormals(viewOf(cloud.xyz), neighborsOf(cloud.xyz), oriented, spacing, 0.01F);
   EXPECT_EQ(shareOutward(filtered.normals, cloud.normals), 1.0);
+}
+
+// Whole and broken groups of four, and rows of three floats.
+TEST(SheetEdges, ListThePairsThatJoin) {
+  const LabelledCloud cloud = sample("plate", plate(1, 3000), 3000, 8, 0.15);
+  std::vector<float> packed;
+  for (std::size_t i = 0; i < cloud.size(); ++i) {
+    packed.insert(packed.end(), &cloud.xyz[4 * i], &cloud.xyz[4 * i] + 3);
+  }
+  const PointView of_three{packed.data(), 3, cloud.size()};
+  for (const int k : {3, 6, 11, kSheetDegree, kSheetNeighbors}) {
+    const Neighborhoods table = neighborsOf(cloud.xyz, k);
+    const SheetNormals sheets = estimateSheetNormals(viewOf(cloud.xyz), table);
+    for (const PointView& points : {viewOf(cloud.xyz), of_three}) {
+      const SheetEdges edges(points, fieldOf(sheets));
+      const std::vector<std::uint32_t> listed = edges.list(table, 0);
+      std::size_t joined = 0;
+      std::size_t apart = 0;
+      for (std::size_t i = 0; i < cloud.size(); ++i) {
+        for (int j = 1; j < std::min(table.count(i), kSheetDegree + 1); ++j) {
+          const bool join = edges.join(i, static_cast<std::size_t>(table.indices(i)[j]));
+          ASSERT_EQ((listed[i] >> (j - 1) & 1U) != 0, join) << i << ", neighbour " << j;
+          (join ? joined : apart) += 1;
+        }
+      }
+      EXPECT_GT(joined, cloud.size());
+      EXPECT_GT(apart, k > 3 ? cloud.size() / 10 : 0);
+    }
+  }
+}
+
+// The mean as it is defined, one neighbour after the other, in double; rows of different length,
+// and points without a normal.
+TEST(SheetFilter, IsTheWeightedMeanOfTheNormalsAround) {
+  const LabelledCloud cloud = sample("cube", cube(), 2000, 9, 0.3);
+  Neighborhoods table = neighborsOf(cloud.xyz);
+  std::vector<float> oriented = cloud.normals;
+  std::mt19937 random(10);
+  std::normal_distribution<float> gauss(0.F, 0.2F);
+  for (std::size_t i = 0; i < cloud.size(); ++i) {
+    table.setCount(i, 5 + static_cast<int>(random() % 29));
+    float* n = &oriented[4 * i];
+    for (std::size_t a = 0; a < 3; ++a) n[a] += gauss(random);
+    const float length = std::sqrt(dot3(n, n));
+    for (std::size_t a = 0; a < 3; ++a) n[a] /= length;
+    n[3] = std::fabs(gauss(random));
+    if (i % 50 == 0) std::fill(n, n + 4, std::numeric_limits<float>::quiet_NaN());
+  }
+  constexpr float kResidual = 0.15F;
+  const auto h = static_cast<float>(cloud.spacing);
+  const std::vector<float> spacing(cloud.size(), h);
+  const PointView points = viewOf(cloud.xyz);
+  const FilteredNormals filtered =
+      filterOrientedNormals(points, table, oriented, spacing, kResidual, 1, false);
+  for (std::size_t i = 0; i < cloud.size(); ++i) {
+    Eigen::Vector3d sum(0, 0, 0);
+    double total = 0.0;
+    for (int j = 0; j < table.count(i); ++j) {
+      const auto q = static_cast<std::size_t>(table.indices(i)[j]);
+      const Eigen::Vector3d n = Eigen::Vector3f(&oriented[4 * q]).cast<double>();
+      if (!n.allFinite()) continue;
+      const Eigen::Vector3d d =
+          (Eigen::Vector3f(points[q]) - Eigen::Vector3f(points[i])).cast<double>() /
+          static_cast<double>(h);
+      const double residual = static_cast<double>(kResidual);
+      const double off = d.dot(n) / std::sqrt(0.01 + residual * residual);
+      const double fit = static_cast<double>(oriented[4 * q + 3]) / (0.03 + residual);
+      const double w = std::pow(1.0 + off * off / 32.0, -16.0) / (1.0 + fit * fit) /
+                       (1.0 + 0.25 * d.squaredNorm());
+      sum += w * n;
+      total += w;
+    }
+    const Eigen::Vector3d expected = sum.normalized();
+    for (int a = 0; a < 3; ++a) {
+      ASSERT_NEAR(filtered.normals[4 * i + static_cast<std::size_t>(a)], expected[a], 2e-4) << i;
+    }
+    ASSERT_NEAR(filtered.confidences[i], sum.norm() / total, 1e-4) << i;
+  }
 }
 
 }  // namespace

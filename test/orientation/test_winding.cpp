@@ -75,6 +75,43 @@ TEST(WindingNumber, IsOneInsideAndZeroOutside) {
   EXPECT_NEAR(winding.evaluate(ball.xyz.data(), 0.03F), 0.5F, 0.05F);
 }
 
+// Trees of any shape, and of parts that several threads build.
+TEST(WindingNumber, OfAnyNumberOfPointsIsNearTheSum) {
+  std::vector<std::size_t> counts(200);
+  std::iota(counts.begin(), counts.end(), 1U);
+  counts.insert(counts.end(), {4095, 4096, 4097, 8193, 12345, 30000});
+  Balls ball;
+  addBall(ball, {0, 0, 0}, 1, 30000, 1.F);
+  const float far[3] = {0.3F, -9.F, 4.F};
+  const float near[3] = {0.4F, 0.3F, -0.2F};
+  for (const std::size_t count : counts) {
+    std::vector<std::uint32_t> rows(count);
+    std::iota(rows.begin(), rows.end(), 0U);
+    WindingNumber winding;
+    winding.build(viewOf(ball.xyz), ball.dipoles, rows, 1);
+    WindingNumber by_four;
+    by_four.build(viewOf(ball.xyz), ball.dipoles, rows, 4);
+    for (const float* x : {far, near}) {
+      double sum = 0.0;
+      double scale = 0.0;
+      for (std::size_t i = 0; i < count; ++i) {
+        double along = 0.0;
+        double square = 0.0;
+        for (std::size_t a = 0; a < 3; ++a) {
+          const double d = static_cast<double>(ball.xyz[4 * i + a]) - static_cast<double>(x[a]);
+          along += d * static_cast<double>(ball.dipoles[4 * i + a]);
+          square += d * d;
+        }
+        const double term = along / (4.0 * M_PI * square * std::sqrt(square));
+        sum += term;
+        scale += std::abs(term);
+      }
+      EXPECT_NEAR(winding.evaluate(x, 0.F), sum, 0.05 * scale) << count;
+      EXPECT_EQ(winding.evaluate(x, 0.F), by_four.evaluate(x, 0.F)) << count;
+    }
+  }
+}
+
 // Blocks that are full and that are not, of places that are near each other and that are not, and
 // with the points of a part only.
 TEST(WindingNumber, OfManyPlacesIsThatOfEach) {
