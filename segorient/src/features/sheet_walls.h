@@ -34,7 +34,7 @@ constexpr std::size_t kWallEntries = kSheetNeighbors + 1;
 
 /// Points of which splitWalls() is asked at once, one a lane.
 struct WallRows {
-  static constexpr std::size_t kRows = 16;
+  static constexpr std::size_t kRows = 16;  ///< as many as the widest registers hold
 
   const float* xyz;                 ///< 4 floats a point
   const float* own[kRows];          ///< the points themselves

@@ -29,7 +29,7 @@ struct NormalsAround {
 
 // Some points, their neighbours, and the means of these.
 struct MeanBlock {
-  static constexpr std::size_t kPoints = 16;
+  static constexpr std::size_t kPoints = 16;  // as many as the widest registers hold
 
   const pcl::index_t* rows[kPoints];
   const float* own[kPoints];        // the points themselves
@@ -58,7 +58,7 @@ struct Round {
     MeanBlock block;
     for (std::size_t l = 0; l < MeanBlock::kPoints; ++l) {
       const std::size_t p = points[l < count ? l : 0];
-      constexpr float kMost = 1e36F;  // finite, and so is what distances in the cloud's unit give
+      constexpr float kMost = 1e36F;  // finite, and so is what distances give by it
       block.rows[l] = nb.indices(p);
       block.own[l] = around.xyz + 4 * p;
       block.counts[l] = static_cast<std::size_t>(nb.count(p));
