@@ -11,6 +11,7 @@
 
 #include "common/compact_cloud.h"
 #include "orientation/automatic/orient_sheets.h"
+#include "orientation/winding/dipole_sums.h"
 #include "orientation/winding/winding_components.h"
 #include "orientation/winding/winding_number.h"
 #include "sheet_fixture.h"
@@ -109,6 +110,29 @@ TEST(WindingNumber, OfAnyNumberOfPointsIsNearTheSum) {
       EXPECT_NEAR(winding.evaluate(x, 0.F), sum, 0.05 * scale) << count;
       EXPECT_EQ(winding.evaluate(x, 0.F), by_four.evaluate(x, 0.F)) << count;
     }
+  }
+}
+
+// Of a ball that holds all points, the parts that trees are built from list each of them once.
+TEST(WindingNumber, HoldsEachPointOnce) {
+  Balls ball;
+  addBall(ball, {0, 0, 0}, 1, 30000, 1.F);
+  DipoleList points;
+  for (std::size_t i = 0; i < 30000; ++i) {
+    const float place[3] = {static_cast<float>(i), 0.F, 0.F};
+    points.add(place, &ball.dipoles[4 * i]);
+  }
+  points.fillBlock();
+  for (const std::size_t count : {1, 15, 16, 17, 255, 4095, 4096, 4097, 8193, 12345, 30000}) {
+    WindingNumber winding;
+    std::vector<std::uint32_t> rows(count);
+    std::iota(rows.begin(), rows.end(), 0U);
+    winding.build(viewOf(ball.xyz), ball.dipoles, rows, 4);
+    DipoleList seen;
+    const float center[3] = {0, 0, 0};
+    winding.listDipoles(center, 100.F, points, seen);
+    ASSERT_EQ(seen.size(), count);
+    for (std::size_t i = 0; i < count; ++i) ASSERT_EQ(seen.x[i], static_cast<float>(i)) << count;
   }
 }
 

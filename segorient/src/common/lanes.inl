@@ -5,7 +5,6 @@
 // instruction set, with SEGORIENT_LANES set to 4, 8 or 16; all arithmetic is per lane and rounded
 // as scalar code would, so the results do not depend on the width.
 
-constexpr int kLanes = SEGORIENT_LANES;
 constexpr std::size_t kWidth = SEGORIENT_LANES;
 
 using Lanes = SEGORIENT_VECTOR(float, SEGORIENT_LANES);
@@ -73,7 +72,7 @@ inline Lanes squareRoot(Lanes a) {
 #elif SEGORIENT_SSE2
   return SEGORIENT_BITS_AS(Lanes, _mm_sqrt_ps(reinterpret_cast<__m128>(a)));
 #else
-  for (int l = 0; l < kLanes; ++l) a[l] = std::sqrt(a[l]);
+  for (std::size_t l = 0; l < kWidth; ++l) a[l] = std::sqrt(a[l]);
   return a;
 #endif
 }

@@ -20,7 +20,8 @@ SEGORIENT_INLINE Quad loadQuad(const float* from) {
   return q;
 }
 
-/// A point's coordinates; what comes fourth is of no use.
+/// A point's coordinates; what comes fourth is of no use, but has to be there: rows of four and
+/// more are those of whole points.
 SEGORIENT_INLINE Quad loadPoint(const PointView& points, std::size_t i) {
   const float* const p = points[i];
   return points.stride >= 4 ? loadQuad(p) : Quad{p[0], p[1], p[2], 0.F};

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026, the segorient authors
 //
-// Neighbourhoods of twice kLanes points at once, and their planes. Included once per instruction
+// Neighbourhoods of twice kWidth points at once, and their planes. Included once per instruction
 // set.
 
 /// Points that are worked on at once: two registers full.

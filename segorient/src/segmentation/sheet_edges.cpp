@@ -51,7 +51,10 @@ unsigned int SheetEdges::joinFour(std::size_t p, const std::array<std::size_t, 4
   const auto joined = (from_p <= limit) & (from_p >= -limit) & (from_q <= limit) &
                       (from_q >= -limit) & (from_p > field_.below[p]) & (from_p < field_.above[p]) &
                       (from_q > gathered(field_.below)) & (from_q < gathered(field_.above));
-  return (joined[0] & 1U) | (joined[1] & 2U) | (joined[2] & 4U) | (joined[3] & 8U);
+  const auto bit = [&joined](std::size_t j) {
+    return static_cast<unsigned int>(joined[j]) & 1U << j;
+  };
+  return bit(0) | bit(1) | bit(2) | bit(3);
 }
 
 std::vector<std::uint32_t> SheetEdges::list(const Neighborhoods& neighborhoods, int threads) const {

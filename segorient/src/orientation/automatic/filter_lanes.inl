@@ -35,7 +35,7 @@ inline void addNeighbor(const NormalsAround& around, const MeanBlock& block, std
   const Lanes base8 = base4 * base4;
   // Half weight at two spacings.
   const Lanes w = 1.F / (base8 * base8 * (1.F + fit * fit) * (1.F + 0.25F * dot(d, d)));
-  Mask counts = n.x == n.x;
+  Mask counts = n.x - n.x == Lanes{};  // no NaN, not infinite
   if constexpr (!kAll) {
     for (std::size_t l = 0; l < kWidth; ++l) {
       if (j >= block.counts[at + l]) counts[l] = 0;

@@ -98,8 +98,10 @@ class Columns {
 std::vector<Columns> columnsOver(const SheetSigns& sheets, const std::vector<bool>& asked,
                                  std::size_t most) {
   std::vector<std::size_t> sizes(asked.size(), 0);
-  for (std::size_t i = 0; i < sheets.component_of.size(); ++i) {
-    sizes[at(sheets.component_of[i])] += sheets.segmentation.segments[i].size;
+  // The points that are here: of tiles, a segment's size counts others.
+  for (std::size_t i = 0; i < sheets.points.size; ++i) {
+    const std::int32_t component = sheets.componentOf(i);
+    if (component >= 0) ++sizes[at(component)];
   }
   std::vector<Columns> out(asked.size());
   std::vector<std::size_t> left_out(asked.size(), 0);  // points until the next one of the sample

@@ -19,6 +19,9 @@
 namespace segorient {
 namespace {
 
+// In place of a row that is empty.
+constexpr pcl::index_t kNobody = 0;
+
 // What the means are made of.
 struct NormalsAround {
   const float* xyz;         // 4 floats a point
@@ -59,7 +62,7 @@ struct Round {
     for (std::size_t l = 0; l < MeanBlock::kPoints; ++l) {
       const std::size_t p = points[l < count ? l : 0];
       constexpr float kMost = 1e36F;  // finite, and so is what distances give by it
-      block.rows[l] = nb.indices(p);
+      block.rows[l] = nb.count(p) > 0 ? nb.indices(p) : &kNobody;
       block.own[l] = around.xyz + 4 * p;
       block.counts[l] = static_cast<std::size_t>(nb.count(p));
       block.per_h[l] = spacing[p] > 0.F ? std::min(1.F / spacing[p], kMost) : 0.F;
