@@ -16,6 +16,8 @@
 
 #include "common/compact_cloud.h"
 #include "common/dot.h"
+#include "common/median.h"
+#include "features/sheet_fit.h"
 #include "orientation/automatic/noise_field.h"
 #include "orientation/winding/dipole_fields.h"
 #include "orientation/winding/field_solver.h"
@@ -498,6 +500,27 @@ TEST(NoiseField, UnsureSignsAreLessEvidenceWhereTheyContradict) {
     return sum;
   };
   EXPECT_GT(truth(sure), truth(alike));
+}
+
+// Less noise leaves less of it to be averaged, and more of fine parts to be seen.
+TEST(NoiseField, IsAsFineAsTheNoiseAllows) {
+  std::vector<float> radii;
+  for (const double sigma : {0.1, 0.3, 1.0, 3.0}) {
+    const LabelledCloud cloud = sample("bracket", bracket(), 8000, 9, sigma);
+    const PointView points = viewOf(cloud.xyz);
+    const Neighborhoods table = neighborsOf(cloud.xyz);
+    const std::vector<float> normals(cloud.normals.begin(), cloud.normals.end());
+    std::vector<float> spacings;
+    for (std::size_t i = 0; i < points.size; ++i) {
+      spacings.push_back(detail::meanDistance(points, table, i, detail::kFirstRing));
+    }
+    const detail::NoiseField field = detail::findNoiseField(points, table, normals, 0);
+    radii.push_back(field.radius / median(std::move(spacings)));
+  }
+  EXPECT_NEAR(radii[0], 0.6F * detail::kNoisyField.last, 0.01F);
+  EXPECT_NEAR(radii[1], radii[0], 0.01F);
+  EXPECT_GT(radii[2], 1.05F * radii[1]);
+  EXPECT_NEAR(radii[3], detail::kNoisyField.last, 0.01F);
 }
 
 // Normals of a cloud whose near points are side by side.

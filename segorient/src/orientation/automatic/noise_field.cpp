@@ -7,6 +7,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <memory>
 #include <utility>
 #include <vector>
 
@@ -141,6 +142,33 @@ std::vector<std::uint8_t> pointsToTurn(const PointView& points, const Neighborho
   return turned;
 }
 
+// An even subset, the solver on it, and how well its normals fit as they came.
+struct SolvedCells {
+  EvenCells cells;
+  FieldSolver solver;
+  FieldFit own;
+
+  SolvedCells(const PointView& points, const std::vector<float>& normals, float spacing,
+              const FieldScale& scale, int threads)
+      : cells(gatherCells(points, normals, scale.cell * spacing, threads)),
+        solver(cells.points(), cells.around, cells.areas, scale.smooth * spacing, threads),
+        own(cells.size() > 0 ? solver.fit(cells.normals) : FieldFit{}) {}
+};
+
+// In spacings: the least radius of the smoothing that noise allows, from what it leaves of w over
+// kNoisyField. Smaller ones keep finer parts apart, larger ones average more of the noise.
+float radiusFor(float spread) {
+  // Of the radius, as far as noise may take the means of cells. With .8 round bodies in noise of
+  // three spacings lose 1 %, with .5 thin parts in less noise lose .2.
+  constexpr float kMost = 0.65F;
+  // Cells of fewer than two points, three quarters of that apart, would average nothing.
+  constexpr float kLeast = 1.2F;
+  // A plane's points that are normally distributed about it, by q radii: the mean square of
+  // w - 1/2 is q / 10 - .01 to .002, for q from .2 to 1.
+  const float noise = 0.1F + 10.F * spread;
+  return std::clamp(kNoisyField.smooth * noise / kMost, kLeast, kNoisyField.smooth);
+}
+
 }  // namespace
 
 void findWhatSheetsKeep(const PointView& points, const Neighborhoods& neighborhoods,
@@ -160,8 +188,8 @@ void findWhatSheetsKeep(const PointView& points, const Neighborhoods& neighborho
 NoiseField findNoiseField(const PointView& points, const Neighborhoods& neighborhoods,
                           const std::vector<float>& normals, int threads,
                           const std::vector<float>& confidences, std::optional<bool> consistent,
-                          const FieldScale& scale) {
-  // Spread: noise of a spacing alone makes so much.
+                          FieldScale scale) {
+  // Spread, at the scale that was asked for: noise of a spacing alone makes so much.
   constexpr float kSure = 0.03F;
   // The mean of w is a fifth of its root mean square there, as it is by chance of 25 pieces with
   // random signs: the surface is open, for all that w tells. Folds and rolls have three quarters.
@@ -175,17 +203,23 @@ NoiseField findNoiseField(const PointView& points, const Neighborhoods& neighbor
   const float spacing = medianSpacing(points, neighborhoods);
   NoiseField out;
   if (!(spacing > 0.F)) return out;  // one place
-  EvenCells subset = gatherCells(points, normals, scale.cell * spacing, threads);
+  // What single points show of two sides are their own lines.
+  const bool averaged = scale.cell > 1.F;
+  auto field = std::make_unique<SolvedCells>(points, normals, spacing, scale, threads);
+  const float spread = field->own.spread;
+  const float radius = averaged ? radiusFor(spread) : scale.smooth;
+  if (radius < scale.smooth) {
+    scale = scale.times(radius / scale.smooth);
+    field = std::make_unique<SolvedCells>(points, normals, spacing, scale, threads);
+  }
+  EvenCells& subset = field->cells;
   if (subset.size() == 0) return out;
-  const FieldSolver solver(subset.points(), subset.around, subset.areas, scale.smooth * spacing,
-                           threads);
-  const FieldFit own = solver.fit(subset.normals);
+  const FieldSolver& solver = field->solver;
+  const FieldFit own = field->own;
   std::vector<float> found = subset.normals;
   out.consistent = consistent
                        ? *consistent
                        : opposedPairs(points, neighborhoods, normals, threads).facing < kSuspicious;
-  // What single points show of two sides are their own lines.
-  const bool averaged = scale.cell > 1.F;
   if (own.spread < kSaysNothing && own.factor > 0.F) {
     std::vector<float> lack;
     if (averaged && own.spread < kSaysMost) lack = solver.lackOf(found, own.factor);
@@ -206,7 +240,7 @@ NoiseField findNoiseField(const PointView& points, const Neighborhoods& neighbor
   out.radius = scale.last * spacing;
   // The signs as they came contradict the field by more than noise explains: the surface may be
   // open, or a wall whose two sides came out as one sheet, and which of them cannot be told.
-  out.most = kSure / std::max(kSure, own.spread);
+  out.most = kSure / std::max(kSure, spread);
   if (averaged && hidesTwoSides(points, neighborhoods, normals, threads)) out.most = 0.F;
   out.places = std::move(subset.places);
   return out;

@@ -25,10 +25,12 @@ struct FieldScale {
   float cell;    ///< that points are averaged over
   float smooth;  ///< of the field that is solved for
   float last;    ///< of the one that points are turned by
+
+  FieldScale times(float factor) const { return {factor * cell, factor * smooth, factor * last}; }
 };
-/// In noise: cells of some four points, whose mean has half the noise. Noise of a spacing is no
-/// more to the field than to its cells; at last less than that, as cells have averaged some of the
-/// noise, and fine parts are lost to a wide one.
+/// In noise, and smaller where there is less: cells of some four points, whose mean has half the
+/// noise. Noise of a spacing is no more to the field than to its cells; at last less than that, as
+/// cells have averaged some of the noise, and fine parts are lost to a wide one.
 constexpr FieldScale kNoisyField{1.5F, 2.F, 1.5F};
 /// Without noise: nearly each point is a cell of its own, so that the sides of walls of a spacing
 /// are apart, and the field is as smooth as its dipoles are apart.
@@ -69,7 +71,7 @@ struct NoiseField {
 SEGORIENT_ORIENTATION_EXPORT NoiseField findNoiseField(
     const PointView& points, const Neighborhoods& neighborhoods, const std::vector<float>& normals,
     int threads, const std::vector<float>& confidences = {}, std::optional<bool> consistent = {},
-    const FieldScale& scale = kNoisyField);
+    FieldScale scale = kNoisyField);
 
 /// Finds NoiseField::keeps, for parts of the cloud that see only parts of what would be turned.
 /// \param points those of the field \param normals those that it was found with
