@@ -35,6 +35,12 @@ struct Bodies {
     is_in_contact.push_back(in_contact);
   }
 
+  void addNoise(float deviation, unsigned seed) {
+    std::mt19937 rng(seed);
+    std::normal_distribution<float> noise(0.F, deviation);
+    for (std::size_t i = 0; i < xyz.size(); ++i) xyz[i] += i % 4 < 3 ? noise(rng) : 0.F;
+  }
+
   // Share of the points on no face in contact whose normal is outward.
   double shareRight(const std::vector<float>& found) const {
     double right = 0.0;
@@ -214,15 +220,27 @@ TEST(PatchSigns, BodiesInContactHaveTheirOutsideOut) {
   EXPECT_LT(surely, .05 * hidden);  // which of both bodies such a point is of cannot be known
 }
 
-TEST(PatchSigns, PanelsThatTouchMakeABox) {
+Bodies panels() {
   constexpr float kThick = .06F;
-  const std::vector<Box> panels = {{{0.F, 0.F, 0.F}, {1.F, .8F, kThick}},
-                                   {{0.F, 0.F, .6F}, {1.F, .8F, .6F + kThick}},
-                                   {{0.F, 0.F, kThick}, {kThick, .8F, .6F}},
-                                   {{1.F - kThick, 0.F, kThick}, {1.F, .8F, .6F}},
-                                   {{kThick, 0.F, kThick}, {1.F - kThick, kThick, .6F}},
-                                   {{kThick, .8F - kThick, kThick}, {1.F - kThick, .8F, .6F}}};
-  const Bodies bodies = sampleBoxes(panels, 3000.F, 11);
+  return sampleBoxes({{{0.F, 0.F, 0.F}, {1.F, .8F, kThick}},
+                      {{0.F, 0.F, .6F}, {1.F, .8F, .6F + kThick}},
+                      {{0.F, 0.F, kThick}, {kThick, .8F, .6F}},
+                      {{1.F - kThick, 0.F, kThick}, {1.F, .8F, .6F}},
+                      {{kThick, 0.F, kThick}, {1.F - kThick, kThick, .6F}},
+                      {{kThick, .8F - kThick, kThick}, {1.F - kThick, .8F, .6F}}},
+                     3000.F, 11);
+}
+
+Bodies overlappingBoxes() {
+  return sampleBoxes({{{0.F, 0.F, 0.F}, {1.F, 1.F, 1.F}},
+                      {{.6F, .6F, .6F}, {1.5F, 1.5F, 1.5F}},
+                      {{.2F, .3F, .8F}, {.7F, .8F, 1.8F}},
+                      {{-.5F, .2F, .2F}, {.3F, .7F, .6F}}},
+                     1000.F, 13);
+}
+
+TEST(PatchSigns, PanelsThatTouchMakeABox) {
+  const Bodies bodies = panels();
   EXPECT_GT(bodies.shareRight(orient(bodies.xyz).normals), .97);
 }
 
@@ -233,6 +251,16 @@ TEST(PatchSigns, SpheresThatOverlapKeepTheirOutsides) {
   addSphere(bodies, {.55F, .1F, 0.F}, .45F, 5000, rng);
   addSphere(bodies, {.2F, .5F, .2F}, .4F, 4000, rng);
   EXPECT_GT(bodies.shareRight(orient(bodies.xyz).normals), .95);
+}
+
+// The field of all points, which noise is for elsewhere, wants the inside of one closed surface.
+TEST(PatchSigns, NoiseDoesNotHideThatBodiesTouchOrOverlap) {
+  Bodies in_contact = panels();
+  in_contact.addNoise(.25F / std::sqrt(3000.F), 6);
+  EXPECT_GT(in_contact.shareRight(orient(in_contact.xyz).normals), .95);
+  Bodies overlapping = overlappingBoxes();
+  overlapping.addNoise(.35F / std::sqrt(1000.F), 7);
+  EXPECT_GT(overlapping.shareRight(orient(overlapping.xyz).normals), .97);
 }
 
 TEST(PatchSigns, AreTheSameForAnyNumberOfThreads) {
@@ -254,14 +282,14 @@ TEST(PatchSigns, LeaveAloneWhatIsNotInContact) {
     ComponentOrientationResult component;
     component.points = bodies.is_in_contact.size();
     component.residual = .2F;  // so that it is looked at
-    const detail::CellSigns signs =
-        detail::findCellSigns(viewOf(bodies.xyz), found.normals, found.spacing, {component}, 1);
+    const detail::CellSigns signs = detail::findCellSigns(viewOf(bodies.xyz), found.normals,
+                                                          found.spacing, {component}, false, 1);
     EXPECT_TRUE(signs.empty());
     detail::takeCellSigns(viewOf(bodies.xyz), signs, found);
     EXPECT_EQ(found.normals, bodies.normals);
     EXPECT_EQ(found.confidences, std::vector<float>(bodies.is_in_contact.size(), 1.F));
   }
-  EXPECT_TRUE(detail::findCellSigns({nullptr, 4, 0}, {}, 0.F, {}, 1).empty());
+  EXPECT_TRUE(detail::findCellSigns({nullptr, 4, 0}, {}, 0.F, {}, true, 1).empty());
 }
 
 }  // namespace

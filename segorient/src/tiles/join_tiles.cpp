@@ -129,10 +129,12 @@ CloudField TileJoiner::Impl::findField(const AutoOrientation& orientation, const
     for (std::size_t a = 0; a < 3; ++a) normals[4 * i + a] *= sign;
   }
   const bool fine = !options.traits.hasField();
-  if (fine) {
-    if (!orientation.toward.empty()) return {};
+  const bool alone = orientation.toward.empty();
+  if (fine && !alone) return {};
+  if (alone && !(options.traits.level > 0.F)) {
     CloudField signs = detail::findSigns(cloud.cloud, normals, median(cloud.spacing),
-                                         orientation.result.components, options.threads);
+                                         orientation.result.components, options.traits.noisy != 0,
+                                         options.threads);
     if (!signs.cells.empty()) return signs;
   }
   if (field_points.empty()) return {};  // tiles whose sensors were known did not ask

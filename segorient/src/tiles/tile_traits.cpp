@@ -23,7 +23,7 @@ TileTraits measureTileTraits(const PointView& points, int k, const OrientationHi
   out.thin = found.sheets.noise.thin ? 1 : 0;
   out.residual = found.sheets.residual;
   out.scan = found.sheets.scan_scales ? 1 : 0;
-  out.noisy = found.noise >= detail::kFieldNoise ? 1 : 0;
+  out.noisy = found.noise >= detail::kFewTellNothing ? 1 : 0;
   out.consistent = found.consistent ? 1 : 0;
   out.judged = found.scales.empty() ? 0 : 1;
   out.denoise = found.denoised ? 1 : 0;

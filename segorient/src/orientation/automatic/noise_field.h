@@ -14,9 +14,6 @@
 
 namespace segorient::detail {
 
-/// In spacings, as NoiseLevel::fine measures it: with less, borders tell enough.
-constexpr float kFieldNoise = 0.2F;
-
 /// 45 degrees: normals of layers that are farther off what all layers make were fitted across them.
 constexpr float kAcross = 0.7F;
 

@@ -115,20 +115,27 @@ AutoStages runAutoStages(PreparedCloud& cloud, const PipelineOptions& options,
   if (record != nullptr) {
     if (record->field) record->field(points, out);
   } else if (settings.winding_normals && hints.nothing()) {
-    const bool noisy = out.noise >= kFieldNoise;
-    if (noisy || out.level > 0.F) {
-      NoiseField field = findNoiseField(cloud.points(), cloud.neighborhoods(), out.normals,
-                                        options.threads, out.confidences);
-      if (!noisy) field.averaged_below = kAcross;
-      out.consistent = field.consistent;
-      takeNoiseField(cloud.points(), cloud.neighborhoods(), field, options.threads, out);
-    } else if (out.orientation.toward.empty()) {
-      takeCellSigns(points,
-                    findCellSigns(points, out.normals, out.spacing,
-                                  out.orientation.result.components, options.threads),
-                    out);
+    const bool noisy = out.noise >= kFewTellNothing;
+    const bool at_level = out.level > 0.F;
+    const bool alone = out.orientation.toward.empty();
+    CellSigns bodies;
+    if (alone && !at_level) {
+      bodies = findCellSigns(points, out.normals, out.spacing, out.orientation.result.components,
+                             noisy, options.threads);
+    }
+    takeCellSigns(points, bodies, out);
+    if (noisy || at_level) {
+      // The field of all points knows nothing of faces in contact.
+      if (bodies.empty()) {
+        NoiseField field = findNoiseField(cloud.points(), cloud.neighborhoods(), out.normals,
+                                          options.threads, out.confidences);
+        if (!noisy) field.averaged_below = kAcross;
+        out.consistent = field.consistent;
+        takeNoiseField(cloud.points(), cloud.neighborhoods(), field, options.threads, out);
+      }
+    } else if (alone && !out.scales.empty()) {
       // Judged scales: signs contradict each other somewhere.
-      if (!out.scales.empty()) takeFineField(points, table, options.threads, out);
+      takeFineField(points, table, options.threads, out);
     }
   }
   labelTheRest(table, out.normals, out.segmentation);
