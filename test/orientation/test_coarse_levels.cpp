@@ -353,7 +353,7 @@ TEST(BlueNoise, IsFarApartAndLeavesNoGap) {
   const Cloud cloud = twoScans(3000, 0.5, 15);
   const PointView points = viewOf(cloud.xyz);
   const float radius = 0.12F;
-  const detail::BlueNoise even = detail::thinOut(points, radius);
+  const detail::BlueNoise even = detail::thinOut(points, radius, 2);
   const auto squares = [&](std::size_t i, std::size_t j) {
     float sum = 0.F;
     for (std::size_t a = 0; a < 3; ++a) {
@@ -377,9 +377,9 @@ TEST(BlueNoise, IsFarApartAndLeavesNoGap) {
 TEST(BlueNoise, RefusesRadiiThatFloatsCannotTell) {
   const Cloud cloud = twoScans(100, 0.5, 16);
   for (const float radius : {0.F, -1.F, 1e-20F, std::nanf("")}) {
-    EXPECT_TRUE(detail::thinOut(viewOf(cloud.xyz), radius).kept.empty());
+    EXPECT_TRUE(detail::thinOut(viewOf(cloud.xyz), radius, 1).kept.empty());
   }
-  EXPECT_TRUE(detail::thinOut({nullptr, 4, 0}, 1.F).kept.empty());
+  EXPECT_TRUE(detail::thinOut({nullptr, 4, 0}, 1.F, 1).kept.empty());
 }
 
 }  // namespace

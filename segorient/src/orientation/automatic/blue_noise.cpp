@@ -8,6 +8,8 @@
 #include <cstddef>
 #include <limits>
 
+#include "common/parallel_for.h"
+
 namespace segorient::detail {
 namespace {
 
@@ -27,32 +29,29 @@ class KeptPoints {
     mask_ = slots - 1;
   }
 
+  // Whether a kept one is nearer than sqrt(limit).
+  bool hasNear(const float* p, float limit, const std::vector<std::uint32_t>& kept) const {
+    return forEachAround(p, kept, [&](std::uint32_t, float squares) { return squares < limit; });
+  }
+
   // \return the nearest kept one's number if it is nearer than sqrt(limit)
   std::uint32_t nearest(const float* p, float limit, const std::vector<std::uint32_t>& kept) const {
     std::uint32_t best = kNobody;
-    const Cube at = cubeOf(p);
-    for (std::int64_t x = at[0] - 1; x <= at[0] + 1; ++x) {
-      for (std::int64_t y = at[1] - 1; y <= at[1] + 1; ++y) {
-        for (std::int64_t z = at[2] - 1; z <= at[2] + 1; ++z) {
-          for (std::uint32_t k = first_[slotOf({x, y, z})]; k != kNobody; k = next_[k]) {
-            const float* q = points_[kept[k]];
-            float squares = 0.F;
-            for (std::size_t a = 0; a < 3; ++a) squares += (p[a] - q[a]) * (p[a] - q[a]);
-            // Of equally near ones the first: some slots are looked at more than once.
-            if (squares < limit || (squares == limit && best != kNobody && k < best)) {
-              limit = squares;
-              best = k;
-            }
-          }
-        }
+    forEachAround(p, kept, [&](std::uint32_t k, float squares) {
+      // Of equally near ones the first: some slots are looked at more than once.
+      if (squares < limit || (squares == limit && best != kNobody && k < best)) {
+        limit = squares;
+        best = k;
       }
-    }
+      return false;
+    });
     return best;
   }
 
   void add(const float* p) {
     const auto k = static_cast<std::uint32_t>(next_.size());
-    std::uint32_t& first = first_[slotOf(cubeOf(p))];
+    const Cube at = cubeOf(p);
+    std::uint32_t& first = first_[slotOf(columnOf(at[0], at[1]), at[2])];
     next_.push_back(first);
     first = k;
   }
@@ -68,14 +67,39 @@ class KeptPoints {
     }
     return cube;
   }
-  // Cubes may share a slot: distances tell.
-  std::size_t slotOf(const Cube& cube) const {
+  // The cubes of a column are side by side.
+  static std::uint64_t columnOf(std::int64_t x, std::int64_t y) {
     std::uint64_t h = 0;
-    for (const std::int64_t c : cube) {
+    for (const std::int64_t c : {x, y}) {
       h = (h ^ static_cast<std::uint64_t>(c)) * 0x9E3779B97F4A7C15ULL;
       h ^= h >> 29U;
     }
-    return static_cast<std::size_t>(h) & mask_;
+    return h;
+  }
+  // Cubes may share a slot: distances tell.
+  std::size_t slotOf(std::uint64_t column, std::int64_t z) const {
+    return static_cast<std::size_t>(column + static_cast<std::uint64_t>(z)) & mask_;
+  }
+
+  // Calls act(k, square of the distance) for what is kept in the cubes around a point, its own
+  // column first. \return whether act said so of one, which then is the last
+  template <typename Act>
+  bool forEachAround(const float* p, const std::vector<std::uint32_t>& kept, const Act& act) const {
+    const Cube at = cubeOf(p);
+    for (const std::int64_t x : {at[0], at[0] - 1, at[0] + 1}) {
+      for (const std::int64_t y : {at[1], at[1] - 1, at[1] + 1}) {
+        const std::uint64_t column = columnOf(x, y);
+        for (std::int64_t z = at[2] - 1; z <= at[2] + 1; ++z) {
+          for (std::uint32_t k = first_[slotOf(column, z)]; k != kNobody; k = next_[k]) {
+            const float* q = points_[kept[k]];
+            float squares = 0.F;
+            for (std::size_t a = 0; a < 3; ++a) squares += (p[a] - q[a]) * (p[a] - q[a]);
+            if (act(k, squares)) return true;
+          }
+        }
+      }
+    }
+    return false;
   }
 
   PointView points_;
@@ -89,22 +113,22 @@ class KeptPoints {
 
 }  // namespace
 
-BlueNoise thinOut(const PointView& points, float radius) {
+BlueNoise thinOut(const PointView& points, float radius, int threads) {
   BlueNoise out;
   constexpr float kLeast = 1e-12F;  // its square and the numbers of cubes are ordinary ones
   if (!(radius > kLeast)) return out;
   const float limit = radius * radius;
   KeptPoints near(points, radius);
   for (std::size_t i = 0; i < points.size; ++i) {
-    if (near.nearest(points[i], limit, out.kept) != kNobody) continue;
+    if (near.hasNear(points[i], limit, out.kept)) continue;
     near.add(points[i]);
     out.kept.push_back(static_cast<std::uint32_t>(i));
   }
   out.cell_of.resize(points.size);
-  for (std::size_t i = 0; i < points.size; ++i) {
+  parallelFor(points.size, threads, 150.0, [&](std::size_t i) {
     // A kept point finds itself; of the others each has one nearer than the radius.
     out.cell_of[i] = near.nearest(points[i], limit, out.kept);
-  }
+  });
   return out;
 }
 

@@ -21,7 +21,7 @@ struct BlueNoise {
 ///
 /// \param points finite, with an extent of about 1 (PreparedCloud)
 /// \param radius nothing is kept if it is not above 1e-12, as floats cannot tell then
-BlueNoise thinOut(const PointView& points, float radius);
+BlueNoise thinOut(const PointView& points, float radius, int threads);
 
 /// Of each cell, where its points are in the mean: 4 floats, the last is 0.
 std::vector<float> meanPlaces(const PointView& points, const BlueNoise& cells);

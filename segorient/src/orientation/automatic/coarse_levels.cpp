@@ -143,7 +143,7 @@ class Choice {
 
 CoarseLevel makeLevel(const PointView& points, float radius, int threads, const Bounds* frame) {
   CoarseLevel level;
-  const BlueNoise even = thinOut(points, radius);
+  const BlueNoise even = thinOut(points, radius, threads);
   if (even.kept.empty()) return level;
   const std::vector<float> places = meanPlaces(points, even);
   const Bounds of_points = frame != nullptr ? *frame : bulkBounds(points, threads);

@@ -68,7 +68,7 @@ float cellArea(const PointView& cells, const Neighborhoods& around, std::size_t 
 EvenCells gatherCells(const PointView& points, const std::vector<float>& normals, float radius,
                       int threads) {
   EvenCells out;
-  BlueNoise cells = thinOut(points, radius);
+  BlueNoise cells = thinOut(points, radius, threads);
   const std::size_t n = cells.kept.size();
   if (n == 0) return out;
   out.places = meanPlaces(points, cells);

@@ -203,11 +203,15 @@ NoiseField findNoiseField(const PointView& points, const Neighborhoods& neighbor
   const float spacing = medianSpacing(points, neighborhoods);
   NoiseField out;
   if (!(spacing > 0.F)) return out;  // one place
+  const OpposedPairs pairs = opposedPairs(points, neighborhoods, normals, threads);
+  out.consistent = consistent ? *consistent : pairs.facing < kSuspicious;
   // What single points show of two sides are their own lines.
   const bool averaged = scale.cell > 1.F;
   auto field = std::make_unique<SolvedCells>(points, normals, spacing, scale, threads);
   const float spread = field->own.spread;
-  const float radius = averaged ? radiusFor(spread) : scale.smooth;
+  // Where no neighbours have their faces or their backs to each other, nothing is that thin.
+  const bool thin = pairs.facing + pairs.backs >= kSuspicious;
+  const float radius = averaged && thin ? radiusFor(spread) : scale.smooth;
   if (radius < scale.smooth) {
     scale = scale.times(radius / scale.smooth);
     field = std::make_unique<SolvedCells>(points, normals, spacing, scale, threads);
@@ -217,9 +221,6 @@ NoiseField findNoiseField(const PointView& points, const Neighborhoods& neighbor
   const FieldSolver& solver = field->solver;
   const FieldFit own = field->own;
   std::vector<float> found = subset.normals;
-  out.consistent = consistent
-                       ? *consistent
-                       : opposedPairs(points, neighborhoods, normals, threads).facing < kSuspicious;
   if (own.spread < kSaysNothing && own.factor > 0.F) {
     std::vector<float> lack;
     if (averaged && own.spread < kSaysMost) lack = solver.lackOf(found, own.factor);

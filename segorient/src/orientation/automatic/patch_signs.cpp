@@ -108,21 +108,25 @@ PatchSolution solveFromNothing(const PatchEquations& equations, const CellScale&
   return equations.solve(Signs::Zero(static_cast<Eigen::Index>(equations.size())), 1);
 }
 
-// A coarse look at a large cloud, for a tenth of the time: open sheets bound no bodies.
+// A coarse look at a large cloud, for a tenth of the time: open sheets bound no bodies, and in
+// noise one that is right already is right to a coarse look, too.
 bool mayBoundBodies(const PointView& points, const std::vector<float>& normals, float spacing,
-                    const CellScale& scale, int threads) {
+                    bool noisy, int threads) {
   constexpr float kCoarse = 50000.F;  // cells
   const float size = std::sqrt(static_cast<float>(points.size) / kCoarse);
+  const CellScale& scale = noisy ? kNoisy : kClean;
   if (size <= 2.F * scale.cell) return true;
   const float radius = size * spacing;
   const EvenCells cells = gatherCells(points, normals, radius, threads);
-  return solveFromNothing({cells, scale.smooth / scale.cell * radius, threads}, scale).allowed;
+  const PatchEquations equations(cells, scale.smooth / scale.cell * radius, threads);
+  const PatchSolution first = solveFromNothing(equations, scale);
+  if (!noisy || !first.allowed) return first.allowed;
+  return first.energy < scale.less * equations.judge(Signs::Ones(first.signs.size())).energy;
 }
 
 CellSigns findAtScale(const PointView& points, const std::vector<float>& normals, float spacing,
                       const CellScale& scale, int threads) {
   CellSigns out;
-  if (!mayBoundBodies(points, normals, spacing, scale, threads)) return out;
   out.cells = gatherCells(points, normals, scale.cell * spacing, threads);
   const float radius = scale.smooth * spacing;
   const PatchEquations equations(out.cells, radius, threads);
@@ -143,7 +147,7 @@ CellSigns findAtScale(const PointView& points, const std::vector<float>& normals
 CellSigns findCellSigns(const PointView& points, const std::vector<float>& normals, float spacing,
                         const std::vector<ComponentOrientationResult>& components, bool noisy,
                         int threads) {
-  if (isClosed(components)) return {};
+  if (isClosed(components) || !mayBoundBodies(points, normals, spacing, noisy, threads)) return {};
   CellSigns out = findAtScale(points, normals, spacing, kClean, threads);
   if (noisy && out.empty()) out = findAtScale(points, normals, spacing, kNoisy, threads);
   return out;

@@ -95,7 +95,7 @@ SignJudge::SignJudge(const PointView& points, const Neighborhoods& neighborhoods
       threads_(threads),
       sixth_(medianSixth(points, neighborhoods)),
       areas_(points.size, 0.F) {
-  const BlueNoise cells = thinOut(points, kCell * sixth_);
+  const BlueNoise cells = thinOut(points, kCell * sixth_, threads);
   if (cells.kept.empty()) return;
   std::vector<float> places(4 * cells.kept.size(), 0.F);
   for (std::size_t c = 0; c < cells.kept.size(); ++c) {
