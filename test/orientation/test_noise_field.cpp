@@ -473,7 +473,8 @@ TEST(NoiseField, UnsureSignsAreLessEvidenceWhereTheyContradict) {
     }
   }
   const auto field = [&](const std::vector<float>& of_signs, bool consistent) {
-    return detail::findNoiseField(points, table, normals, 0, of_signs, consistent);
+    return detail::findNoiseField(points, table, normals, 0, of_signs,
+                                  detail::KnownField{consistent, false});
   };
   const detail::NoiseField sure = field(confidences, false);
   const detail::NoiseField alike = field({}, false);
@@ -514,13 +515,24 @@ TEST(NoiseField, IsAsFineAsTheNoiseAllows) {
     for (std::size_t i = 0; i < points.size; ++i) {
       spacings.push_back(detail::meanDistance(points, table, i, detail::kFirstRing));
     }
-    const detail::NoiseField field = detail::findNoiseField(points, table, normals, 0);
+    const detail::NoiseField field =
+        detail::findNoiseField(points, table, normals, 0, {}, detail::KnownField{true, true});
     radii.push_back(field.radius / median(std::move(spacings)));
   }
   EXPECT_NEAR(radii[0], 0.6F * detail::kNoisyField.last, 0.01F);
   EXPECT_NEAR(radii[1], radii[0], 0.01F);
   EXPECT_GT(radii[2], 1.05F * radii[1]);
   EXPECT_NEAR(radii[3], detail::kNoisyField.last, 0.01F);
+}
+
+// A wall of a spacing asks for it, a solid does not.
+TEST(NoiseField, IsFineWhereSomethingIsThin) {
+  const auto isFine = [](const LabelledCloud& cloud) {
+    const std::vector<float> normals(cloud.normals.begin(), cloud.normals.end());
+    return detail::findNoiseField(viewOf(cloud.xyz), neighborsOf(cloud.xyz), normals, 0).fine;
+  };
+  EXPECT_TRUE(isFine(sample("plate", plate(1, 6000), 6000, 9, 0.2)));
+  EXPECT_FALSE(isFine(sample("cube", cube(), 6000, 9, 0.2)));
 }
 
 // Normals of a cloud whose near points are side by side.

@@ -97,12 +97,12 @@ void takeSigns(const PointView& points, float unit, const CloudField& field, int
 }  // namespace
 
 CloudField findNoise(const PointView& places, const std::vector<float>& normals,
-                     const std::vector<float>& confidences, bool consistent, int threads) {
+                     const std::vector<float>& confidences, const KnownField& known, int threads) {
   FieldCloud of(places, normals, confidences, threads);
   const Neighborhoods& near = of.cloud.neighborhoods();
-  if (consistent) of.confidences.clear();
+  if (known.consistent) of.confidences.clear();
   NoiseField noise =
-      findNoiseField(of.cloud.points(), near, of.normals, threads, of.confidences, consistent);
+      findNoiseField(of.cloud.points(), near, of.normals, threads, of.confidences, known);
   findWhatSheetsKeep(of.cloud.points(), near, of.normals, threads, noise);
   return cellsOf(noise, of.cloud.unit());
 }

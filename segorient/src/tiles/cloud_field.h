@@ -8,6 +8,7 @@
 
 #include <vector>
 
+#include "orientation/automatic/noise_field.h"
 #include "orientation/automatic/orient_points.h"
 #include "search/prepared_cloud.h"
 #include "tiles/tile_share.h"
@@ -18,10 +19,10 @@ namespace segorient::detail {
 /// \param places of the cloud as measured
 /// \param normals 4 floats a row, oriented; gathered
 /// \param confidences of their signs, by row
-/// \param consistent whether the cloud is, as parts of it tell that were oriented one by one: some
+/// \param known of the cloud, as parts of it tell that were oriented one by one: some
 ///        points of tiles always follow the wrong piece
 CloudField findNoise(const PointView& places, const std::vector<float>& normals,
-                     const std::vector<float>& confidences, bool consistent, int threads);
+                     const std::vector<float>& confidences, const KnownField& known, int threads);
 
 /// The same without noise, see takeFineField(); often nothing.
 SEGORIENT_TILES_EXPORT CloudField findFine(const PointView& places,

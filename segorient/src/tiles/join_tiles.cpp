@@ -152,8 +152,8 @@ CloudField TileJoiner::Impl::findField(const AutoOrientation& orientation, const
   }
   const PointView points{places.data(), 3, field_points.size()};
   if (fine) return detail::findFine(points, of_rows, confidences, options.threads);
-  CloudField out = detail::findNoise(points, of_rows, confidences, options.traits.consistent != 0,
-                                     options.threads);
+  const detail::KnownField known{options.traits.consistent != 0, options.traits.fine_field != 0};
+  CloudField out = detail::findNoise(points, of_rows, confidences, known, options.threads);
   // Means of several points do not tell directions.
   if (options.patch_points == 1)
     out.averaged_below = options.traits.noisy != 0 ? 1.F : detail::kAcross;

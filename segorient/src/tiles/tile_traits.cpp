@@ -25,6 +25,7 @@ TileTraits measureTileTraits(const PointView& points, int k, const OrientationHi
   out.scan = found.sheets.scan_scales ? 1 : 0;
   out.noisy = found.noise >= detail::kFewTellNothing ? 1 : 0;
   out.consistent = found.consistent ? 1 : 0;
+  out.fine_field = found.fine_field ? 1 : 0;
   out.judged = found.scales.empty() ? 0 : 1;
   out.denoise = found.denoised ? 1 : 0;
   const AutomaticNormalTraits& surfaces = found.final_traits.surfaces;

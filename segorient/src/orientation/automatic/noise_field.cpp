@@ -187,7 +187,7 @@ void findWhatSheetsKeep(const PointView& points, const Neighborhoods& neighborho
 
 NoiseField findNoiseField(const PointView& points, const Neighborhoods& neighborhoods,
                           const std::vector<float>& normals, int threads,
-                          const std::vector<float>& confidences, std::optional<bool> consistent,
+                          const std::vector<float>& confidences, std::optional<KnownField> known,
                           FieldScale scale) {
   // Spread, at the scale that was asked for: noise of a spacing alone makes so much.
   constexpr float kSure = 0.03F;
@@ -203,15 +203,18 @@ NoiseField findNoiseField(const PointView& points, const Neighborhoods& neighbor
   const float spacing = medianSpacing(points, neighborhoods);
   NoiseField out;
   if (!(spacing > 0.F)) return out;  // one place
-  const OpposedPairs pairs = opposedPairs(points, neighborhoods, normals, threads);
-  out.consistent = consistent ? *consistent : pairs.facing < kSuspicious;
+  if (!known) {
+    const OpposedPairs pairs = opposedPairs(points, neighborhoods, normals, threads);
+    // Where no neighbours have their faces or their backs to each other, nothing is that thin.
+    known = KnownField{pairs.facing < kSuspicious, pairs.facing + pairs.backs >= kSuspicious};
+  }
+  out.consistent = known->consistent;
+  out.fine = known->fine;
   // What single points show of two sides are their own lines.
   const bool averaged = scale.cell > 1.F;
   auto field = std::make_unique<SolvedCells>(points, normals, spacing, scale, threads);
   const float spread = field->own.spread;
-  // Where no neighbours have their faces or their backs to each other, nothing is that thin.
-  const bool thin = pairs.facing + pairs.backs >= kSuspicious;
-  const float radius = averaged && thin ? radiusFor(spread) : scale.smooth;
+  const float radius = averaged && out.fine ? radiusFor(spread) : scale.smooth;
   if (radius < scale.smooth) {
     scale = scale.times(radius / scale.smooth);
     field = std::make_unique<SolvedCells>(points, normals, spacing, scale, threads);
@@ -284,7 +287,7 @@ void takeNoiseField(const PointView& points, const Neighborhoods& neighborhoods,
 NoiseField takeFineField(const PointView& points, const Neighborhoods& neighborhoods, int threads,
                          AutoNormals& found) {
   NoiseField field = findNoiseField(points, neighborhoods, found.normals, threads,
-                                    found.confidences, false, kFineField);
+                                    found.confidences, KnownField{}, kFineField);
   if (field.empty() || field.most < 1.F) return {};
   field.averaged_below = kAcross;
   AutoNormals other;

@@ -43,6 +43,9 @@ struct NoiseField {
   float most = 1.F;            ///< confidence of any point
   /// Whether no neighbours face each other: only the field contradicts the normals' signs.
   bool consistent = false;
+  /// Whether something is so thin, as pairs of neighbours tell, that the field is as fine as the
+  /// noise allows.
+  bool fine = false;
   /// Cosine below which normals are averaged with the field's direction: all of them, unless it is
   /// coarser than what the points themselves tell; with 0 it tells only their sides.
   float averaged_below = 1.F;
@@ -56,6 +59,12 @@ struct NoiseField {
   bool empty() const { return places.empty(); }
 };
 
+/// Of the cloud that points are part of, see NoiseField.
+struct KnownField {
+  bool consistent = false;
+  bool fine = false;
+};
+
 /// On an even subset with averaged positions, normals are found that agree with the winding
 /// number's field (FieldSolver), with the oriented normals as they are for evidence, which weighs
 /// more the more noise leaves of that number.
@@ -64,10 +73,10 @@ struct NoiseField {
 /// \param neighborhoods of them, six at least
 /// \param normals 4 floats a point, oriented
 /// \param confidences of their signs, looked at where these contradict each other; empty = all
-/// alike \param consistent whether they do not, see NoiseField; none = measured
+/// alike \param known none = measured
 SEGORIENT_ORIENTATION_EXPORT NoiseField findNoiseField(
     const PointView& points, const Neighborhoods& neighborhoods, const std::vector<float>& normals,
-    int threads, const std::vector<float>& confidences = {}, std::optional<bool> consistent = {},
+    int threads, const std::vector<float>& confidences = {}, std::optional<KnownField> known = {},
     FieldScale scale = kNoisyField);
 
 /// Finds NoiseField::keeps, for parts of the cloud that see only parts of what would be turned.

@@ -131,6 +131,7 @@ AutoStages runAutoStages(PreparedCloud& cloud, const PipelineOptions& options,
                                           options.threads, out.confidences);
         if (!noisy) field.averaged_below = kAcross;
         out.consistent = field.consistent;
+        out.fine_field = field.fine;
         takeNoiseField(cloud.points(), cloud.neighborhoods(), field, options.threads, out);
       }
     } else if (alone && !out.scales.empty()) {

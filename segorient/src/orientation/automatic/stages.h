@@ -21,6 +21,7 @@ struct AutoStages : AutoNormals {
   float noise = 0.F;        ///< see NoiseLevel::fine
   bool denoised = false;    ///< whether positions were smoothed first
   bool consistent = false;  ///< see NoiseField
+  bool fine_field = false;  ///< see NoiseField::fine
   FinalTraits final_traits;
   float typical_offset = 0.F;  ///< see FinishedSegments
 };
