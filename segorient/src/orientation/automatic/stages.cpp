@@ -87,6 +87,34 @@ void turnSegments(int threads, AutoStages& out) {
   });
 }
 
+// What the winding number says of the signs, where nothing is known of sensors or sides.
+// \param points of the cloud, smoothed or not \param table of their neighbours
+void askField(const PreparedCloud& cloud, const PointView& points, const Neighborhoods& table,
+              int threads, AutoStages& out) {
+  const bool noisy = out.noise >= kFewTellNothing;
+  const bool at_level = out.level > 0.F;
+  const bool alone = out.orientation.toward.empty();
+  CellSigns bodies;
+  if (alone && !at_level) {
+    bodies = findCellSigns(points, out.normals, out.spacing, out.orientation.result.components,
+                           noisy, threads);
+  }
+  takeCellSigns(points, bodies, out);
+  if (noisy || at_level) {
+    // The field of all points knows nothing of faces in contact.
+    if (!bodies.empty()) return;
+    NoiseField field = findNoiseField(cloud.points(), cloud.neighborhoods(), out.normals, threads,
+                                      out.confidences);
+    if (!noisy) field.averaged_below = kAcross;
+    out.consistent = field.consistent;
+    out.fine_field = field.fine;
+    takeNoiseField(cloud.points(), cloud.neighborhoods(), field, threads, out);
+  } else if (alone && !out.scales.empty()) {
+    // Judged scales: signs contradict each other somewhere.
+    takeFineField(points, table, threads, out);
+  }
+}
+
 }  // namespace
 
 AutoStages runAutoStages(PreparedCloud& cloud, const PipelineOptions& options,
@@ -115,29 +143,7 @@ AutoStages runAutoStages(PreparedCloud& cloud, const PipelineOptions& options,
   if (record != nullptr) {
     if (record->field) record->field(points, out);
   } else if (settings.winding_normals && hints.nothing()) {
-    const bool noisy = out.noise >= kFewTellNothing;
-    const bool at_level = out.level > 0.F;
-    const bool alone = out.orientation.toward.empty();
-    CellSigns bodies;
-    if (alone && !at_level) {
-      bodies = findCellSigns(points, out.normals, out.spacing, out.orientation.result.components,
-                             noisy, options.threads);
-    }
-    takeCellSigns(points, bodies, out);
-    if (noisy || at_level) {
-      // The field of all points knows nothing of faces in contact.
-      if (bodies.empty()) {
-        NoiseField field = findNoiseField(cloud.points(), cloud.neighborhoods(), out.normals,
-                                          options.threads, out.confidences);
-        if (!noisy) field.averaged_below = kAcross;
-        out.consistent = field.consistent;
-        out.fine_field = field.fine;
-        takeNoiseField(cloud.points(), cloud.neighborhoods(), field, options.threads, out);
-      }
-    } else if (alone && !out.scales.empty()) {
-      // Judged scales: signs contradict each other somewhere.
-      takeFineField(points, table, options.threads, out);
-    }
+    askField(cloud, points, table, options.threads, out);
   }
   labelTheRest(table, out.normals, out.segmentation);
   const NoiseLevel& noise = out.sheets.noise;
