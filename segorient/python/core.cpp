@@ -260,7 +260,7 @@ py::tuple sensors(const FloatArray& points, const py::object& suggestions, std::
   }
   const py::list found = listOf(report.sensors);
   return py::make_tuple(found, column(std::move(report.sensor_of)), report.deviation, report.chance,
-                        report.why, column(std::move(report.directions)));
+                        report.why, column(std::move(report.directions)), report.faces_up);
 }
 
 py::tuple orient(const FloatArray& points, const py::dict& given, const py::object& progress) {

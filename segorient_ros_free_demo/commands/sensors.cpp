@@ -88,6 +88,7 @@ std::string jsonText(std::size_t points, const std::vector<GivenSensor>& given,
   addList(json, "sensors", report.sensors, origin);
   json.field("deviation", report.deviation);
   json.field("chance", report.chance);
+  json.field("faces_up", report.faces_up);
   json.field("why", report.why);
   return json.finish();
 }

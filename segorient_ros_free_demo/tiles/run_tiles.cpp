@@ -46,6 +46,7 @@ std::string reportText(const Plan& plan, const JoinSummary& joined, std::uint64_
   json.field("segments", segments);
   json.field("sensors_found", joined.sensors_dropped ? 0U : plan.found_sensors);
   json.field("seen_within", plan.seen_within);
+  json.field("faces_up", plan.place.faces_up);
   json.field("viewpoint_left_aside", leavesPlaceAside(plan, joined));
   json.field("noise_in_spacings", plan.traits.noise);
   json.field("denoised", plan.traits.denoise != 0);
@@ -147,6 +148,9 @@ void runAllSteps(const TileRequest& request, const std::string& folder_asked_for
                 joined.sensors_dropped ? ", but see surfaces from both sides" : "");
   }
   if (plan.seen_within) std::printf("sensors found   none, but it was seen from within\n");
+  if (plan.place.faces_up) {
+    std::printf("sensors found   none, but it is one surface, which faces up\n");
+  }
   if (leavesPlaceAside(plan, joined)) {
     std::printf("viewpoint       left aside: the surface contradicts it, or knows better\n");
   }

@@ -179,6 +179,8 @@ class Sensors(NamedTuple):
     #: (n, 3) where no sensor was found, but that all was seen from within: the mean direction to
     #: where each point was seen from, 0 = unknown; otherwise (0, 3)
     directions: Floats
+    #: no sensor was found, but it is one surface over the ground, of which the upper side is seen
+    faces_up: bool
 
 
 class Neighbors(NamedTuple):
@@ -721,6 +723,6 @@ def sensors(
         raise TypeError("width and threads must be whole numbers")
     array, origin = _local(points)
     places = np.zeros((1, 3)) if suggestions is None else _rows("suggestions", suggestions)
-    *found, directions = _core.sensors(array, _moved(places, origin), pixels, cores)
+    *found, directions, faces_up = _core.sensors(array, _moved(places, origin), pixels, cores)
     _to_world(found[0], origin)
-    return Sensors(*found, directions.reshape(-1, 3))
+    return Sensors(*found, directions.reshape(-1, 3), faces_up)

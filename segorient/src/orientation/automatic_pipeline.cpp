@@ -61,6 +61,7 @@ PointHints findHints(const PointView& points, const OrientationHints& given,
   PointHints known = resolveHints(choice.hints ? *choice.hints : given, cloud);
   known.shadows = choice.shadows;
   known.place_found = choice.place_found;
+  known.faces_up = choice.faces_up;
   if (choice.refused) report.known_sensors.push_back(*choice.refused);
   if (choice.hiding) hiding = std::move(choice.hiding);
   report.sensors = std::move(choice.sensors);

@@ -60,6 +60,7 @@ PointHints hintsOf(const OrientationHints& hints, const CloudPlace& place, Prepa
   PointHints out = resolveHints(hints, cloud);
   out.shadows = place.shadows;
   out.place_found = place.found;
+  out.faces_up = place.faces_up;
   if (out.has_viewpoint || !out.sensors.empty()) {
     cloud.findNeighbors(kSheetNeighbors, false);
   }

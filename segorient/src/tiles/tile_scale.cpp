@@ -28,6 +28,7 @@ void copyEvidence(const Evidence& from, float* to) {
 // Of points of the halo: their own tile knows whether their sensors are to be believed; here it is
 // the surroundings that they are for.
 void towardSensor(const float* point, std::size_t i, const PointHints& hints, float* toward) {
+  if (hints.faces_up) toward[2] = 1.F;
   const bool own = !hints.sensors.empty();
   if (!own && !hints.has_viewpoint) return;
   float squares = 0.F;

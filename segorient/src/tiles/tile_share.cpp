@@ -144,6 +144,7 @@ void Tile::run() {
   hints_ = resolveHints(options_.hints, cloud_);
   hints_.shadows = options_.place.shadows;
   hints_.place_found = options_.place.found;
+  hints_.faces_up = options_.place.faces_up;
   const PipelineOptions pipeline = pipelineOptions();
   if (signs_ != nullptr && !hasLevel()) {
     fine_.prepareRecord(*signs_, options_.patch_points, hints_);

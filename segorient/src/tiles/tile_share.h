@@ -67,6 +67,8 @@ SEGORIENT_TILES_EXPORT TileTraits measureTileTraits(const PointView& points, int
 struct CloudPlace {
   detail::Shadows shadows;
   bool found = false;  ///< whether a search for sensors came to it, too, by itself
+  /// Whether nobody knows a place, but all of it is one surface over the ground.
+  bool faces_up = false;
 };
 
 /// Which points of a tile's input are its own.

@@ -103,6 +103,9 @@ struct SensorReport {
   /// Where no sensor was found, but it is known that the scene was seen from within: 3 floats a
   /// row, the mean direction to where it was seen from; 0 = unknown. Empty elsewhere.
   std::vector<float> directions;
+  /// Where no sensor was found: it is one surface over the ground, of which the upper side faces
+  /// whoever saw it from outside.
+  bool faces_up = false;
   /// Mean deviation of log density from a constant, and what it were by chance alone.
   float deviation = 0.F;
   float chance = 0.F;

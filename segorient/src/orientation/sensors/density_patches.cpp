@@ -158,6 +158,7 @@ void DensityPatches::setSparsity() {
 DensityPatches DensityPatches::thinned(std::size_t count) const {
   DensityPatches out;
   out.k = k;
+  out.tell_laws = tell_laws;
   out.flat = flat;
   out.spacing = spacing;
   out.reach = reach;
@@ -173,21 +174,25 @@ DensityPatches DensityPatches::thinned(std::size_t count) const {
 DensityPatches densityPatches(const PointView& points, const search::MedianHashIndex& index,
                               int threads) {
   std::vector<DensityPatches> scales;
+  DensityPatches few;
   for (const int k : kScales) {
     if (points.size < static_cast<std::size_t>(k) * kIndependent) break;
     DensityPatches found = atScale(points, index, k, threads);
     const float independent = found.flat * static_cast<float>(points.size) / static_cast<float>(k);
-    const bool enough =
-        independent >= static_cast<float>(kIndependent) && found.size() >= kLeastFlat;
-    if (enough) scales.push_back(std::move(found));
-    if (enough && scales.back().flat >= kMostlyFlat) return std::move(scales.back());
+    found.tell_laws = independent >= static_cast<float>(kIndependent) && found.size() >= kLeastFlat;
+    if (found.tell_laws && found.flat >= kMostlyFlat) return found;
+    if (found.tell_laws) {
+      scales.push_back(std::move(found));
+    } else if (k == kScales[0]) {
+      few = std::move(found);
+    }
   }
   float most = 0.F;
   for (const DensityPatches& s : scales) most = std::max(most, s.flat);
   for (std::size_t s = scales.size(); s-- > 0;) {
     if (scales[s].flat >= kNotMuchLess * most) return std::move(scales[s]);
   }
-  return {};
+  return few;
 }
 
 float chanceDeviation(int k) {

@@ -24,6 +24,7 @@ struct DensityPatches {
   float flat = 0.F;                ///< share of the neighbourhoods that were flat
   float spacing = 0.F;             ///< median distance to the sixth neighbour
   float reach = 0.F;               ///< 85th percentile of the distance to the sixth neighbour
+  bool tell_laws = false;          ///< there are enough independent ones to fit a law to
 
   std::size_t size() const { return x.size(); }
 
@@ -43,7 +44,7 @@ struct DensityPatches {
 /// \param points in an order that depends on where they are (CompactCloud), so that every m-th is
 ///        a fair sample that is the same for any order of the input
 /// \param index of `points`
-/// \return empty if there are too few independent flat neighbourhoods to tell a law by
+/// \return of few flat neighbourhoods, those of the fewest points, which tell no law
 DensityPatches densityPatches(const PointView& points, const search::MedianHashIndex& index,
                               int threads);
 

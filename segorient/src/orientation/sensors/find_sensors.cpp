@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "common/in_double.h"
+#include "orientation/sensors/height_field.h"
 #include "orientation/sensors/image_rays.h"
 #include "orientation/sensors/joint_sensors.h"
 #include "orientation/sensors/sensor_search.h"
@@ -87,20 +88,28 @@ FoundSensor findStation(const DensityPatches& patches, float constant,
   return found ? describe(*found, constant, false) : FoundSensor{};
 }
 
+// Even densities tell of no sensor. What no upright line meets twice has one side that faces up.
+void lookFromAbove(PreparedCloud& cloud, const DensityPatches& patches, SensorReport& out) {
+  out.faces_up = detail::measureHeightField(cloud, patches).sure();
+  if (out.faces_up) out.why += ", but it is one surface over the ground, whose upper side is seen";
+}
+
 // By densities and layers; in the unit of the cloud, sensor_of by its points.
 SensorReport searchSensors(PreparedCloud& cloud, const SensorOptions& options) {
   SensorReport out;
   out.sensor_of.assign(cloud.size(), -1);
   const DensityPatches patches =
       detail::densityPatches(cloud.points(), cloud.index(), options.threads);
-  if (patches.size() == 0) {
+  if (!patches.tell_laws) {
     out.why = "too few flat neighbourhoods to measure densities by";
+    if (options.search) lookFromAbove(cloud, patches, out);
     return out;
   }
   out.deviation = detail::deviation(patches.log_density);
   out.chance = detail::chanceDeviation(patches.k);
   if (out.deviation < kMoreThanChance * out.chance) {
     out.why = "the density is even";
+    if (options.search) lookFromAbove(cloud, patches, out);
     return out;
   }
   FoundSensor sensor = findStation(patches, out.deviation, options);
@@ -141,6 +150,7 @@ void trySuggestedShadows(PreparedCloud& cloud, const SensorOptions& options,
     sensor.cost_ratio = shadows.coveredOfSteps();
     sensor.sure = true;
     out.directions.clear();
+    out.faces_up = false;
     setOnly(sensor, "surfaces end at the shadows that the suggested place casts", out);
     return;
   }

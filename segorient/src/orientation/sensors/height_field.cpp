@@ -104,6 +104,8 @@ void measureColumns(const PointView& points, const Ground& ground, float side, H
 float shareBacked(const PointView& points, const search::MedianHashIndex& index,
                   const DensityPatches& patches) {
   constexpr std::size_t kPieces = 500;
+  constexpr std::size_t kLeastPieces = 100;  // a share of them is known to a twentieth
+  if (patches.size() < kLeastPieces) return 1.F;
   const DensityPatches some = patches.thinned(kPieces);
   std::array<pcl::index_t, kAround> rows{};
   std::array<float, kAround> squared{};
@@ -120,7 +122,7 @@ float shareBacked(const PointView& points, const search::MedianHashIndex& index,
     }
     backed += static_cast<float>(behind) > kShareBehind * static_cast<float>(found) ? 1 : 0;
   }
-  return static_cast<float>(backed) / static_cast<float>(std::max<std::size_t>(1, some.size()));
+  return static_cast<float>(backed) / static_cast<float>(some.size());
 }
 
 }  // namespace

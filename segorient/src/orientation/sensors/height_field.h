@@ -14,8 +14,8 @@ struct HeightField {
   float layered = 1.F;  ///< share of those that have two layers far apart, as their neighbours do
   float backed = 1.F;   ///< share of flat pieces with another layer close behind or before them
 
-  /// Whether it was seen from above for sure. Even sampling of an open sheet looks the same: let
-  /// the densities be uneven, too.
+  /// Whether nearly all of it is one surface that faces up. An open sheet looks the same: that a
+  /// sensor has seen it, uneven densities have to say.
   bool sure() const;
 };
 

@@ -153,7 +153,9 @@ class Finder {
       out_.doubtful = out_.allowed || hides || denied || density.constant < kVaries;
       if (out_.allowed) return;
     }
-    if (!out_.common && (hides || (denied && report.hidden > kFewHidden))) report.used = false;
+    // Who was found has passed such tests already.
+    if (out_.common || hints_.place_found) return;
+    if (hides || (denied && report.hidden > kFewHidden)) report.used = false;
   }
 
   // Scans against each other, and against themselves: the worst one is in the wrong, which may
@@ -234,6 +236,12 @@ KnownSensors findKnownSensors(const PointView& points, const Neighborhoods& neig
     KnownSensors believed;
     believed.toward = hints.toward;
     return believed;
+  }
+  if (hints.faces_up) {
+    KnownSensors above;
+    above.toward.assign(3 * points.size, 0.F);
+    for (std::size_t i = 0; i < points.size; ++i) above.toward[3 * i + 2] = 1.F;
+    return above;
   }
   return Finder(points, neighborhoods, spacing, hints, threads).run();
 }

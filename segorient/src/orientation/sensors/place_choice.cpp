@@ -33,6 +33,11 @@ PlaceChoice findOthers(const PointView& points, OrientationHints hints, Prepared
                        int threads, SeenShadows seen = {}) {
   PlaceChoice out;
   out.sensors = addFoundSensors(points, cloud, threads, hints, seen);
+  // What one layer told is not to be told by others again, which know nothing of trees.
+  out.place_found =
+      out.sensors.sure() && out.sensors.sensors[0].evidence == SensorEvidence::LAYERS;
+  // Whoever names a side of a sheet means it.
+  out.faces_up = out.sensors.faces_up && hints.seeds.empty();
   if (out.sensors.sensors.empty()) out.sensors.sensor_of = {};
   out.hints = std::move(hints);
   out.shadows = seen.of_sensor;

@@ -22,6 +22,7 @@ struct PlaceChoice {
   std::optional<OrientationHints> hints;
   Shadows shadows;           ///< of the one place that is followed, see PointHints
   bool place_found = false;  ///< see PointHints
+  bool faces_up = false;     ///< see PointHints
   /// Of a search that nobody's knowledge made needless.
   SensorReport sensors;
   std::optional<KnownSensor> refused;  ///< a place that others were found instead of

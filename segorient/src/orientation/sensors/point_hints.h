@@ -26,6 +26,8 @@ struct PointHints {
   std::array<float, 3> viewpoint{0.F, 0.F, 0.F};
   /// Whether a search for sensors came to the one place for all points, too, by itself.
   bool place_found = false;
+  /// Whether all of it is one surface over the ground, see SensorReport.
+  bool faces_up = false;
   /// What steps of depth say of that place; no steps where nobody looked.
   detail::Shadows shadows;
   /// 3 floats a point: where it was seen from, NaN = unknown; empty = none
@@ -39,7 +41,7 @@ struct PointHints {
 
   /// Whether there is nothing that knows sides better than the points themselves.
   bool nothing() const {
-    return surface != SurfaceKind::OPEN && !has_viewpoint && sensors.empty() &&
+    return surface != SurfaceKind::OPEN && !has_viewpoint && !faces_up && sensors.empty() &&
            directions.empty() && seeds.empty() && toward.empty();
   }
 };
