@@ -44,7 +44,7 @@ struct Corner {
   std::size_t size() const { return xyz.size() / 4; }
   void run(int threads = 1, const std::vector<std::uint8_t>& sure = {}) {
     detail::MoreNeighbors more(viewOf(xyz), threads);
-    detail::leanToSensors(more, neighborsOf(xyz), toward, sure, threads, normals);
+    detail::leanToSensors(more, neighborsOf(xyz), toward, sure, false, threads, normals);
   }
 };
 

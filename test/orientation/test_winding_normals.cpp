@@ -147,7 +147,7 @@ Doubts doubts() {
 TEST(WindingNormals, ChangeOnlyWhatIsInDoubt) {
   Doubts d = doubts();
   const FilteredNormals before = d.normals;
-  EXPECT_EQ(refineByWinding(viewOf(d.cloud.xyz), d.spacing, 0.2F, 0, d.normals), 998U);
+  EXPECT_EQ(refineByWinding(viewOf(d.cloud.xyz), d.spacing, 0.2F, false, 0, d.normals), 998U);
   EXPECT_EQ(d.normals.confidences, before.confidences);
   for (std::size_t i = 0; i < 2000; ++i) {
     const float* n = &d.normals.normals[4 * i];
@@ -166,7 +166,7 @@ TEST(WindingNormals, ChangeOnlyWhatIsInDoubt) {
 TEST(WindingNormals, LeaveCleanCloudsAlone) {
   Doubts d = doubts();
   const FilteredNormals before = d.normals;
-  EXPECT_EQ(refineByWinding(viewOf(d.cloud.xyz), d.spacing, 0.05F, 0, d.normals), 0U);
+  EXPECT_EQ(refineByWinding(viewOf(d.cloud.xyz), d.spacing, 0.05F, false, 0, d.normals), 0U);
   EXPECT_TRUE(std::equal(before.normals.begin(), before.normals.begin() + 4 * 900,
                          d.normals.normals.begin()));
 }
@@ -174,8 +174,8 @@ TEST(WindingNormals, LeaveCleanCloudsAlone) {
 TEST(WindingNormals, AreTheSameForAnyNumberOfThreads) {
   Doubts one = doubts();
   Doubts four = doubts();
-  refineByWinding(viewOf(one.cloud.xyz), one.spacing, 0.2F, 1, one.normals);
-  refineByWinding(viewOf(four.cloud.xyz), four.spacing, 0.2F, 4, four.normals);
+  refineByWinding(viewOf(one.cloud.xyz), one.spacing, 0.2F, false, 1, one.normals);
+  refineByWinding(viewOf(four.cloud.xyz), four.spacing, 0.2F, false, 4, four.normals);
   for (std::size_t i = 0; i < one.normals.normals.size(); ++i) {
     if (i / 4 == 900) continue;
     ASSERT_EQ(one.normals.normals[i], four.normals.normals[i]);
@@ -184,19 +184,19 @@ TEST(WindingNormals, AreTheSameForAnyNumberOfThreads) {
 
 TEST(WindingNormals, OfNothingAreNothing) {
   FilteredNormals none;
-  EXPECT_EQ(refineByWinding({}, {}, 0.2F, 0, none), 0U);
+  EXPECT_EQ(refineByWinding({}, {}, 0.2F, false, 0, none), 0U);
   Doubts d = doubts();
-  EXPECT_EQ(refineByWinding(viewOf(d.cloud.xyz), {0.1F}, 0.2F, 0, d.normals), 0U);
+  EXPECT_EQ(refineByWinding(viewOf(d.cloud.xyz), {0.1F}, 0.2F, false, 0, d.normals), 0U);
   const float unknown = std::numeric_limits<float>::quiet_NaN();
-  EXPECT_EQ(refineByWinding(viewOf(d.cloud.xyz), d.spacing, unknown, 0, d.normals), 0U);
+  EXPECT_EQ(refineByWinding(viewOf(d.cloud.xyz), d.spacing, unknown, false, 0, d.normals), 0U);
   d.normals.confidences.pop_back();
-  EXPECT_EQ(refineByWinding(viewOf(d.cloud.xyz), d.spacing, 0.2F, 0, d.normals), 0U);
+  EXPECT_EQ(refineByWinding(viewOf(d.cloud.xyz), d.spacing, 0.2F, false, 0, d.normals), 0U);
   // All in one place, or so near that squares vanish.
   FilteredNormals near;
   near.normals = {0.F, 0.F, 1.F, 0.F, 0.F, 0.F, 1.F, 0.F};
   near.confidences = {0.F, 0.F};
   const std::vector<float> xyz{0.F, 0.F, 0.F, 0.F, 1e-30F, 0.F, 0.F, 0.F};
-  refineByWinding(viewOf(xyz), {1e-30F, 0.F}, 0.2F, 0, near);
+  refineByWinding(viewOf(xyz), {1e-30F, 0.F}, 0.2F, false, 0, near);
   EXPECT_EQ(near.normals[2], 1.F);
   EXPECT_EQ(near.normals[6], 1.F);
 }

@@ -20,8 +20,6 @@
 
 namespace segorient::detail {
 
-/// Neighbours spread in one direction only, as on a ring: their plane is any plane through it.
-constexpr float kOneLine = 0.15F;
 /// Residuals of a curved surface grow with the square of the number of neighbours, from one scale
 /// to the next by 2.2; those of noise do not grow.
 constexpr float kFlat = 1.7F;

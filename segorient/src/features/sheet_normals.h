@@ -6,6 +6,7 @@
 #include <segorient/common/neighborhoods.h>
 #include <segorient/common/point_view.h>
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <optional>
@@ -31,11 +32,23 @@ struct NoiseLevel {
   bool thin = false;
 };
 
+/// Up to this noise, in spacings, a fitted surface is nearer than any mean with its surroundings:
+/// it turns the normal of ten neighbours by half a degree.
+constexpr float kCleanFit = 0.05F;
+
 /// What estimateSheetNormals() measures of a whole cloud; for a part of one it is told instead.
 struct SheetTraits {
   NoiseLevel noise;
   float residual = 0.F;      ///< see SheetNormals::residual
   bool scan_scales = false;  ///< whether many points ask for the planes that scans need
+
+  /// Whether the noise of this scan is one that only many neighbours show. Steps of depth, rings
+  /// and rough ground hide from few what they are to many: normals err alike side by side.
+  bool onlyManyShowNoise() const {
+    // Of the residuals of 32 neighbours and of 8: noise from point to point makes them the same.
+    constexpr float kSeenByFew = 2.F;
+    return scan_scales && noise.coarse >= std::max(kCleanFit, kSeenByFew * noise.fine);
+  }
 };
 
 /// Options of estimateSheetNormals(). Each step can be switched off to see what it is worth.

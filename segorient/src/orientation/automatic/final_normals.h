@@ -10,10 +10,6 @@
 
 namespace segorient::detail {
 
-/// Up to this noise, in spacings, a fitted surface is nearer than any mean with its surroundings:
-/// it turns the normal of ten neighbours by half a degree.
-constexpr float kCleanFit = 0.05F;
-
 /// The most accurate normals that the library has for a cloud, with the signs that were found.
 ///
 /// The filter that settles the signs averages over neighbours, which costs accuracy where a surface
@@ -22,8 +18,7 @@ constexpr float kCleanFit = 0.05F;
 /// belongs to each (OneSidedNormal::EXPECTED). With noise it gets the mean of that and of the
 /// filtered one, which err in different ways: the one by noise, the other by what the surface
 /// bends. The filtered normal stays where neighbours are of another wall, at what cannot be fitted
-/// beside sharp edges, and on scans whose noise only many neighbours show (see runAutoStages()), if
-/// it is more than kCleanFit.
+/// beside sharp edges, and on scans whose noise only many neighbours show, see SheetTraits.
 ///
 /// \param cloud whose neighbours are known
 /// \param more of the same points, which are sought where the noise asks for them, unless

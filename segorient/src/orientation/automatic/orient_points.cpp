@@ -7,6 +7,7 @@
 #include <limits>
 #include <utility>
 
+#include "common/dot.h"
 #include "common/median.h"
 #include "common/parallel_for.h"
 #include "features/sheet_normals.h"
@@ -30,6 +31,20 @@ void dropCutOff(const PointView& points, const Neighborhoods& nb, const std::vec
     if (std::sqrt(square) <= whole[i]) continue;
     std::fill_n(&sheets.normals[4 * i], 4, std::numeric_limits<float>::quiet_NaN());
   }
+}
+
+// Normals that err alike side by side are no better for those around: these settle the sides only,
+// unless it was seen which it is.
+// \param toward as KnownSensors has it, or none
+void keepLines(const std::vector<float>& own, const std::vector<float>& toward, int threads,
+               std::vector<float>& filtered) {
+  parallelFor(own.size() / 4, threads, 5.0, [&](std::size_t i) {
+    const float* n = &own[4 * i];
+    if (!std::isfinite(n[0])) return;
+    const bool seen = !toward.empty() && dot(&toward[3 * i], &toward[3 * i]) > 0.F;
+    const float sign = !seen && dot(n, &filtered[4 * i]) < 0.F ? -1.F : 1.F;
+    for (std::size_t a = 0; a < 3; ++a) filtered[4 * i + a] = sign * n[a];
+  });
 }
 
 std::vector<std::uint8_t> lookAround(const SheetNormals& sheets, int threads) {
@@ -100,11 +115,14 @@ AutoNormals orientAtOneScale(MoreNeighbors& more, const Neighborhoods& neighborh
     for (std::size_t a = 0; a < 3; ++a) sheets.normals[4 * i + a] *= sign;
   });
   out.around = lookAround(sheets, threads);
+  std::vector<float> own;
+  if (sheets.traits.onlyManyShowNoise()) own = sheets.normals;
   FilteredNormals filtered = filterOrientedNormals(
       points, neighborhoods, std::move(sheets.normals), sheets.spacing, sheets.residual,
       settings.filter_rounds, settings.filter_wedges, threads);
+  if (!own.empty()) keepLines(own, out.orientation.toward, threads, filtered.normals);
   if (settings.winding_normals && settings.filter_rounds > 0) {
-    refineByWinding(points, sheets.spacing, sheets.residual, threads, filtered);
+    refineByWinding(points, sheets.spacing, sheets.residual, !own.empty(), threads, filtered);
   }
   if (!out.orientation.toward.empty() && sheets.traits.scan_scales) {
     replaceGrazingNormals(more, out.orientation.toward, threads, filtered);

@@ -78,13 +78,15 @@ float scatterOf(float mean_length) {
 class Leaner {
  public:
   Leaner(MoreNeighbors& more, const Neighborhoods& nb, const std::vector<float>& toward,
-         const std::vector<std::uint8_t>& sure, int threads, std::vector<float>& normals)
+         const std::vector<std::uint8_t>& sure, bool only_many_show_noise, int threads,
+         std::vector<float>& normals)
       : more_(more),
         points_(more.points()),
         xyz_(points_),
         nb_(nb),
         toward_(toward),
         sure_(sure),
+        only_many_show_noise_(only_many_show_noise),
         threads_(threads),
         normals_(normals) {}
 
@@ -188,6 +190,7 @@ class Leaner {
     const Plane wide = planes[WIDE].at(r);
     out.few = varianceOf(planes[NEAR].at(r));
     out.variance = std::min({varianceOf(planes[NEAREST].at(r)), out.few, varianceOf(wide)});
+    if (only_many_show_noise_ && wide.valid) out.few = out.variance = varianceOf(wide);
     if (wide.valid) {
       out.agreement = std::min(1.F, std::fabs(dot(wide.normal.data(), n)));
       addPlane(wide, out);
@@ -234,7 +237,8 @@ class Leaner {
 
   // Flat planes that leave no more than few neighbours do count as much as the normal itself.
   void addPlane(const Plane& plane, Lean& to) const {
-    if (!plane.valid || !(plane.lambda[1] > 0.F)) return;
+    // Through one line, as a ring is, there are many planes.
+    if (!plane.valid || !(plane.lambda[1] > kOneLine * plane.lambda[2])) return;
     const float across = plane.lambda[0];
     const float same = across > kSameNoise * to.few ? kSameNoise * to.few / across : 1.F;
     const float weight = same / (1.F + across / (kFlat * plane.lambda[1]));
@@ -286,6 +290,7 @@ class Leaner {
   const Neighborhoods& nb_;
   const std::vector<float>& toward_;
   const std::vector<std::uint8_t>& sure_;
+  const bool only_many_show_noise_;
   int threads_;
   std::vector<float>& normals_;
   std::vector<float> leaned_;
@@ -296,8 +301,8 @@ class Leaner {
 
 void leanToSensors(MoreNeighbors& more, const Neighborhoods& neighborhoods,
                    const std::vector<float>& toward, const std::vector<std::uint8_t>& sure,
-                   int threads, std::vector<float>& normals) {
-  Leaner(more, neighborhoods, toward, sure, threads, normals).run();
+                   bool only_many_show_noise, int threads, std::vector<float>& normals) {
+  Leaner(more, neighborhoods, toward, sure, only_many_show_noise, threads, normals).run();
 }
 
 }  // namespace segorient::detail

@@ -26,9 +26,10 @@ namespace segorient::detail {
 /// \param toward 3 a point: unit vector to its sensor; 0 = unknown, and the normal stays
 /// \param sure one a point, or none: normals that stay as far as their side allows, whatever the
 ///        planes around say, which near an edge are of both faces
+/// \param only_many_show_noise see SheetTraits
 /// \param normals 4 floats a point, oriented; changed but for the fourth
 void leanToSensors(MoreNeighbors& more, const Neighborhoods& neighborhoods,
                    const std::vector<float>& toward, const std::vector<std::uint8_t>& sure,
-                   int threads, std::vector<float>& normals);
+                   bool only_many_show_noise, int threads, std::vector<float>& normals);
 
 }  // namespace segorient::detail

@@ -24,9 +24,6 @@ namespace {
 
 // Enough for a plane through a slab of one or two spacings of noise.
 constexpr int kDenoisingNeighbors = 48;
-// Of the residuals of 32 neighbours and of 8: noise of a surface makes them nearly the same, while
-// steps of depth, rings and rough ground hide from the few what they are to the many.
-constexpr float kSeenByFew = 2.F;
 
 // Finds the neighbours unless they are known, and those of smoothed positions where the noise asks
 // for that.
@@ -146,17 +143,15 @@ AutoStages runAutoStages(PreparedCloud& cloud, const PipelineOptions& options,
     askField(cloud, points, table, options.threads, out);
   }
   labelTheRest(table, out.normals, out.segmentation);
-  const NoiseLevel& noise = out.sheets.noise;
-  const bool few_tell =
-      !out.scan_scales || noise.coarse < std::max(kCleanFit, kSeenByFew * noise.fine);
-  if (settings.fit_normals && !out.denoised && few_tell) {
+  if (settings.fit_normals && !out.denoised && !out.sheets.onlyManyShowNoise()) {
     begin("recomputation", 0.88);
     out.final_traits =
         fitFinalNormals(cloud, more, out.segmentation, options.k > 0, options.threads,
                         record != nullptr ? &record->final_traits : nullptr, out);
   }
   if (!out.orientation.toward.empty()) {
-    leanToSensors(more, table, out.orientation.toward, out.sure, options.threads, out.normals);
+    leanToSensors(more, table, out.orientation.toward, out.sure, out.sheets.onlyManyShowNoise(),
+                  options.threads, out.normals);
   }
   followFinalNormals(table, out.normals, options.threads, out.segmentation);
   turnSegments(options.threads, out);

@@ -20,12 +20,12 @@ constexpr float kNothingToMend = 0.97F;  // confidence from which on there is no
 // other, wrongly; below, the planes near an edge are of one face each.
 constexpr float kNoisy = 0.1F;
 
-std::vector<std::uint32_t> listDoubtful(const std::vector<float>& spacing,
+std::vector<std::uint32_t> listDoubtful(const std::vector<float>& spacing, bool everywhere,
                                         const FilteredNormals& filtered) {
   std::vector<std::uint32_t> rows;
   for (std::size_t p = 0; p < spacing.size(); ++p) {
-    if (filtered.confidences[p] >= kNothingToMend || !std::isfinite(filtered.normals[4 * p]))
-      continue;
+    if (!everywhere && filtered.confidences[p] >= kNothingToMend) continue;
+    if (!std::isfinite(filtered.normals[4 * p])) continue;
     if (spacing[p] > 0.F) rows.push_back(static_cast<std::uint32_t>(p));
   }
   return rows;
@@ -40,13 +40,14 @@ bool tilt(const float* n, float* normal) {
 }  // namespace
 
 std::size_t refineByWinding(const PointView& points, const std::vector<float>& spacing,
-                            float residual, int threads, FilteredNormals& filtered) {
+                            float residual, bool everywhere, int threads,
+                            FilteredNormals& filtered) {
   const std::size_t n = points.size;
   if (spacing.size() != n || filtered.confidences.size() != n || filtered.normals.size() != 4 * n) {
     return 0;
   }
   if (!(residual >= kNoisy)) return 0;
-  const std::vector<std::uint32_t> rows = listDoubtful(spacing, filtered);
+  const std::vector<std::uint32_t> rows = listDoubtful(spacing, everywhere, filtered);
   if (rows.empty()) return 0;
   std::vector<float> at;
   std::vector<float> radii;

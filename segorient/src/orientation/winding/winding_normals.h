@@ -28,11 +28,13 @@ namespace segorient {
 /// \param points finite, near ones side by side (CompactCloud's order)
 /// \param spacing one a point
 /// \param residual median residual of the cloud, in spacings
+/// \param everywhere whether the normals around are no sign of being right, see SheetTraits
 /// \param threads 0 = all cores
 /// \param filtered as filterOrientedNormals() returns it; confidences, residuals and missing
 ///        normals stay as they are
 /// \return how many points have a new normal; 0 also where the sizes of the arrays do not match
 std::size_t refineByWinding(const PointView& points, const std::vector<float>& spacing,
-                            float residual, int threads, FilteredNormals& filtered);
+                            float residual, bool everywhere, int threads,
+                            FilteredNormals& filtered);
 
 }  // namespace segorient
