@@ -49,9 +49,14 @@ struct Scales {
   // Of some rows of a table.
   std::vector<Fits> fitRows(const PointView& points, const Neighborhoods& nb,
                             const std::vector<pcl::index_t>& rows, int threads) const {
+    return fitRows(points, points, nb, rows, threads);
+  }
+  // \param at a point for each row of the table, which speaks of `points`
+  std::vector<Fits> fitRows(const PointView& at, const PointView& points, const Neighborhoods& nb,
+                            const std::vector<pcl::index_t>& rows, int threads) const {
     std::vector<Fits> out(rows.size());
     const FourFloats xyz(points);
-    LocalFitJob job = jobOf(points, xyz, nb, sizes.back());
+    LocalFitJob job = jobOf(at, xyz, nb, sizes.back());
     job.rows = rows.data();
     const std::size_t blocks = (rows.size() + GrownPlanes::kRows - 1) / GrownPlanes::kRows;
     parallelFor(

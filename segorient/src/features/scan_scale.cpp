@@ -2,12 +2,16 @@
 // Copyright (c) 2026, the segorient authors
 #include "features/scan_scale.h"
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <memory>
+#include <numeric>
 #include <vector>
 
 #include "common/every_nth.h"
+#include "common/parallel_for.h"
 #include "features/growing_scales.h"
 #include "features/grown_planes.h"
 
@@ -17,6 +21,20 @@ namespace {
 using Rows = std::vector<pcl::index_t>;
 
 constexpr Scales<4> kFew{kSheetScales};
+
+constexpr int kNearest = 18;
+constexpr Scales<1> kOnLine{{kNearest}};
+// A share of .01 is known to .0016 then.
+constexpr std::size_t kLineSamples = 4096;
+
+bool manyOnLines(const std::vector<Scales<1>::Fits>& fits) {
+  // On surfaces that are sampled at random, evenly or by stripes, it is 0 to .003.
+  constexpr double kMoreThanChance = 0.01;
+  std::size_t on_lines = 0;
+  for (const Scales<1>::Fits& f : fits) on_lines += std::isnan(f.noise2[0]) ? 1 : 0;
+  return static_cast<double>(on_lines) > kMoreThanChance * static_cast<double>(fits.size());
+}
+
 }  // namespace
 
 bool needsScanScales(const PointView& points, const Neighborhoods& nb, int smallest, int threads) {
@@ -64,22 +82,30 @@ bool needsScanScales(const PointView& points, const Neighborhoods& nb, int small
 }
 
 bool showsScanLines(const PointView& points, const Neighborhoods& nb, int threads) {
-  // A share of .01 is known to .0016 then.
-  constexpr std::size_t kSamples = 4096;
-  constexpr int kNearest = 18;
-  // On surfaces that are sampled at random, evenly or by stripes, it is 0 to .003.
-  constexpr double kMoreThanChance = 0.01;
   if (nb.k() <= kNearest) return false;
-  const Scales<1> scale{{kNearest}};
   Rows rows;
-  for (const std::size_t i : EveryNth(points.size, kSamples)) {
+  for (const std::size_t i : EveryNth(points.size, kLineSamples)) {
     rows.push_back(static_cast<pcl::index_t>(i));
   }
-  std::size_t on_lines = 0;
-  for (const Scales<1>::Fits& fits : scale.fitRows(points, nb, rows, threads)) {
-    on_lines += std::isnan(fits.noise2[0]) ? 1 : 0;
-  }
-  return static_cast<double>(on_lines) > kMoreThanChance * static_cast<double>(rows.size());
+  return manyOnLines(kOnLine.fitRows(points, nb, rows, threads));
+}
+
+bool showsScanLines(const PointView& points, const search::MedianHashIndex& index, int threads) {
+  constexpr double kQueryTime = 2000.0;  // ns, see resolveThreads()
+  if (points.size <= static_cast<std::size_t>(kNearest)) return false;
+  const EveryNth some(points.size, kLineSamples);
+  std::vector<float> at(4 * some.size(), 0.F);
+  Rows rows(some.size());
+  std::iota(rows.begin(), rows.end(), 0);
+  Neighborhoods nb;
+  nb.reset(some.size(), kNearest + 1, false);
+  parallelFor(some.size(), threads, kQueryTime, [&](std::size_t s) {
+    std::array<float, kNearest + 1> squares;
+    const float* p = points[some[s]];
+    std::copy_n(p, 3, &at[4 * s]);
+    nb.setCount(s, index.nearestK(p, kNearest + 1, nb.mutableIndices(s), squares.data()));
+  });
+  return manyOnLines(kOnLine.fitRows({at.data(), 4, some.size()}, points, nb, rows, threads));
 }
 
 }  // namespace segorient::detail

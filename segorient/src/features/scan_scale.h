@@ -2,8 +2,10 @@
 // Copyright (c) 2026, the segorient authors
 #pragma once
 
+#include <segorient/common/export.h>
 #include <segorient/common/neighborhoods.h>
 #include <segorient/common/point_view.h>
+#include <segorient/search/median_hash_index.h>
 
 #include <cstddef>
 #include <functional>
@@ -28,6 +30,9 @@ bool needsScanScales(const PointView& points, const Neighborhoods& neighborhoods
 /// nearest 18 are on one line.
 /// \param neighborhoods 18 of each point at least
 bool showsScanLines(const PointView& points, const Neighborhoods& neighborhoods, int threads);
+/// The same where there is no table of so many.
+SEGORIENT_FEATURES_EXPORT bool showsScanLines(const PointView& points,
+                                              const search::MedianHashIndex& index, int threads);
 
 /// Takes point i's plane, at [r] of some.
 using ScanPlaneTaker = std::function<void(std::size_t i, const GrownPlanes& planes, std::size_t r)>;

@@ -84,6 +84,10 @@ void judgeReliability(const std::vector<float>& lopsided, SheetNormals& out) {
 
 }  // namespace
 
+int detail::smallestNeighbors(float noise) {
+  return kSheetScales[smallestScale(noise)];
+}
+
 SheetNormals estimateSheetNormals(const PointView& points, const Neighborhoods& nb,
                                   const SheetNormalOptions& options, detail::MoreNeighbors* more) {
   SheetNormals out;
@@ -92,7 +96,7 @@ SheetNormals estimateSheetNormals(const PointView& points, const Neighborhoods& 
       options.known ? options.known->noise : measureNoise(points, nb, options.threads);
   out.traits.noise = noise;
   const std::size_t smallest = smallestScale(noise.fine);
-  const int scale = kSheetScales[smallest];
+  const int scale = detail::smallestNeighbors(noise.fine);
   out.traits.scan_scales =
       options.known
           ? options.known->scan_scales

@@ -90,6 +90,8 @@ class MoreNeighbors;
 /// eight neighbours and the point with noise of s = .17, which tilts it by sqrt(2) s / (3 * .75),
 /// .75 being their extent along an axis: by 6 degrees, and by 15 in 2.5 standard deviations.
 constexpr float kFewTellNothing = 0.13F;
+/// The first of kSheetScales that noise leaves.
+int smallestNeighbors(float noise);
 }  // namespace detail
 
 /// Estimates sheet normals.

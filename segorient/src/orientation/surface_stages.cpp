@@ -3,11 +3,16 @@
 #include "orientation/surface_stages.h"
 
 #include <cstdint>
+#include <string>
 #include <utility>
 
 #include "features/automatic_normals.h"
 #include "features/local_normals.h"
 #include "features/recompute_normals.h"
+#include "features/scan_normals.h"
+#include "features/scan_scale.h"
+#include "features/sheet_normals.h"
+#include "orientation/sensors/sensor_search.h"
 #include "segmentation/region_growing.h"
 #include "segmentation/segmentation_rows.h"
 
@@ -16,18 +21,37 @@ namespace segorient::detail {
 void SurfaceStages::findNormals(const PipelineOptions& options) {
   normals.resize(4 * cloud.size());
   if (options.normals.estimator == NormalEstimator::AUTO) {
-    const AutomaticNormalReport report =
-        options.k > 0
-            ? estimateNormalsAutomatically(cloud.points(), cloud.neighborhoods(), options.threads,
-                                           normals.data())
-            : estimateNormalsAutomatically(cloud.points(), cloud.index(), cloud.neighborhoods(),
-                                           options.threads, normals.data());
-    normals_chosen = report.text();
+    findNormalsAutomatically(options);
     return;
   }
   const LocalNormalOptions settings{options.normals, 0, options.threads};
   estimateNormals(cloud.points(), cloud.neighborhoods(), settings, normals.data());
   normals_chosen = "as asked for";
+}
+
+void SurfaceStages::findNormalsAutomatically(const PipelineOptions& options) {
+  const PointView points = cloud.points();
+  const int threads = options.threads;
+  if (options.k > 0) {
+    normals_chosen =
+        estimateNormalsAutomatically(points, cloud.neighborhoods(), threads, normals.data()).text();
+    return;
+  }
+  normals_chosen = estimateNormalsAutomatically(points, cloud.index(), cloud.neighborhoods(),
+                                                threads, normals.data())
+                       .text();
+  SensorOptions sensors;
+  sensors.threads = threads;
+  SeenShadows shadows;
+  const bool seen = sensorsOf(points, cloud, sensors, shadows).sure();
+  if (!seen && !showsScanLines(points, cloud.index(), threads)) return;
+  Neighborhoods wider;
+  cloud.index().nearestKAll(kSheetNeighbors + 1, wider, false);
+  MoreNeighbors more(points, threads, cloud.takeIndex());
+  const std::size_t taken = takeScanPlanes(more, wider, threads, normals);
+  if (taken > 0) {
+    normals_chosen += "; " + std::to_string(taken) + " points of a scan by planes of more neighbours";
+  }
 }
 
 void SurfaceStages::findSegments(const SegmentationOptions& options) {

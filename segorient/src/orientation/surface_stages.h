@@ -20,7 +20,8 @@ struct SurfaceStages {
   /// Neighbours (2.1). \param wanted as many, or as there are
   void findNeighbors(int wanted) { k = cloud.findNeighbors(wanted); }
   /// Unoriented normals (2.2) by `options.normals`. Automatic ones have the neighbours that were
-  /// found and, unless the options say how many, more of them where the noise asks for more.
+  /// found and, unless the options say how many, more of them where the noise asks for more, and
+  /// where points were seen by a sensor that the cloud itself tells of.
   void findNormals(const PipelineOptions& options);
   /// Segments (2.3), or faces where the options unite them.
   void findSegments(const SegmentationOptions& options);
@@ -33,6 +34,9 @@ struct SurfaceStages {
   std::vector<float> normals;
   std::string normals_chosen;  ///< how normals were found and, where nothing was asked for, why so
   Segmentation segmentation;
+
+ private:
+  void findNormalsAutomatically(const PipelineOptions& options);
 };
 
 }  // namespace segorient::detail
