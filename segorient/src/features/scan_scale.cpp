@@ -22,6 +22,7 @@ using Rows = std::vector<pcl::index_t>;
 
 constexpr Scales<4> kFew{kSheetScales};
 
+// Fewer are on a line by chance now and then, more span two lines.
 constexpr int kNearest = 18;
 constexpr Scales<1> kOnLine{{kNearest}};
 // A share of .01 is known to .0016 then.

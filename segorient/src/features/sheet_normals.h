@@ -45,7 +45,8 @@ struct SheetTraits {
   /// Whether the noise of this scan is one that only many neighbours show. Steps of depth, rings
   /// and rough ground hide from few what they are to many: normals err alike side by side.
   bool onlyManyShowNoise() const {
-    // Of the residuals of 32 neighbours and of 8: noise from point to point makes them the same.
+    // Of the residuals of 32 neighbours and of 8: noise from point to point makes them the same,
+    // what a plane does not follow grows with the neighbours, to four times. Halfway.
     constexpr float kSeenByFew = 2.F;
     return scan_scales && noise.coarse >= std::max(kCleanFit, kSeenByFew * noise.fine);
   }

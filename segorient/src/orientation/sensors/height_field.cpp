@@ -5,12 +5,15 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdio>
+#include <cstdlib>
 #include <cstddef>
 #include <cstdint>
 #include <tuple>
 #include <utility>
 #include <vector>
 
+#include "common/dot.h"
 #include "common/every_nth.h"
 
 namespace segorient::detail {
@@ -23,16 +26,18 @@ constexpr float kMostRelief = 0.3F;
 constexpr float kColumn = 3.F;
 constexpr std::size_t kFilled = 3;
 constexpr float kMostlyFilled = 0.9F;
-// Layers: as far apart as two columns are wide. What is under something else fills squares of two
-// by two columns, edges of roofs and walls only lines: aircraft up to .01 of the columns, solids,
+// Layers: as far apart as a column and a half. What is under something else fills squares of two
+// by two columns, edges of roofs and walls only lines: aircraft up to .06 of the columns, solids,
 // rooms and woods .2 and more.
-constexpr float kApart = 2.F;
-constexpr float kFewLayered = 0.05F;
-// Layers closer than that, in the neighbourhood of a flat piece: thin plates have them everywhere.
-constexpr int kAround = 96;
-constexpr float kBehind = 1.F;  // spacings
+constexpr float kApart = 1.5F;
+constexpr float kFewLayered = 0.1F;
+// Layers closer than that, in the neighbourhood of a flat piece: plates have them at .6 of the
+// pieces and more, aircraft see them at .22, or at .42 where houses are as small as the spacing.
+constexpr int kAround = 256;
+constexpr float kBehind = 1.F;    // spacings
+constexpr float kOnPlane = 0.5F;  // spacings: noise that leaves a piece flat
 constexpr float kShareBehind = 0.2F;
-constexpr float kFewBacked = 0.3F;
+constexpr float kFewBacked = 0.5F;
 
 struct Ground {
   std::array<float, 3> low{};
@@ -101,25 +106,59 @@ void measureColumns(const PointView& points, const Ground& ground, float side, H
   out.layered = static_cast<float>(countSquares(layered)) / static_cast<float>(filled);
 }
 
+// Of a point from the middle of a flat piece: along its plane, and across it.
+struct Offset {
+  std::array<float, 3> along{};
+  float across = 0.F;
+};
+
+Offset offsetFrom(const float* center, const float* normal, const float* point) {
+  Offset out;
+  for (std::size_t a = 0; a < 3; ++a) out.along[a] = point[a] - center[a];
+  out.across = dot(out.along.data(), normal);
+  for (std::size_t a = 0; a < 3; ++a) out.along[a] -= out.across * normal[a];
+  return out;
+}
+
+// Points off the plane that have others on it before them. Beside a step of height there are none.
+std::size_t countBehind(const Offset* offsets, std::size_t count, float spacing) {
+  const auto onPlane = [&](const Offset& o) { return std::fabs(o.across) < kOnPlane * spacing; };
+  std::size_t behind = 0;
+  for (std::size_t j = 0; j < count; ++j) {
+    if (!(std::fabs(offsets[j].across) > kBehind * spacing)) continue;
+    const Offset* const last = offsets + count;
+    const bool covered = std::any_of(offsets, last, [&](const Offset& o) {
+      if (!onPlane(o)) return false;
+      float square = 0.F;
+      for (std::size_t a = 0; a < 3; ++a) {
+        square += (o.along[a] - offsets[j].along[a]) * (o.along[a] - offsets[j].along[a]);
+      }
+      return square < spacing * spacing;
+    });
+    behind += covered ? 1 : 0;
+  }
+  return behind;
+}
+
 float shareBacked(const PointView& points, const search::MedianHashIndex& index,
                   const DensityPatches& patches) {
-  constexpr std::size_t kPieces = 500;
+  constexpr std::size_t kPieces = 300;
   constexpr std::size_t kLeastPieces = 100;  // a share of them is known to a twentieth
   if (patches.size() < kLeastPieces) return 1.F;
   const DensityPatches some = patches.thinned(kPieces);
   std::array<pcl::index_t, kAround> rows{};
   std::array<float, kAround> squared{};
+  std::array<Offset, kAround> offsets{};
   std::size_t backed = 0;
   for (std::size_t i = 0; i < some.size(); ++i) {
     const float center[3] = {some.x[i], some.y[i], some.z[i]};
+    const float normal[3] = {some.nx[i], some.ny[i], some.nz[i]};
     const int found = index.nearestK(center, kAround, rows.data(), squared.data());
-    int behind = 0;
     for (int j = 0; j < found; ++j) {
-      const float* q = points[static_cast<std::size_t>(rows[static_cast<std::size_t>(j)])];
-      const float off = (q[0] - center[0]) * some.nx[i] + (q[1] - center[1]) * some.ny[i] +
-                        (q[2] - center[2]) * some.nz[i];
-      behind += std::fabs(off) > kBehind * some.spacing ? 1 : 0;
+      const auto at = static_cast<std::size_t>(j);
+      offsets[at] = offsetFrom(center, normal, points[static_cast<std::size_t>(rows[at])]);
     }
+    const auto behind = countBehind(offsets.data(), static_cast<std::size_t>(found), some.spacing);
     backed += static_cast<float>(behind) > kShareBehind * static_cast<float>(found) ? 1 : 0;
   }
   return static_cast<float>(backed) / static_cast<float>(some.size());
@@ -134,14 +173,16 @@ bool HeightField::sure() const {
 
 HeightField measureHeightField(PreparedCloud& cloud, const DensityPatches& patches) {
   HeightField out;
+  if (!(patches.spacing > 0.F)) return out;
   const PointView points = cloud.points();
   const Ground ground = groundOf(points);
   const float width = std::hypot(ground.high[0] - ground.low[0], ground.high[1] - ground.low[1]);
   out.relief = width > 0.F ? (ground.high[2] - ground.low[2]) / width : 1e30F;
   // Cheap things first: most clouds end here.
-  if (out.relief > kMostRelief || !(patches.spacing > 0.F)) return out;
+  if (out.relief > kMostRelief) return out;
   measureColumns(points, ground, kColumn * patches.spacing, out);
   if (out.layered <= kFewLayered) out.backed = shareBacked(points, cloud.index(), patches);
+  if(getenv("HFD")) fprintf(stderr,"HF relief %g filled %g layered %g backed %g spacing %g n %zu k %d size %zu\n",(double)out.relief,(double)out.filled,(double)out.layered,(double)out.backed,(double)patches.spacing,points.size,patches.k,patches.size());
   return out;
 }
 

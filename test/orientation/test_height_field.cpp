@@ -1,0 +1,119 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the segorient authors
+// One surface over the ground, sampled evenly: no sensor shows, but its upper side is the seen one.
+#include <gtest/gtest.h>
+#include <segorient/orientation/pipeline.h>
+#include <segorient/orientation/sensors.h>
+
+#include <cmath>
+#include <cstddef>
+#include <memory>
+#include <random>
+#include <vector>
+
+#include "orientation/sensors/known_sensors.h"
+#include "search/index_of.h"
+
+namespace segorient {
+namespace {
+
+// A village on hills, 10 x 10: houses of the height of two or three spacings, and points of bushes.
+std::vector<float> village(std::size_t count) {
+  std::mt19937 random(11);
+  std::uniform_real_distribution<float> unit(0.F, 1.F);
+  std::normal_distribution<float> noise(0.F, 0.02F);
+  std::vector<float> rows;
+  for (std::size_t i = 0; i < count; ++i) {
+    const float x = 10.F * unit(random);
+    const float y = 10.F * unit(random);
+    float z = 0.4F * std::sin(x) * std::cos(0.8F * y) + noise(random);
+    if (std::fmod(x, 1.1F) < 0.5F && std::fmod(y, 1.3F) < 0.6F) z += 0.3F;
+    if (std::fmod(x + 0.6F * y, 1.7F) < 0.3F) z += 0.35F * unit(random);
+    rows.insert(rows.end(), {x, y, z});
+  }
+  return rows;
+}
+
+// Even sheets, a thickness apart.
+std::vector<float> plate(std::size_t count, float thickness) {
+  std::mt19937 random(12);
+  std::uniform_real_distribution<float> unit(0.F, 1.F);
+  std::vector<float> rows;
+  for (std::size_t i = 0; i < count; ++i) {
+    const float x = 10.F * unit(random);
+    const float y = 10.F * unit(random);
+    rows.insert(rows.end(), {x, y, 0.4F * std::sin(x) - (i % 2 == 0 ? 0.F : thickness)});
+  }
+  return rows;
+}
+
+double shareUp(const std::vector<float>& rows, const std::shared_ptr<OrientationHints>& hints) {
+  PipelineOptions options;
+  options.orientation.hints = hints;
+  const std::size_t n = rows.size() / 3;
+  const OrientedCloud cloud = orientCloud({rows.data(), 3, n}, nullptr, options);
+  std::size_t up = 0;
+  for (std::size_t i = 0; i < n; ++i) up += cloud.normals[4 * i + 2] > 0.F ? 1 : 0;
+  return static_cast<double>(up) / static_cast<double>(n);
+}
+
+TEST(HeightField, FacesUpThoughNoSensorIsClaimed) {
+  const std::vector<float> rows = village(9000);
+  const SensorReport report = findSensors({rows.data(), 3, rows.size() / 3});
+  EXPECT_TRUE(report.sensors.empty());
+  EXPECT_TRUE(report.faces_up) << report.why;
+  EXPECT_GE(shareUp(rows, nullptr), 0.999);
+}
+
+TEST(HeightField, WhoeverNamesASideMeansIt) {
+  const std::vector<float> rows = plate(9000, 0.F);
+  const auto hints = std::make_shared<OrientationHints>();
+  hints->seeds.push_back({{5.F, 5.F, 0.4F * std::sin(5.F)}, {0.F, 0.F, -1.F}});
+  EXPECT_LE(shareUp(rows, hints), 0.01);
+}
+
+TEST(HeightField, PlatesAreNone) {
+  for (const float thickness : {0.F, 0.1F, 0.2F, 0.4F, 1.F, 2.F}) {
+    const std::vector<float> rows = plate(20000, thickness);
+    const bool single = thickness == 0.F;
+    EXPECT_EQ(findSensors({rows.data(), 3, rows.size() / 3}).faces_up, single) << thickness;
+  }
+}
+
+TEST(HeightField, WhatStandsUprightIsNone) {
+  std::vector<float> rows = village(9000);
+  for (std::size_t i = 0; i < rows.size(); i += 3) std::swap(rows[i], rows[i + 2]);
+  EXPECT_FALSE(findSensors({rows.data(), 3, rows.size() / 3}).faces_up);
+}
+
+// Points under trees lie behind others, which those who fly above see all the same. A place that
+// somebody gives is to be doubted for that, one that was found by layers has been.
+TEST(HeightField, WhoWasFoundAboveMaySeeThroughTrees) {
+  std::vector<float> rows = plate(9000, 0.F);
+  for (std::size_t i = 0; i < 9000; ++i) {
+    const float x = rows[3 * i];
+    const float y = rows[3 * i + 1];
+    if (std::fmod(x, 2.F) > 1.F || std::fmod(y, 2.F) > 1.F) continue;
+    rows.insert(rows.end(), {x + 0.02F, y, rows[3 * i + 2] + 2.F});
+    rows.insert(rows.end(), {x, y + 0.02F, rows[3 * i + 2] + 2.F});
+  }
+  const PointView points{rows.data(), 3, rows.size() / 3};
+  Neighborhoods table;
+  search::indexOf(points, 0).nearestKAll(33, table, false);
+  const std::vector<float> spacing(points.size, 0.1F);
+  for (const bool found : {false, true}) {
+    PointHints hints;
+    hints.place_found = found;
+    for (std::size_t i = 0; i < points.size; ++i) {
+      hints.sensors.insert(hints.sensors.end(), {5.F, 5.F, 1000.F});
+    }
+    const detail::KnownSensors known =
+        detail::findKnownSensors(points, table, spacing.data(), hints, 0);
+    ASSERT_EQ(known.scans.size(), 1U);
+    EXPECT_GT(known.scans[0].hidden, 0.1F);
+    EXPECT_EQ(known.scans[0].used, found);
+  }
+}
+
+}  // namespace
+}  // namespace segorient
