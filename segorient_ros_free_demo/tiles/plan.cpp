@@ -34,6 +34,7 @@ void forEachNumber(P& p, const Visit& visit) {
   visit(p.seen_within);
   visit(p.place.shadows.steps);
   visit(p.place.shadows.covered);
+  visit(p.place.shadows.hidden);
   visit(p.place.shadows.open);
   visit(p.place.shadows.better_across);
   visit(p.place.found);

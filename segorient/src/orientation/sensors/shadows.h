@@ -16,7 +16,9 @@ namespace segorient::detail {
 /// goes on behind it. Unlike densities, that is the same in thinned clouds.
 struct Shadows {
   float steps = 0.F;    ///< such points, of those on surfaces; 0 where they are too few to tell
-  float covered = 0.F;  ///< with nearer points all around, of those on surfaces
+  float covered = 0.F;  ///< with nearer points all around that are on surfaces, too
+  /// With nearer points all around, whether on surfaces or not: in noise few show to be.
+  float hidden = 0.F;
 
   float open = 0.F;  ///< of all directions, those where there is nothing
   /// Whether the place across the middle says as much: of a landscape that something far above it
