@@ -155,6 +155,7 @@ class Finder {
     }
     // Who was found has passed such tests already.
     if (out_.common || hints_.place_found) return;
+    if (out_.one_place && hints_.shadows.excuse()) return;
     if (hides || (denied && report.hidden > kFewHidden)) report.used = false;
   }
 

@@ -34,8 +34,7 @@ PlaceChoice findOthers(const PointView& points, OrientationHints hints, Prepared
   PlaceChoice out;
   out.sensors = addFoundSensors(points, cloud, threads, hints, seen);
   // What one layer told is not to be told by others again, which know nothing of trees.
-  out.place_found =
-      out.sensors.sure() && out.sensors.sensors[0].evidence == SensorEvidence::LAYERS;
+  out.place_found = out.sensors.sure() && out.sensors.sensors[0].evidence == SensorEvidence::LAYERS;
   // Whoever names a side of a sheet means it.
   out.faces_up = out.sensors.faces_up && hints.seeds.empty();
   if (out.sensors.sensors.empty()) out.sensors.sensor_of = {};

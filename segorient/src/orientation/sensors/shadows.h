@@ -38,6 +38,9 @@ struct Shadows {
   bool deny() const;
   /// Whether there are steps enough, and they do not deny it.
   bool allow() const;
+  /// Whether points that lie behind others from there are no more than errors at steps, and the
+  /// place is not enclosed.
+  bool excuse() const;
 };
 
 /// \param place in the points' unit
