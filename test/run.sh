@@ -9,7 +9,7 @@ cd "$(dirname "$(realpath "$0")")/.."
 
 install_packages "${BUILD_PACKAGES[@]}" "${TEST_PACKAGES[@]}"
 say "building (the first time takes some minutes)"
-configure -DSEGORIENT_BUILD_TESTS=ON
+configure -DSEGORIENT_BUILD_TESTS=ON -DSEGORIENT_TEST_PRECOMPILE=ON
 build
 say "testing"
 exec ctest --test-dir build --output-on-failure -j "$(build_jobs)"

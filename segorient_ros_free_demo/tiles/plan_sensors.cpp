@@ -37,8 +37,8 @@ PlanSensors::PlanSensors(const Plan& plan, const PointSample& sample, const Plac
   given.suggested = {near({0.0, 0.0, 0.0}, plan.origin)};
   if (by_row_ && image_width > 0) given.grids = {{0, image_width, size / image_width}};
   choose(given, threads);
-  // Whoever names a side of a sheet means it.
-  place_.faces_up = place_.faces_up && plan.seeds.empty();
+  // Whoever names a side of a sheet means it; and a thinner cloud hides the sides of a plate.
+  place_.faces_up = place_.faces_up && by_row_ && plan.seeds.empty();
   if (by_row_ || (sure_ == 0 && !seenWithin())) return;
   search::MedianHashIndex::Options search_options;
   search_options.threads = threads;

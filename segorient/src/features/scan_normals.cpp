@@ -12,11 +12,11 @@
 namespace segorient::detail {
 namespace {
 
-std::size_t takeSheets(MoreNeighbors& more, const Neighborhoods& neighborhoods, int threads,
-                       std::vector<float>& normals) {
+std::size_t takeSheets(MoreNeighbors& more, const Neighborhoods& neighborhoods,
+                       const SheetTraits& traits, int threads, std::vector<float>& normals) {
   SheetNormalOptions options;
   options.threads = threads;
-  options.scan_scales = true;
+  options.known = traits;
   const SheetNormals sheets = estimateSheetNormals(more.points(), neighborhoods, options, &more);
   std::size_t taken = 0;
   for (std::size_t i = 0; i < sheets.curvature.size(); ++i) {
@@ -37,7 +37,7 @@ std::size_t takeScanPlanes(MoreNeighbors& more, const Neighborhoods& neighborhoo
   const int smallest = smallestNeighbors(noise.fine);
   if (noise.thin || !needsScanScales(points, neighborhoods, smallest, threads)) return 0;
   const SheetTraits traits{noise, 0.F, true};
-  if (traits.onlyManyShowNoise()) return takeSheets(more, neighborhoods, threads, normals);
+  if (traits.onlyManyShowNoise()) return takeSheets(more, neighborhoods, traits, threads, normals);
   std::atomic<std::size_t> taken{0};
   fitScanPlanes(more, smallest, threads,
                 [&](std::size_t i, const GrownPlanes& planes, std::size_t r) {

@@ -42,15 +42,18 @@ void SurfaceStages::findNormalsAutomatically(const PipelineOptions& options) {
                        .text();
   SensorOptions sensors;
   sensors.threads = threads;
+  if (options.orientation.hints) sensors.suggestions = options.orientation.hints->suggested;
   SeenShadows shadows;
-  const bool seen = sensorsOf(points, cloud, sensors, shadows).sure();
+  const bool seen = options.orientation.automatic.find_sensors &&
+                    sensorsOf(points, cloud, sensors, shadows).sure();
   if (!seen && !showsScanLines(points, cloud.index(), threads)) return;
   Neighborhoods wider;
   cloud.index().nearestKAll(kSheetNeighbors + 1, wider, false);
   MoreNeighbors more(points, threads, cloud.takeIndex());
   const std::size_t taken = takeScanPlanes(more, wider, threads, normals);
   if (taken > 0) {
-    normals_chosen += "; " + std::to_string(taken) + " points of a scan by planes of more neighbours";
+    normals_chosen +=
+        "; " + std::to_string(taken) + " points by planes of more neighbours, as scans ask for";
   }
 }
 

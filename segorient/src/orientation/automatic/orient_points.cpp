@@ -40,7 +40,7 @@ void keepLines(const std::vector<float>& own, const std::vector<float>& toward, 
                std::vector<float>& filtered) {
   parallelFor(own.size() / 4, threads, 5.0, [&](std::size_t i) {
     const float* n = &own[4 * i];
-    if (!std::isfinite(n[0])) return;
+    if (!(dot(n, n) > 0.F)) return;
     const bool seen = !toward.empty() && dot(&toward[3 * i], &toward[3 * i]) > 0.F;
     const float sign = !seen && dot(n, &filtered[4 * i]) < 0.F ? -1.F : 1.F;
     for (std::size_t a = 0; a < 3; ++a) filtered[4 * i + a] = sign * n[a];

@@ -88,8 +88,25 @@ FoundSensor findStation(const DensityPatches& patches, float constant,
   return found ? describe(*found, constant, false) : FoundSensor{};
 }
 
+// Whether a place is under the cloud's ground, about as far away as that is wide: of what a camera
+// sees that looks along +z, the upper side is the other one.
+bool isUnder(const detail::Extent& ground, const std::array<float, 3>& place) {
+  const std::array<double, 3> p = inDouble(place.data());
+  for (std::size_t a = 0; a < 2; ++a) {
+    if (!(p[a] >= ground.low[a] && p[a] <= ground.high[a])) return false;
+  }
+  const double below = ground.low[2] - p[2];
+  return below > 0.0 && below < 2.0 * ground.diagonal();
+}
+
 // Even densities tell of no sensor. What no upright line meets twice has one side that faces up.
-void lookFromAbove(PreparedCloud& cloud, const DensityPatches& patches, SensorReport& out) {
+void lookFromAbove(PreparedCloud& cloud, const DensityPatches& patches,
+                   const SensorOptions& options, SensorReport& out) {
+  if (!options.search || patches.size() == 0) return;
+  const detail::Extent ground = detail::extentOf(patches);
+  for (const std::array<float, 3>& s : options.suggestions) {
+    if (isUnder(ground, s)) return;
+  }
   out.faces_up = detail::measureHeightField(cloud, patches).sure();
   if (out.faces_up) out.why += ", but it is one surface over the ground, whose upper side is seen";
 }
@@ -102,14 +119,14 @@ SensorReport searchSensors(PreparedCloud& cloud, const SensorOptions& options) {
       detail::densityPatches(cloud.points(), cloud.index(), options.threads);
   if (!patches.tell_laws) {
     out.why = "too few flat neighbourhoods to measure densities by";
-    if (options.search) lookFromAbove(cloud, patches, out);
+    lookFromAbove(cloud, patches, options, out);
     return out;
   }
   out.deviation = detail::deviation(patches.log_density);
   out.chance = detail::chanceDeviation(patches.k);
   if (out.deviation < kMoreThanChance * out.chance) {
     out.why = "the density is even";
-    if (options.search) lookFromAbove(cloud, patches, out);
+    lookFromAbove(cloud, patches, options, out);
     return out;
   }
   FoundSensor sensor = findStation(patches, out.deviation, options);

@@ -7,8 +7,6 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <cstdio>
-#include <cstdlib>
 #include <tuple>
 #include <utility>
 #include <vector>
@@ -182,10 +180,6 @@ HeightField measureHeightField(PreparedCloud& cloud, const DensityPatches& patch
   if (out.relief > kMostRelief) return out;
   measureColumns(points, ground, kColumn * patches.spacing, out);
   if (out.layered <= kFewLayered) out.backed = shareBacked(points, cloud.index(), patches);
-  if (getenv("HFD"))
-    fprintf(stderr, "HF relief %g filled %g layered %g backed %g spacing %g n %zu k %d size %zu\n",
-            (double)out.relief, (double)out.filled, (double)out.layered, (double)out.backed,
-            (double)patches.spacing, points.size, patches.k, patches.size());
   return out;
 }
 

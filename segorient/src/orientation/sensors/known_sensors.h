@@ -64,7 +64,7 @@ struct KnownSensors {
 ///
 /// Scans are points with one sensor. A scan is not followed if its points contradict its sensor
 /// (some lie behind others, or a smooth sheet would have to face both ways), unless their density
-/// confirms that it was there. PointHints::toward is taken as it is.
+/// confirms that it was there. PointHints::toward is taken as it is; what faces up is towards +z.
 /// \param spacing one a point: mean distance to the 6 nearest
 KnownSensors findKnownSensors(const PointView& points, const Neighborhoods& neighborhoods,
                               const float* spacing, const PointHints& hints, int threads);

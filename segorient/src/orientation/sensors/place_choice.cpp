@@ -36,7 +36,11 @@ PlaceChoice findOthers(const PointView& points, OrientationHints hints, Prepared
   // What one layer told is not to be told by others again, which know nothing of trees.
   out.place_found = out.sensors.sure() && out.sensors.sensors[0].evidence == SensorEvidence::LAYERS;
   // Whoever names a side of a sheet means it.
-  out.faces_up = out.sensors.faces_up && hints.seeds.empty();
+  if (out.sensors.faces_up && !hints.seeds.empty()) {
+    out.sensors.faces_up = false;
+    out.sensors.why += ", unless seeds say otherwise";
+  }
+  out.faces_up = out.sensors.faces_up;
   if (out.sensors.sensors.empty()) out.sensors.sensor_of = {};
   out.hints = std::move(hints);
   out.shadows = seen.of_sensor;

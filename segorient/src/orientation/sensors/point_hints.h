@@ -24,7 +24,8 @@ struct PointHints {
   SurfaceKind surface = SurfaceKind::UNKNOWN;
   bool has_viewpoint = false;
   std::array<float, 3> viewpoint{0.F, 0.F, 0.F};
-  /// Whether a search for sensors came to the one place for all points, too, by itself.
+  /// Whether a search for sensors came to the one place for all points, too, by itself, or found it
+  /// by layers, which is told about trees already.
   bool place_found = false;
   /// Whether all of it is one surface over the ground, see SensorReport.
   bool faces_up = false;

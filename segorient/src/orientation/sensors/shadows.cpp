@@ -302,7 +302,7 @@ bool Shadows::deny() const {
 }
 
 bool Shadows::allow() const {
-  return steps > kFewSteps && covered < kAllowed * steps;
+  return steps > kFewSteps && covered < kAllowed * steps && hidden < kMostHidden * steps;
 }
 
 bool Shadows::excuse() const {
