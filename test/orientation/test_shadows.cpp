@@ -228,5 +228,32 @@ TEST(Shadows, AThinnedViewFromTheOriginIsFound) {
   EXPECT_GE(shareFacing(xyz, cloud.normals, {0.0, 0.0, 0.0}), 0.998);
 }
 
+// Of a ring seen from its middle, the inner half hides the outer one. Noise leaves few points that
+// show to be on surfaces, but no gap in what they make.
+TEST(Shadows, NoiseOpensNoGapInWhatABodyHides) {
+  for (const unsigned seed : {1U, 2U, 3U, 4U}) {
+    std::mt19937 random(seed);
+    std::uniform_real_distribution<double> angle(0.0, 2.0 * kPi);
+    std::normal_distribution<double> noise(0.0, 0.02);
+    std::vector<float> xyz;
+    while (xyz.size() < std::size_t{4} * 8000) {
+      const double u = angle(random);
+      const double v = angle(random);
+      const double r = 0.8 + 0.45 * std::cos(v);
+      if (std::uniform_real_distribution<double>(0.0, 1.25)(random) > r) continue;
+      for (const double x : {r * std::cos(u), r * std::sin(u), 0.45 * std::sin(v)}) {
+        xyz.push_back(static_cast<float>(x + noise(random)));
+      }
+      xyz.push_back(0.F);
+    }
+    const detail::Shadows shadows = detail::findShadows(viewOf(xyz), {0.F, 0.F, 0.F}, 0);
+    ASSERT_GT(shadows.steps, 0.05F);
+    EXPECT_GT(shadows.hidden, 0.9F * shadows.steps);
+    EXPECT_FALSE(shadows.reveal());
+    EXPECT_FALSE(shadows.allow());
+    EXPECT_TRUE(findSensors(viewOf(xyz)).sensors.empty());
+  }
+}
+
 }  // namespace
 }  // namespace segorient::test

@@ -13,8 +13,8 @@
 
 namespace segorient::detail {
 
-/// Neighbours spread in one direction only, as on a ring, if their variance across it in the plane is
-/// less than this part of that along it: their plane is any plane through it.
+/// Neighbours spread in one direction only, as on a ring, if their variance across it in the plane
+/// is less than this part of that along it: their plane is any plane through it.
 constexpr float kOneLine = 0.15F;
 
 /// Least-squares planes of the nearest neighbours of some points, themselves counted, for one
