@@ -12,11 +12,11 @@
 
 namespace segorient::detail {
 
-/// Gives those points planes of up to 60 neighbours that ask for clearly more than the cloud's noise
-/// does: in scans those near the sensor, on rings, and where depth has steps. Surfaces of few
-/// neighbours fit the noise there. Where only many neighbours show the noise at all, see
-/// SheetTraits, each point gets its plane by estimateSheetNormals(). Not for solids, whose thin walls
-/// look like it.
+/// Gives those points planes of up to 60 neighbours that ask for clearly more than the noise of the
+/// cloud does: in scans those near the sensor, on rings, and where depth has steps. Surfaces of
+/// few neighbours fit the noise there. Where only many neighbours show the noise at all, see
+/// SheetTraits, each point gets its plane by estimateSheetNormals(). Not for solids: their thin
+/// walls look like noise.
 /// \param more the points, and their neighbours
 /// \param neighborhoods kSheetNeighbors of each point beside itself
 /// \param normals 4 floats a point: unoriented unit normal, smallest variance in the sum of all
