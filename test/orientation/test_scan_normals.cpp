@@ -99,7 +99,8 @@ TEST_P(NormalsOfScans, AreAsRightAsPlanesOfThirty) {
   // Where that is right nearly everywhere, a point in a hundred may be an edge that it does not
   // see.
   const double peer = std::min(0.99, shareRight(rows, planesOfPcl(rows)));
-  FirstStages stages(points, {});
+  const PipelineOptions options;
+  FirstStages stages(points, options);
   stages.findNormals();
   EXPECT_GE(shareRight(rows, stages.normals()), peer) << "normals";
   EXPECT_GE(shareRight(rows, orientCloud(points, nullptr, {}).normals), peer) << "orient";
