@@ -96,7 +96,7 @@ SheetNormals estimateSheetNormals(const PointView& points, const Neighborhoods& 
       options.known ? options.known->noise : measureNoise(points, nb, options.threads);
   out.traits.noise = noise;
   const std::size_t smallest = smallestScale(noise.fine);
-  const int scale = detail::smallestNeighbors(noise.fine);
+  const int scale = kSheetScales[smallest];
   out.traits.scan_scales =
       options.known
           ? options.known->scan_scales

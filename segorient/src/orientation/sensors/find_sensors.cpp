@@ -100,8 +100,8 @@ bool isUnder(const detail::Extent& ground, const std::array<float, 3>& place) {
 }
 
 // Even densities tell of no sensor. What no upright line meets twice has one side that faces up.
-void lookFromAbove(PreparedCloud& cloud, const DensityPatches& patches,
-                   const SensorOptions& options, SensorReport& out) {
+void lookForUpperSide(PreparedCloud& cloud, const DensityPatches& patches,
+                      const SensorOptions& options, SensorReport& out) {
   if (!options.search || patches.size() == 0) return;
   const detail::Extent ground = detail::extentOf(patches);
   for (const std::array<float, 3>& s : options.suggestions) {
@@ -119,14 +119,14 @@ SensorReport searchSensors(PreparedCloud& cloud, const SensorOptions& options) {
       detail::densityPatches(cloud.points(), cloud.index(), options.threads);
   if (!patches.tell_laws) {
     out.why = "too few flat neighbourhoods to measure densities by";
-    lookFromAbove(cloud, patches, options, out);
+    lookForUpperSide(cloud, patches, options, out);
     return out;
   }
   out.deviation = detail::deviation(patches.log_density);
   out.chance = detail::chanceDeviation(patches.k);
   if (out.deviation < kMoreThanChance * out.chance) {
     out.why = "the density is even";
-    lookFromAbove(cloud, patches, options, out);
+    lookForUpperSide(cloud, patches, options, out);
     return out;
   }
   FoundSensor sensor = findStation(patches, out.deviation, options);
