@@ -8,7 +8,6 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
-#include <map>
 #include <memory>
 #include <random>
 #include <vector>
@@ -16,6 +15,7 @@
 #include "orientation/sensors/shadows.h"
 #include "sensor_scans.h"
 #include "sheet_fixture.h"
+#include "voxel_thinned.h"
 
 namespace segorient::test {
 namespace {
@@ -26,31 +26,6 @@ Room furnished() {
   room.low = {3.0, 1.4, 0.0};
   room.high = {3.8, 2.2, 1.3};
   return room;
-}
-
-// As pcl::VoxelGrid does it: the mean of the points of each cell.
-std::vector<float> thinned(const PointView& points, double edge) {
-  struct Sum {
-    std::array<double, 3> xyz{0.0, 0.0, 0.0};
-    double count = 0.0;
-  };
-  std::map<std::array<long, 3>, Sum> cells;
-  for (std::size_t i = 0; i < points.size; ++i) {
-    if (!std::isfinite(points[i][0])) continue;
-    std::array<long, 3> cell{};
-    for (std::size_t a = 0; a < 3; ++a) {
-      cell[a] = std::lround(std::floor(static_cast<double>(points[i][a]) / edge));
-    }
-    Sum& sum = cells[cell];
-    for (std::size_t a = 0; a < 3; ++a) sum.xyz[a] += static_cast<double>(points[i][a]);
-    sum.count += 1.0;
-  }
-  std::vector<float> out;
-  for (const auto& [cell, sum] : cells) {
-    for (const double v : sum.xyz) out.push_back(static_cast<float>(v / sum.count));
-    out.push_back(0.F);
-  }
-  return out;
 }
 
 std::array<float, 3> inFloat(const Vector& v) {

@@ -10,6 +10,7 @@
 #include "orientation/sensors/height_field.h"
 #include "orientation/sensors/image_rays.h"
 #include "orientation/sensors/joint_sensors.h"
+#include "orientation/sensors/room_shadows.h"
 #include "orientation/sensors/sensor_search.h"
 #include "orientation/sensors/shadows.h"
 #include "orientation/sensors/station_search.h"
@@ -151,13 +152,13 @@ SensorReport searchSensors(PreparedCloud& cloud, const SensorOptions& options) {
 
 // Thinned clouds have lost their densities, which leaves who hides whom. That there is one layer
 // over the ground says less.
-void trySuggestedShadows(PreparedCloud& cloud, const SensorOptions& options,
-                         detail::SeenShadows& seen, SensorReport& out) {
-  if (out.sure() && out.sensors[0].kind != SensorKind::ABOVE) return;
+bool trySuggestedShadows(PreparedCloud& cloud, const detail::FlatPoints& flat,
+                         const SensorOptions& options, detail::SeenShadows& seen,
+                         SensorReport& out) {
   for (const std::array<float, 3>& suggestion : options.suggestions) {
     if (suggestion == seen.nothing_at) continue;
     const std::array<float, 3> s = cloud.inUnit(suggestion);
-    const detail::Shadows shadows = detail::findShadows(cloud.points(), s, options.threads, true);
+    const detail::Shadows shadows = detail::findShadows(flat, s, options.threads, true);
     if (!shadows.reveal()) continue;
     seen.of_sensor = shadows;
     FoundSensor sensor;
@@ -169,8 +170,19 @@ void trySuggestedShadows(PreparedCloud& cloud, const SensorOptions& options,
     out.directions.clear();
     out.faces_up = false;
     setOnly(sensor, "surfaces end at the shadows that the suggested place casts", out);
-    return;
+    return true;
   }
+  return false;
+}
+
+void lookForShadows(PreparedCloud& cloud, const SensorOptions& options, detail::SeenShadows& seen,
+                    SensorReport& out) {
+  if (out.sure() && out.sensors[0].kind != SensorKind::ABOVE) return;
+  const detail::FlatPoints flat(cloud.points(), options.threads);
+  if (trySuggestedShadows(cloud, flat, options, seen, out)) return;
+  if (!options.search || out.sure() || out.faces_up || !out.directions.empty()) return;
+  out.directions = detail::directionsInARoom(cloud.points(), flat, options.threads);
+  if (!out.directions.empty()) out.why += ", but surfaces end at shadows as seen from within";
 }
 
 }  // namespace
@@ -187,7 +199,7 @@ SensorReport detail::sensorsOf(const PointView& points, PreparedCloud& cloud,
     SensorOptions scaled = options;
     for (std::array<float, 3>& s : scaled.suggestions) s = cloud.inUnit(s);
     out = searchSensors(cloud, scaled);
-    trySuggestedShadows(cloud, options, shadows, out);
+    lookForShadows(cloud, options, shadows, out);
     for (FoundSensor& s : out.sensors) {
       for (float& v : s.position) v *= cloud.unit();
     }

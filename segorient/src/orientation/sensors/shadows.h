@@ -6,6 +6,10 @@
 #include <segorient/common/point_view.h>
 
 #include <array>
+#include <cstddef>
+
+#include "orientation/sensors/depth_steps.h"
+#include "orientation/sensors/flat_points.h"
 
 namespace segorient::detail {
 
@@ -44,10 +48,18 @@ struct Shadows {
 };
 
 /// \param place in the points' unit
+SEGORIENT_ORIENTATION_EXPORT Shadows findShadows(const PointView& points,
+                                                 const std::array<float, 3>& place, int threads);
+
+/// The same of what several places are asked of.
 /// \param to_reveal whether it only matters that they reveal a sensor: of places that are enclosed,
 ///        as most in bodies are, it is known without a look at any step that they do not
-SEGORIENT_ORIENTATION_EXPORT Shadows findShadows(const PointView& points,
-                                                 const std::array<float, 3>& place, int threads,
-                                                 bool to_reveal = false);
+Shadows findShadows(const FlatPoints& flat, const std::array<float, 3>& place, int threads,
+                    bool to_reveal = false);
+
+/// Fills in all but what is open.
+/// \param samples points on surfaces to look at, about
+void countSteps(const FlatPoints& flat, const DepthSteps& depth, std::size_t samples, int threads,
+                Shadows& out);
 
 }  // namespace segorient::detail

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the segorient authors
+#pragma once
+
+#include <segorient/common/point_view.h>
+#include <segorient/search/median_hash_index.h>
+
+#include <array>
+#include <cstddef>
+#include <vector>
+
+#include "common/dot.h"
+
+namespace segorient::detail {
+
+/// Some ten thousand points of a cloud, and which of them are on surfaces: those that a plane
+/// explains. Noise that is as deep as the points are apart hides points from each other, too.
+class FlatPoints {
+ public:
+  /// The least that a plane shows a surface by.
+  static constexpr int kPlane = 12;
+
+  /// \param points of which an even part is taken
+  FlatPoints(const PointView& points, int threads);
+
+  std::size_t size() const { return width_.size(); }
+  PointView view() const { return {xyz_.data(), 4, width_.size()}; }
+  const search::MedianHashIndex& index() const { return index_; }
+  /// Mean distance to the nearest; 0 where points repeat.
+  float spacing(std::size_t i) const { return width_[i]; }
+  bool isOnSurface(std::size_t i) const { return dot(normal(i), normal(i)) > 0.F; }
+  /// Of length 1; 0 of points on no surface.
+  const float* normal(std::size_t i) const { return &normal_[4 * i]; }
+  /// Those on surfaces, ascending.
+  const std::vector<std::size_t>& onSurfaces() const { return on_surfaces_; }
+  std::array<float, 3> middle() const;
+
+ private:
+  std::vector<float> xyz_;     ///< 4 floats
+  std::vector<float> normal_;  ///< 4 floats
+  std::vector<float> width_;
+  std::vector<std::size_t> on_surfaces_;
+  search::MedianHashIndex index_;
+};
+
+}  // namespace segorient::detail

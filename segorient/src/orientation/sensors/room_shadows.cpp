@@ -1,0 +1,193 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the segorient authors
+#include "orientation/sensors/room_shadows.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+
+#include "common/every_nth.h"
+#include "common/median.h"
+#include "common/parallel_for.h"
+#include "orientation/sensors/depth_steps.h"
+#include "orientation/sensors/shadows.h"
+#include "search/index_of.h"
+
+namespace segorient::detail {
+namespace {
+
+using Place = std::array<float, 3>;
+
+// Places in the cloud's box, and of these the deepest, which are looked from.
+constexpr int kPlaces = 128;
+constexpr std::size_t kDeepest = 16;
+// Spacings to the nearest point: closer to a surface it is seen between its points.
+constexpr float kClearance = 3.F;
+// Of all directions: what is more open is no room.
+constexpr float kMostOpen = 0.1F;
+// Points on surfaces, for each place.
+constexpr std::size_t kSamples = 600;
+// Of the deepest places so many have to be enclosed, and half of those that were tried.
+constexpr std::size_t kFewest = 3;
+// So many places, of a body that is all convex, see no step.
+constexpr std::size_t kConvex = 4;
+// Of points on surfaces: those beside a step, the median of places; less are errors.
+constexpr float kFewBeside = 0.005F;
+// Of steps, those with nearer surfaces all around, the median of places: of 45 rooms, most of them
+// thinned by 2 to 3.5 spacings, .00 to .39; of 310 clouds of bodies and sheets .62 and more.
+constexpr float kMostCovered = 0.5F;
+
+// The box without the hundredth at each end, where strays are.
+std::vector<Place> placesInBox(const FlatPoints& flat) {
+  // Fractions that fill a cube evenly: powers of the inverse of the root of x^4 = x + 1.
+  constexpr double kRoot = 1.2207440846057596;
+  std::array<float, 3> low{};
+  std::array<float, 3> high{};
+  const std::size_t n = flat.size();
+  std::vector<float> values(n);
+  for (std::size_t a = 0; a < 3; ++a) {
+    for (std::size_t i = 0; i < n; ++i) values[i] = flat.view()[i][a];
+    std::sort(values.begin(), values.end());
+    low[a] = values[n / 100];
+    high[a] = values[n - 1 - n / 100];
+  }
+  std::vector<Place> out;
+  for (int k = 1; k <= kPlaces; ++k) {
+    Place place{};
+    double step = 1.0;
+    for (std::size_t a = 0; a < 3; ++a) {
+      step /= kRoot;
+      const auto at = static_cast<float>(std::fmod(0.5 + k * step, 1.0));
+      place[a] = low[a] + at * (high[a] - low[a]);
+    }
+    out.push_back(place);
+  }
+  return out;
+}
+
+std::vector<Place> deepestPlaces(const FlatPoints& flat) {
+  struct Deep {
+    float clearance;
+    Place place;
+  };
+  std::vector<Deep> deep;
+  for (const Place& place : placesInBox(flat)) {
+    pcl::index_t nearest = 0;
+    float square = 0.F;
+    if (flat.index().nearestK(place.data(), 1, &nearest, &square) < 1) continue;
+    const float h = flat.spacing(static_cast<std::size_t>(nearest));
+    if (h > 0.F && std::sqrt(square) > kClearance * h)
+      deep.push_back({std::sqrt(square) / h, place});
+  }
+  std::stable_sort(deep.begin(), deep.end(),
+                   [](const Deep& a, const Deep& b) { return a.clearance > b.clearance; });
+  std::vector<Place> out;
+  for (const Deep& d : deep) {
+    if (out.size() == kDeepest) break;
+    out.push_back(d.place);
+  }
+  return out;
+}
+
+// What is seen of some points on surfaces, from all places together.
+class Room {
+ public:
+  Room(const FlatPoints& flat, int threads)
+      : flat_(flat),
+        threads_(threads),
+        rows_(flat.onSurfaces().size(), kSamples),
+        toward_(3 * rows_.size(), 0.F),
+        found_(rows_.size()) {}
+
+  // Whether the place is enclosed; if not, nothing is seen from there.
+  bool lookFrom(const Place& place) {
+    const DepthSteps depth(flat_, place, threads_);
+    if (depth.openShare() > kMostOpen) return false;
+    parallelFor(rows_.size(), threads_, kStepTime,
+                [&](std::size_t s) { found_[s] = depth.at(row(s)); });
+    float covered = 0.F;
+    float beside = 0.F;
+    for (std::size_t s = 0; s < rows_.size(); ++s) {
+      switch (found_[s]) {
+        case DepthSteps::Step::COVERED:
+          covered += 1.F;
+          break;
+        case DepthSteps::Step::HIDDEN:
+          beside += 1.F;
+          break;
+        case DepthSteps::Step::BESIDE:
+          beside += 1.F;
+          [[fallthrough]];
+        case DepthSteps::Step::NONE:
+          turnTo(place, s);
+      }
+    }
+    beside_.push_back(beside / static_cast<float>(rows_.size()));
+    covered_.push_back(covered + beside > 0.F ? covered / (covered + beside) : 1.F);
+    return true;
+  }
+
+  std::size_t places() const { return beside_.size(); }
+  float beside() const { return median(beside_); }
+  float covered() const { return median(covered_); }
+  std::size_t size() const { return rows_.size(); }
+  std::size_t row(std::size_t s) const { return flat_.onSurfaces()[rows_[s]]; }
+  const float* toward(std::size_t s) const { return &toward_[3 * s]; }
+
+ private:
+  void turnTo(const Place& place, std::size_t s) {
+    const float* p = flat_.view()[row(s)];
+    const Place way{place[0] - p[0], place[1] - p[1], place[2] - p[2]};
+    const float length = std::sqrt(dot(way.data(), way.data()));
+    for (std::size_t a = 0; a < 3; ++a) {
+      toward_[3 * s + a] += way[a] / (length * static_cast<float>(kDeepest));
+    }
+  }
+
+  const FlatPoints& flat_;
+  int threads_;
+  EveryNth rows_;
+  std::vector<float> toward_;  ///< 3 a sample
+  std::vector<DepthSteps::Step> found_;
+  std::vector<float> beside_;   ///< one a place: share of the samples
+  std::vector<float> covered_;  ///< of the steps
+};
+
+// Of the nearest sample.
+std::vector<float> ofPoints(const PointView& points, const FlatPoints& flat, const Room& room,
+                            int threads) {
+  constexpr double kQueryTime = 300.0;  // ns, see resolveThreads()
+  std::vector<float> samples;
+  for (std::size_t s = 0; s < room.size(); ++s) {
+    const float* p = flat.view()[room.row(s)];
+    samples.insert(samples.end(), p, p + 3);
+  }
+  const search::MedianHashIndex index = search::indexOf({samples.data(), 3, room.size()}, threads);
+  std::vector<float> out(3 * points.size, 0.F);
+  parallelFor(points.size, threads, kQueryTime, [&](std::size_t i) {
+    pcl::index_t nearest = 0;
+    float square = 0.F;
+    if (index.nearestK(points[i], 1, &nearest, &square) < 1) return;
+    std::copy_n(room.toward(static_cast<std::size_t>(nearest)), 3, &out[3 * i]);
+  });
+  return out;
+}
+
+}  // namespace
+
+std::vector<float> directionsInARoom(const PointView& points, const FlatPoints& flat, int threads) {
+  if (flat.onSurfaces().empty()) return {};
+  Room room(flat, threads);
+  std::size_t tried = 0;
+  for (const Place& place : deepestPlaces(flat)) {
+    ++tried;
+    if (room.lookFrom(place) && room.places() == kConvex && !(room.beside() > 0.F)) return {};
+  }
+  if (room.places() < std::max(kFewest, (tried + 1) / 2)) return {};
+  if (room.beside() < kFewBeside || room.covered() >= kMostCovered) return {};
+  return ofPoints(points, flat, room, threads);
+}
+
+}  // namespace segorient::detail

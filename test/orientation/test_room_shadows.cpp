@@ -1,0 +1,144 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the segorient authors
+// Rooms whose densities were thinned away: what tells their side is what nobody in them saw.
+#include <gtest/gtest.h>
+#include <segorient/orientation/pipeline.h>
+#include <segorient/orientation/sensors.h>
+
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <random>
+#include <vector>
+
+#include "orientation/sensors/flat_points.h"
+#include "orientation/sensors/room_shadows.h"
+#include "sensor_scans.h"
+#include "sheet_fixture.h"
+#include "voxel_thinned.h"
+
+namespace segorient::test {
+namespace {
+
+// With a box that stands free.
+Room furnished() {
+  Room room;
+  room.low = {2.6, 1.4, 0.0};
+  room.high = {3.6, 2.4, 1.1};
+  return room;
+}
+
+// Not from the origin, which is the first place that is looked at.
+std::vector<float> roomSeenFrom(const std::vector<Vector>& stations, double edge) {
+  Scan all(furnished());
+  for (const Vector& station : stations) {
+    const std::vector<float> rows = scanFrom(station, 1.0, furnished()).rows();
+    all.rows().insert(all.rows().end(), rows.begin(), rows.end());
+  }
+  return thinned(all.view(), edge);
+}
+
+bool isRoom(const std::vector<float>& xyz) {
+  const detail::FlatPoints flat(viewOf(xyz), 1);
+  const std::vector<float> toward = detail::directionsInARoom(viewOf(xyz), flat, 1);
+  EXPECT_TRUE(toward.empty() || toward.size() == xyz.size() / 4 * 3);
+  return !toward.empty();
+}
+
+// Share of the points whose normal faces a place in the room, of those on its walls: the box turns
+// some of its faces away.
+double shareFacingIn(const std::vector<float>& xyz, const std::vector<float>& normals) {
+  const Vector middle{3.0, 2.0, 2.0};
+  const Room room = furnished();
+  double walls = 0.0;
+  double facing = 0.0;
+  for (std::size_t i = 0; i < xyz.size() / 4; ++i) {
+    bool on_wall = false;
+    double along = 0.0;
+    for (std::size_t a = 0; a < 3; ++a) {
+      const auto v = static_cast<double>(xyz[4 * i + a]);
+      on_wall = on_wall || v < 0.02 || v > room.size[a] - 0.02;
+      along += static_cast<double>(normals[4 * i + a]) * (middle[a] - v);
+    }
+    walls += on_wall ? 1.0 : 0.0;
+    facing += on_wall && along > 0.0 ? 1.0 : 0.0;
+  }
+  return facing / walls;
+}
+
+TEST(RoomShadows, AThinnedRoomFacesWhoWasInIt) {
+  for (const double edge : {0.1, 0.14, 0.18}) {
+    for (const std::vector<Vector>& stations :
+         {std::vector<Vector>{{1.2, 1.1, 1.6}}, {{1.1, 1.0, 1.5}, {1.3, 3.1, 1.7}}}) {
+      const std::vector<float> xyz = roomSeenFrom(stations, edge);
+      EXPECT_TRUE(isRoom(xyz)) << edge;
+      const OrientedCloud cloud = orientCloud(viewOf(xyz), nullptr, {});
+      EXPECT_TRUE(cloud.report.sensors.sensors.empty()) << cloud.report.sensors.why;
+      EXPECT_GE(shareFacingIn(xyz, cloud.normals), 0.99) << edge << cloud.report.sensors.why;
+    }
+  }
+}
+
+// The faces of boxes, all of them, evenly.
+std::vector<float> wholeBoxes(const std::vector<Room>& boxes) {
+  std::mt19937 random(11);
+  std::uniform_real_distribution<double> unit(0.0, 1.0);
+  std::vector<float> xyz;
+  for (const Room& box : boxes) {
+    for (std::size_t a = 0; a < 3; ++a) {
+      const std::size_t b = (a + 1) % 3;
+      const std::size_t c = (a + 2) % 3;
+      const double area = (box.high[b] - box.low[b]) * (box.high[c] - box.low[c]);
+      for (int i = 0; i < static_cast<int>(150.0 * area); ++i) {
+        for (const double at : {box.low[a], box.high[a]}) {
+          Vector p{};
+          p[a] = at;
+          p[b] = box.low[b] + unit(random) * (box.high[b] - box.low[b]);
+          p[c] = box.low[c] + unit(random) * (box.high[c] - box.low[c]);
+          for (const double v : p) xyz.push_back(static_cast<float>(v));
+          xyz.push_back(0.F);
+        }
+      }
+    }
+  }
+  return xyz;
+}
+
+Room boxOf(const Vector& low, const Vector& high) {
+  Room out;
+  out.low = low;
+  out.high = high;
+  return out;
+}
+
+// What hides something is there, and so is what it hides.
+TEST(RoomShadows, ABodyWithCavitiesIsNoRoom) {
+  const Room outside = boxOf({0.0, 0.0, 0.0}, {6.0, 4.0, 3.0});
+  const std::vector<float> convex = wholeBoxes({outside});
+  const std::vector<float> hollow = wholeBoxes({outside, boxOf({2.6, 1.4, 1.0}, {3.6, 2.4, 2.0})});
+  EXPECT_FALSE(isRoom(convex));
+  EXPECT_FALSE(isRoom(hollow));
+  const OrientedCloud cloud = orientCloud(viewOf(hollow), nullptr, {});
+  EXPECT_TRUE(cloud.report.sensors.sensors.empty());
+  EXPECT_LE(shareFacingIn(hollow, cloud.normals), 0.01);
+}
+
+TEST(RoomShadows, BodiesInNoiseAreNoRooms) {
+  for (const double noise : {0.0, 0.01, 0.02}) {
+    EXPECT_FALSE(isRoom(sample("bracket", bracket(), 12000, 71, noise).xyz)) << noise;
+    EXPECT_FALSE(isRoom(sample("cube", test::cube(), 6000, 70, noise).xyz)) << noise;
+  }
+}
+
+TEST(RoomShadows, NothingTellsNothing) {
+  EXPECT_FALSE(isRoom({}));
+  EXPECT_FALSE(isRoom(std::vector<float>(4, 1.F)));
+  EXPECT_FALSE(isRoom(std::vector<float>(400, 1.F)));
+  std::vector<float> line;
+  for (int i = 0; i < 200; ++i)
+    line.insert(line.end(), {0.1F * static_cast<float>(i), 0.F, 0.F, 0.F});
+  EXPECT_FALSE(isRoom(line));
+}
+
+}  // namespace
+}  // namespace segorient::test
