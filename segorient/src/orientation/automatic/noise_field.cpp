@@ -284,6 +284,21 @@ void takeNoiseField(const PointView& points, const Neighborhoods& neighborhoods,
   }
 }
 
+void takeFieldLines(const PointView& points, const NoiseField& field, int threads,
+                    std::vector<float>& normals) {
+  if (field.empty()) return;
+  const FieldSides sides(points, field, normals, threads);
+  for (std::size_t i = 0; i < points.size; ++i) {
+    float* n = &normals[4 * i];
+    const float* g = &sides.falls[4 * i];
+    const float length = std::sqrt(dot(g, g));
+    if (!std::isfinite(length)) continue;
+    const float along = dot(n, g);
+    if (!(along > 0.F && along < kAcross * length)) continue;
+    for (std::size_t a = 0; a < 3; ++a) n[a] = g[a] / length;
+  }
+}
+
 NoiseField takeFineField(const PointView& points, const Neighborhoods& neighborhoods, int threads,
                          AutoNormals& found) {
   NoiseField field = findNoiseField(points, neighborhoods, found.normals, threads,

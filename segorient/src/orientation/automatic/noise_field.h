@@ -96,11 +96,16 @@ SEGORIENT_ORIENTATION_EXPORT void takeNoiseField(const PointView& points,
                                                  const NoiseField& field, int threads,
                                                  AutoNormals& found);
 
-/// The same without noise, where signs contradict each other on parts hardly thicker than points
-/// are apart: from a field as fine as the points. It is taken where the surface is closed and the
-/// energy of the signs (SignJudge) is less.
-/// \param points finite, near ones side by side \param neighborhoods eight at least
-/// \param found normals and confidences may change
+/// Where sensors tell the sides: the field's direction in the place of each normal that is across
+/// it (kAcross), as planes through both faces of an edge are. No normal is turned over. \param
+/// points those of the field \param normals 4 floats a point, oriented
+SEGORIENT_ORIENTATION_EXPORT void takeFieldLines(const PointView& points, const NoiseField& field,
+                                                 int threads, std::vector<float>& normals);
+
+/// The same as takeNoiseField() without noise, where signs contradict each other on parts hardly
+/// thicker than points are apart: from a field as fine as the points. It is taken where the surface
+/// is closed and the energy of the signs (SignJudge) is less. \param points finite, near ones side
+/// by side \param neighborhoods eight at least \param found normals and confidences may change
 /// \return what was taken; often nothing
 SEGORIENT_ORIENTATION_EXPORT NoiseField takeFineField(const PointView& points,
                                                       const Neighborhoods& neighborhoods,

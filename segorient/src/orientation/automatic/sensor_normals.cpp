@@ -246,7 +246,8 @@ class Leaner {
     to.mean.add(p, dot(p, toward(to.i)) < 0.F ? -weight : weight);
   }
 
-  // What the neighbours say that the point lies in the plane of, in the second round: twice.
+  // What the neighbours say that the point lies in the plane of, in the second round: as much as it
+  // says itself.
   void followAround(std::size_t i) {
     const pcl::index_t* row = nb_.indices(i);
     const int count = std::min(nb_.count(i), kNear + 1);
@@ -271,7 +272,7 @@ class Leaner {
       const float length = around.length() / total;
       square += 0.5F * scatterOf(length);
       const float* sum = &around.x;
-      mean.add(sum, 2.F / total);
+      mean.add(sum, 1.F / total);
       if (!scaleToUnit(mean)) return;
     }
     lean(toward(i), square, mean);

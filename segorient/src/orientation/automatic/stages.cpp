@@ -112,6 +112,14 @@ void askField(const PreparedCloud& cloud, const PointView& points, const Neighbo
   }
 }
 
+// Where sensors tell the sides, the field of all points tells lines beside edges in noise.
+void askFieldForLines(const PreparedCloud& cloud, int threads, AutoStages& out) {
+  if (out.noise < kCleanFit || out.orientation.toward.empty()) return;
+  const NoiseField field = findNoiseField(cloud.points(), cloud.neighborhoods(), out.normals,
+                                          threads, {}, KnownField{true, false});
+  takeFieldLines(cloud.points(), field, threads, out.normals);
+}
+
 }  // namespace
 
 AutoStages runAutoStages(PreparedCloud& cloud, const PipelineOptions& options,
@@ -142,6 +150,7 @@ AutoStages runAutoStages(PreparedCloud& cloud, const PipelineOptions& options,
   } else if (settings.winding_normals && hints.nothing()) {
     askField(cloud, points, table, options.threads, out);
   }
+  if (settings.winding_normals) askFieldForLines(cloud, options.threads, out);
   labelTheRest(table, out.normals, out.segmentation);
   if (settings.fit_normals && !out.denoised && !out.sheets.onlyManyShowNoise()) {
     begin("recomputation", 0.88);
