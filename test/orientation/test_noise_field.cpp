@@ -311,43 +311,79 @@ TEST(NoiseField, DoesNotDependOnThreads) {
   EXPECT_EQ(one.normals, orientCloud(viewOf(cloud.xyz), nullptr, options).normals);
 }
 
+// A ball, and the field of its own normals.
+struct BallField {
+  Noisy ball;
+  detail::NoiseField field;
+
+  BallField() {
+    std::mt19937 rng(8);
+    std::normal_distribution<double> normal;
+    for (int i = 0; i < 4000; ++i) {
+      const Vector d = draw(rng, normal).normalized();
+      add(d, d, ball);
+    }
+    field.places = ball.xyz;
+    field.dipoles = ball.normals;
+    for (float& v : field.dipoles) v *= static_cast<float>(4 * M_PI / 4000);
+    for (std::size_t i = 3; i < field.dipoles.size(); i += 4) {
+      field.dipoles[i] = static_cast<float>(4 * M_PI / 4000);
+    }
+    field.radius = 0.1F;
+    field.factor = 1.F;
+  }
+  PointView point(std::size_t i) const { return {&ball.xyz[4 * i], 4, 1}; }
+  std::vector<float> tilted(std::size_t i, double degrees) const {
+    const Eigen::Map<const Eigen::Vector3f> n(&ball.normals[4 * i]);
+    const auto angle = static_cast<float>(degrees * M_PI / 180);
+    const Eigen::Vector3f t = std::cos(angle) * n + std::sin(angle) * n.unitOrthogonal();
+    return {t[0], t[1], t[2], 0.F};
+  }
+  float cosine(std::size_t i, const std::vector<float>& n) const {
+    return dot(n.data(), &ball.normals[4 * i]);
+  }
+};
+
 // Where the field is coarser than the points it mends what is far off, and leaves the rest.
 TEST(NoiseField, MendsOnlyNormalsThatAreFarOff) {
-  std::mt19937 rng(8);
-  std::normal_distribution<double> normal;
-  Noisy ball;
-  for (int i = 0; i < 4000; ++i) {
-    const Vector d = draw(rng, normal).normalized();
-    add(d, d, ball);
-  }
-  detail::NoiseField field;
-  field.places = ball.xyz;
-  field.dipoles = ball.normals;
-  for (float& v : field.dipoles) v *= static_cast<float>(4 * M_PI / 4000);
-  for (std::size_t i = 3; i < field.dipoles.size(); i += 4) {
-    field.dipoles[i] = static_cast<float>(4 * M_PI / 4000);
-  }
-  field.radius = 0.1F;
-  field.factor = 1.F;
-  field.averaged_below = 0.7F;
+  BallField of;
+  of.field.averaged_below = 0.7F;
   Neighborhoods alone;
   alone.reset(1, 1, false);
   const auto cosineAfter = [&](std::size_t i, double degrees) {
-    const Eigen::Map<const Eigen::Vector3f> n(&ball.normals[4 * i]);
-    const Eigen::Vector3f across = n.unitOrthogonal();
-    const auto angle = static_cast<float>(degrees * M_PI / 180);
-    const Eigen::Vector3f tilted = std::cos(angle) * n + std::sin(angle) * across;
     detail::AutoNormals found;
-    found.normals = {tilted[0], tilted[1], tilted[2], 0.F};
+    found.normals = of.tilted(i, degrees);
     found.confidences = {1.F};
-    detail::takeNoiseField({&ball.xyz[4 * i], 4, 1}, alone, field, 1, found);
-    return Eigen::Map<const Eigen::Vector3f>(found.normals.data()).dot(n);
+    detail::takeNoiseField(of.point(i), alone, of.field, 1, found);
+    return of.cosine(i, found.normals);
   };
   for (std::size_t i = 0; i < 50; ++i) {
     EXPECT_NEAR(cosineAfter(i, 20), std::cos(20 * M_PI / 180), 1e-5) << i;
     EXPECT_GT(cosineAfter(i, 70), std::cos(50 * M_PI / 180)) << i;
     EXPECT_GT(cosineAfter(i, 160), std::cos(21 * M_PI / 180)) << i;
   }
+}
+
+// Lines that are far off are the field's, and sides are nobody's to turn.
+TEST(NoiseField, GivesLinesWhereSidesAreKnown) {
+  const BallField of;
+  const auto cosineAfter = [&](std::size_t i, double degrees) {
+    std::vector<float> normals = of.tilted(i, degrees);
+    detail::takeFieldLines(of.point(i), of.field, 1, normals);
+    EXPECT_EQ(normals[3], 0.F);
+    return of.cosine(i, normals);
+  };
+  for (std::size_t i = 0; i < 50; ++i) {
+    EXPECT_NEAR(cosineAfter(i, 20), std::cos(20 * M_PI / 180), 1e-5) << i;
+    EXPECT_GT(cosineAfter(i, 70), std::cos(10 * M_PI / 180)) << i;
+    EXPECT_NEAR(cosineAfter(i, 160), std::cos(160 * M_PI / 180), 1e-5) << i;
+  }
+  std::vector<float> none{std::numeric_limits<float>::quiet_NaN(), 0.F, 0.F, 0.F};
+  detail::takeFieldLines(of.point(0), of.field, 1, none);
+  EXPECT_TRUE(std::isnan(none[0]));
+  std::vector<float> kept = of.tilted(0, 70);
+  detail::takeFieldLines(of.point(0), {}, 1, kept);
+  EXPECT_EQ(kept, of.tilted(0, 70));
 }
 
 // A sheet whose field falls the other way in its middle. Where only that middle can be looked at,

@@ -65,6 +65,45 @@ TEST(ScanScale, LinesOfAScannerShowButNoChance) {
   EXPECT_FALSE(detail::showsScanLines(viewOf(even.xyz), neighborsOf(even.xyz), 0));
 }
 
+// Two scans of a plane with the same noise, one from so near that its spacing is a quarter.
+std::vector<float> nearAndFar(double share_near, unsigned seed) {
+  std::mt19937 rng(seed);
+  std::normal_distribution<float> gauss(0.F, 0.04F);
+  std::uniform_real_distribution<float> unit(0.F, 1.F);
+  std::vector<float> xyz;
+  const auto add = [&](float from, float side, int count) {
+    for (int i = 0; i < count; ++i) {
+      xyz.insert(xyz.end(), {from + side * unit(rng), side * unit(rng), gauss(rng), 0.F});
+    }
+  };
+  add(0.F, 8.F, 3200);
+  if (share_near > 0.0) add(10.F, 2.F, static_cast<int>(3200 * share_near));
+  return xyz;
+}
+
+TEST(ScanScale, NoiseBelowASpacingThatVariesAsksForMore) {
+  const std::vector<float> even = nearAndFar(0.0, 85);
+  const std::vector<float> uneven = nearAndFar(1.0, 86);
+  EXPECT_FALSE(detail::isUneven(viewOf(even), neighborsOf(even)));
+  EXPECT_TRUE(detail::isUneven(viewOf(uneven), neighborsOf(uneven)));
+  EXPECT_FALSE(detail::isUneven({nullptr, 4, 0}, {}));
+  const auto sheets = [](const std::vector<float>& xyz, bool scan_lines) {
+    SheetNormalOptions options;
+    options.scan_lines = scan_lines;
+    return estimateSheetNormals(viewOf(xyz), neighborsOf(xyz), options);
+  };
+  EXPECT_FALSE(sheets(even, true).traits.scan_scales);
+  EXPECT_FALSE(sheets(uneven, false).traits.scan_scales);
+  const SheetNormals found = sheets(uneven, true);
+  EXPECT_TRUE(found.traits.scan_scales);
+  std::vector<float> truth;
+  for (std::size_t i = 0; i < uneven.size() / 4; ++i) {
+    truth.insert(truth.end(), {0.F, 0.F, 1.F, 0.F});
+  }
+  EXPECT_GT(shareWithin(found.normals, truth, 15.0),
+            shareWithin(sheets(uneven, false).normals, truth, 15.0) + 0.1);
+}
+
 // More points than one region of the index has: those at rims wait for the ones behind them.
 TEST(ScanScale, EachPointIsTakenOnceByAnyNumberOfThreads) {
   std::mt19937 rng(84);

@@ -11,9 +11,11 @@
 #include <vector>
 
 #include "common/every_nth.h"
+#include "common/median.h"
 #include "common/parallel_for.h"
 #include "features/growing_scales.h"
 #include "features/grown_planes.h"
+#include "features/sheet_fit.h"
 
 namespace segorient::detail {
 namespace {
@@ -107,6 +109,26 @@ bool showsScanLines(const PointView& points, const search::MedianHashIndex& inde
     nb.setCount(s, index.nearestK(p, kNearest + 1, nb.mutableIndices(s), squares.data()));
   });
   return manyOnLines(kOnLine.fitRows({at.data(), 4, some.size()}, points, nb, rows, threads));
+}
+
+bool isUneven(const PointView& points, const Neighborhoods& nb) {
+  // The noise that asks for 18 neighbours is twice that which asks for 12.
+  constexpr float kFactor = 2.F;
+  constexpr std::size_t kSamples = 1024;
+  constexpr int kOthers = 12;
+  std::vector<float> spacings;
+  for (const std::size_t i : EveryNth(points.size, kSamples)) {
+    std::vector<float> around;
+    for (int j = 0; j < std::min(nb.count(i), kOthers + 1); ++j) {
+      const auto q = static_cast<std::size_t>(nb.indices(i)[j]);
+      around.push_back(meanDistance(points, nb, q, kFirstRing));
+    }
+    if (!around.empty()) spacings.push_back(median(around));
+  }
+  if (spacings.empty()) return false;
+  std::sort(spacings.begin(), spacings.end());
+  const std::size_t tenth = spacings.size() / 10;
+  return spacings[spacings.size() - 1 - tenth] > kFactor * spacings[tenth];
 }
 
 }  // namespace segorient::detail

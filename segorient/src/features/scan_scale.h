@@ -34,6 +34,12 @@ bool showsScanLines(const PointView& points, const Neighborhoods& neighborhoods,
 SEGORIENT_FEATURES_EXPORT bool showsScanLines(const PointView& points,
                                               const search::MedianHashIndex& index, int threads);
 
+/// Whether the spacing varies so much over the cloud that its noise, in spacings, asks for several
+/// scales: from the densest to the sparsest tenth by a factor of two, as where scans overlap that
+/// were made from near and far.
+/// \param neighborhoods 12 of each point at least
+bool isUneven(const PointView& points, const Neighborhoods& neighborhoods);
+
 /// Takes point i's plane, at [r] of some.
 using ScanPlaneTaker = std::function<void(std::size_t i, const GrownPlanes& planes, std::size_t r)>;
 

@@ -82,6 +82,13 @@ void judgeReliability(const std::vector<float>& lopsided, SheetNormals& out) {
   }
 }
 
+// Without noise, densities say nothing: vertices of meshes have all of them.
+bool looksLikeScan(const PointView& points, const Neighborhoods& nb, const NoiseLevel& noise,
+                   const SheetNormalOptions& options) {
+  return (noise.fine >= detail::kFewTellNothing && detail::isUneven(points, nb)) ||
+         detail::showsScanLines(points, nb, options.threads);
+}
+
 }  // namespace
 
 int detail::smallestNeighbors(float noise) {
@@ -98,12 +105,11 @@ SheetNormals estimateSheetNormals(const PointView& points, const Neighborhoods& 
   const std::size_t smallest = smallestScale(noise.fine);
   const int scale = kSheetScales[smallest];
   out.traits.scan_scales =
-      options.known
-          ? options.known->scan_scales
-          : !noise.thin &&
-                (options.scan_scales ||
-                 (options.scan_lines && detail::showsScanLines(points, nb, options.threads))) &&
-                detail::needsScanScales(points, nb, scale, options.threads);
+      options.known ? options.known->scan_scales
+                    : !noise.thin &&
+                          (options.scan_scales ||
+                           (options.scan_lines && looksLikeScan(points, nb, noise, options))) &&
+                          detail::needsScanScales(points, nb, scale, options.threads);
   if (more != nullptr && !out.traits.scan_scales) more->dropUnasked();
   out.normals.resize(4 * n);
   out.spacing.resize(n);

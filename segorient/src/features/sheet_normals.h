@@ -60,7 +60,8 @@ struct SheetNormalOptions {
   /// For what sensors saw: where noise and rings ask for larger neighbourhoods than the cloud's
   /// median does, up to 60. Not for solids, whose thin walls it takes for noise.
   bool scan_scales = false;
-  /// The same where the points lie on lines, as what scanners see does: see showsScanLines().
+  /// The same where the points look like a scan's: they lie on lines, or in noise their spacing
+  /// varies much. See showsScanLines() and isUneven().
   bool scan_lines = true;
   /// Of the cloud that the points are part of; none = measured, and scan_scales as it says.
   std::optional<SheetTraits> known;
@@ -105,7 +106,7 @@ int smallestNeighbors(float noise);
 ///
 /// With scan_scales, points that ask for clearly larger neighbourhoods than that, as in scans near
 /// their sensor and between rings, have planes of up to 60 neighbours, if there are many of them.
-/// So they do with scan_lines in clouds that show scan lines.
+/// So they do with scan_lines in clouds that look like scans.
 ///
 /// \param points distinct finite points
 /// \param neighborhoods their neighbours: kSheetNeighbors beside the point itself, or as many
