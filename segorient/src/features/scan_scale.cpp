@@ -114,7 +114,9 @@ bool showsScanLines(const PointView& points, const search::MedianHashIndex& inde
 bool isUneven(const PointView& points, const Neighborhoods& nb) {
   // The noise that asks for 18 neighbours is twice that which asks for 12.
   constexpr float kFactor = 2.F;
+  // A tenth is known to .01 then.
   constexpr std::size_t kSamples = 1024;
+  // Spacings of random points scatter by a fifth, medians of so many hardly.
   constexpr int kOthers = 12;
   std::vector<float> spacings;
   for (const std::size_t i : EveryNth(points.size, kSamples)) {
