@@ -31,11 +31,11 @@ constexpr float kMostOpen = 0.1F;
 // show to be. Rooms .51 and more, a body with a cavity in noise of half a spacing .13.
 constexpr double kFewOnSurfaces = 0.25;
 // Points on surfaces, for each place.
-constexpr std::size_t kSamples = 600;
+constexpr std::size_t kSamples = 400;
 // Of the deepest places so many have to be enclosed, and half of those that were tried.
 constexpr std::size_t kFewest = 3;
-// So many places, of a body that is all convex, see no step.
-constexpr std::size_t kConvex = 4;
+// After so many places most bodies show that they are none.
+constexpr std::size_t kFirst = 4;
 // Of points on surfaces: those beside a step, the median of places; less are errors.
 constexpr float kFewBeside = 0.005F;
 // Of steps, those with nearer surfaces all around, the median of places: of 45 rooms, most of them
@@ -188,7 +188,8 @@ std::vector<float> directionsInARoom(const PointView& points, const FlatPoints& 
   std::size_t tried = 0;
   for (const Place& place : deepestPlaces(flat)) {
     ++tried;
-    if (room.lookFrom(place) && room.places() == kConvex && !(room.beside() > 0.F)) return {};
+    if (!room.lookFrom(place) || room.places() != kFirst) continue;
+    if (!(room.beside() > 0.F) || room.covered() >= kMostCovered) return {};
   }
   if (room.places() < std::max(kFewest, (tried + 1) / 2)) return {};
   if (room.beside() < kFewBeside || room.covered() >= kMostCovered) return {};
