@@ -31,10 +31,10 @@ constexpr float kMostOpen = 0.1F;
 // show to be. Rooms .51 and more, a body with a cavity in noise of half a spacing .13.
 constexpr double kFewOnSurfaces = 0.25;
 // Points on surfaces, for each place.
-constexpr std::size_t kSamples = 400;
+constexpr std::size_t kSamples = 600;
 // Of the deepest places so many have to be enclosed, and half of those that were tried.
 constexpr std::size_t kFewest = 3;
-// After so many places most bodies show that they are none.
+// After so many places convex bodies show that they are no rooms, after twice as many most others.
 constexpr std::size_t kFirst = 4;
 // Of points on surfaces: those beside a step, the median of places; less are errors.
 constexpr float kFewBeside = 0.005F;
@@ -188,8 +188,9 @@ std::vector<float> directionsInARoom(const PointView& points, const FlatPoints& 
   std::size_t tried = 0;
   for (const Place& place : deepestPlaces(flat)) {
     ++tried;
-    if (!room.lookFrom(place) || room.places() != kFirst) continue;
-    if (!(room.beside() > 0.F) || room.covered() >= kMostCovered) return {};
+    if (!room.lookFrom(place)) continue;
+    if (room.places() == kFirst && !(room.beside() > 0.F)) return {};
+    if (room.places() == 2 * kFirst && room.covered() >= kMostCovered) return {};
   }
   if (room.places() < std::max(kFewest, (tried + 1) / 2)) return {};
   if (room.beside() < kFewBeside || room.covered() >= kMostCovered) return {};
