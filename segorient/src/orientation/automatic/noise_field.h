@@ -97,8 +97,9 @@ SEGORIENT_ORIENTATION_EXPORT void takeNoiseField(const PointView& points,
                                                  AutoNormals& found);
 
 /// Where sensors tell the sides: the field's direction in the place of each normal that is across
-/// it (kAcross), as planes through both faces of an edge are. No normal is turned over. \param
-/// points those of the field \param normals 4 floats a point, oriented
+/// it (kAcross), as planes through both faces of an edge are. No normal is turned over.
+/// \param points those of the field
+/// \param normals 4 floats a point, oriented
 SEGORIENT_ORIENTATION_EXPORT void takeFieldLines(const PointView& points, const NoiseField& field,
                                                  int threads, std::vector<float>& normals);
 

@@ -16,6 +16,7 @@
 #include "orientation/automatic/noise_field.h"
 #include "orientation/automatic/patch_signs.h"
 #include "orientation/automatic/sensor_normals.h"
+#include "orientation/winding/winding_normals.h"
 #include "search/index_of.h"
 #include "segmentation/segmentation_rows.h"
 
@@ -114,7 +115,12 @@ void askField(const PreparedCloud& cloud, const PointView& points, const Neighbo
 
 // Where sensors tell the sides, the field of all points tells lines beside edges in noise.
 void askFieldForLines(const PreparedCloud& cloud, int threads, AutoStages& out) {
+  // Fewer points that may be mended are not worth the time that the field takes.
+  constexpr double kFewDoubtful = 0.01;
   if (out.noise < kCleanFit || out.orientation.toward.empty()) return;
+  const auto doubtful = std::count_if(out.confidences.begin(), out.confidences.end(),
+                                      [](float c) { return c < kNothingToMend; });
+  if (static_cast<double>(doubtful) < kFewDoubtful * static_cast<double>(cloud.size())) return;
   const NoiseField field = findNoiseField(cloud.points(), cloud.neighborhoods(), out.normals,
                                           threads, {}, KnownField{true, false});
   takeFieldLines(cloud.points(), field, threads, out.normals);

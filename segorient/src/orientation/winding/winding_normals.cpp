@@ -14,7 +14,6 @@
 namespace segorient {
 namespace {
 
-constexpr float kNothingToMend = 0.97F;  // confidence from which on there is nothing to mend
 // Median residual, in spacings, above which it is noise: curvature alone leaves some hundredths.
 // Noise makes the planes in the tip of a wedge lie between its faces, where they agree with each
 // other, wrongly; below, the planes near an edge are of one face each.

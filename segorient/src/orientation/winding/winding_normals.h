@@ -11,6 +11,9 @@
 
 namespace segorient {
 
+/// Confidence from which on there is nothing to mend.
+constexpr float kNothingToMend = 0.97F;
+
 /// Normals from the winding-number field, where noise leaves several possible.
 ///
 /// Planes that were fitted to noisy points near an edge mix its two faces, and whichever of their
