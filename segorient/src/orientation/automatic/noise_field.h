@@ -105,8 +105,10 @@ SEGORIENT_ORIENTATION_EXPORT void takeFieldLines(const PointView& points, const 
 
 /// The same as takeNoiseField() without noise, where signs contradict each other on parts hardly
 /// thicker than points are apart: from a field as fine as the points. It is taken where the surface
-/// is closed and the energy of the signs (SignJudge) is less. \param points finite, near ones side
-/// by side \param neighborhoods eight at least \param found normals and confidences may change
+/// is closed and the energy of the signs (SignJudge) is less.
+/// \param points finite, near ones side by side
+/// \param neighborhoods eight at least
+/// \param found normals and confidences may change
 /// \return what was taken; often nothing
 SEGORIENT_ORIENTATION_EXPORT NoiseField takeFineField(const PointView& points,
                                                       const Neighborhoods& neighborhoods,

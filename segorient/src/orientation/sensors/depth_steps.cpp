@@ -9,6 +9,7 @@
 
 #include "common/dot.h"
 #include "common/median.h"
+#include "common/parallel_for.h"
 
 namespace segorient::detail {
 namespace {
@@ -101,6 +102,14 @@ DepthSteps::Step DepthSteps::at(std::size_t i) const {
   if (!(gap > std::max(kStepSpacings * width, steps))) return Step::NONE;
   if (isWithin(i, nearer)) return Step::COVERED;
   return isWithin(i, before) ? Step::HIDDEN : Step::BESIDE;
+}
+
+std::vector<DepthSteps::Step> DepthSteps::of(const EveryNth& some, int threads) const {
+  constexpr double kStepTime = 50000.0;  // ns, see resolveThreads()
+  std::vector<Step> out(some.size(), Step::NONE);
+  parallelFor(some.size(), threads, kStepTime,
+              [&](std::size_t s) { out[s] = at(flat_.onSurfaces()[some[s]]); });
+  return out;
 }
 
 // Whether a point's direction is among those of others, rather than beside them all.

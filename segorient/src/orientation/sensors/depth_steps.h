@@ -9,6 +9,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "common/every_nth.h"
 #include "orientation/sensors/flat_points.h"
 #include "orientation/sensors/seen_from.h"
 
@@ -32,6 +33,8 @@ class DepthSteps {
   float openShare() const;
   /// \param i one of FlatPoints::onSurfaces()
   Step at(std::size_t i) const;
+  /// Of some of them.
+  std::vector<Step> of(const EveryNth& some, int threads) const;
 
  private:
   bool isWithin(std::size_t i, const std::vector<std::size_t>& others) const;
@@ -40,8 +43,5 @@ class DepthSteps {
   SeenFrom seen_;
   search::MedianHashIndex directions_;
 };
-
-/// Ns of DepthSteps::at(), see resolveThreads().
-constexpr double kStepTime = 50000.0;
 
 }  // namespace segorient::detail

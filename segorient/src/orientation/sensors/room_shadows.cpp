@@ -6,13 +6,12 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
-#include <cstdint>
 
+#include "common/dot.h"
 #include "common/every_nth.h"
 #include "common/median.h"
 #include "common/parallel_for.h"
 #include "orientation/sensors/depth_steps.h"
-#include "orientation/sensors/shadows.h"
 #include "search/index_of.h"
 
 namespace segorient::detail {
@@ -101,19 +100,17 @@ class Room {
       : flat_(flat),
         threads_(threads),
         rows_(flat.onSurfaces().size(), kSamples),
-        toward_(3 * rows_.size(), 0.F),
-        found_(rows_.size()) {}
+        toward_(3 * rows_.size(), 0.F) {}
 
   // Whether the place is enclosed; if not, nothing is seen from there.
   bool lookFrom(const Place& place) {
     const DepthSteps depth(flat_, place, threads_);
     if (depth.openShare() > kMostOpen) return false;
-    parallelFor(rows_.size(), threads_, kStepTime,
-                [&](std::size_t s) { found_[s] = depth.at(row(s)); });
+    const std::vector<DepthSteps::Step> found = depth.of(rows_, threads_);
     float covered = 0.F;
     float beside = 0.F;
     for (std::size_t s = 0; s < rows_.size(); ++s) {
-      switch (found_[s]) {
+      switch (found[s]) {
         case DepthSteps::Step::COVERED:
           covered += 1.F;
           break;
@@ -152,8 +149,7 @@ class Room {
   const FlatPoints& flat_;
   int threads_;
   EveryNth rows_;
-  std::vector<float> toward_;  ///< 3 a sample
-  std::vector<DepthSteps::Step> found_;
+  std::vector<float> toward_;   ///< 3 a sample
   std::vector<float> beside_;   ///< one a place: share of the samples
   std::vector<float> covered_;  ///< of the steps
 };

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "common/every_nth.h"
-#include "common/parallel_for.h"
+#include "orientation/sensors/depth_steps.h"
 #include "orientation/sensors/seen_from.h"
 
 namespace segorient::detail {
@@ -34,6 +34,7 @@ constexpr float kMostHidden = 0.8F;
 constexpr float kOpen = 0.1F;
 constexpr float kFewOpen = 0.005F;
 constexpr float kMostOpen = 0.5F;
+
 using Place = std::array<float, 3>;
 
 // Whether it is outside of the least ball around the middle that holds the points.
@@ -43,29 +44,14 @@ bool isOutside(const FlatPoints& flat, const Place& place, const Place& middle, 
   return it.distance[0] > *std::max_element(seen.distance.begin(), seen.distance.end());
 }
 
-// \param least_open share of directions without which steps are not looked for
-Shadows lookFrom(const FlatPoints& flat, const Place& place, float least_open, int threads) {
-  const DepthSteps depth(flat, place, threads);
-  Shadows out;
-  out.open = depth.openShare();
-  if (out.open >= least_open) countSteps(flat, depth, kSamples, threads, out);
-  return out;
-}
-
-}  // namespace
-
-void countSteps(const FlatPoints& flat, const DepthSteps& depth, std::size_t samples, int threads,
-                Shadows& out) {
-  const std::vector<std::size_t>& surfaces = flat.onSurfaces();
-  const EveryNth some(surfaces.size(), samples);
-  const std::size_t n = some.size();
-  std::vector<DepthSteps::Step> found(n, DepthSteps::Step::NONE);
-  parallelFor(n, threads, kStepTime,
-              [&](std::size_t s) { found[s] = depth.at(surfaces[some[s]]); });
+// All but what is open.
+void countSteps(const FlatPoints& flat, const DepthSteps& depth, int threads, Shadows& out) {
+  const std::vector<DepthSteps::Step> found =
+      depth.of(EveryNth(flat.onSurfaces().size(), kSamples), threads);
   const auto share = [&](DepthSteps::Step what) {
     return static_cast<float>(std::count(found.begin(), found.end(), what));
   };
-  const auto surface = static_cast<float>(n);
+  const auto surface = static_cast<float>(found.size());
   const float covered = share(DepthSteps::Step::COVERED);
   const float hidden = covered + share(DepthSteps::Step::HIDDEN);
   const float steps = hidden + share(DepthSteps::Step::BESIDE);
@@ -74,6 +60,17 @@ void countSteps(const FlatPoints& flat, const DepthSteps& depth, std::size_t sam
   out.hidden = hidden / surface;
   out.steps = steps / surface;
 }
+
+// \param least_open share of directions without which steps are not looked for
+Shadows lookFrom(const FlatPoints& flat, const Place& place, float least_open, int threads) {
+  const DepthSteps depth(flat, place, threads);
+  Shadows out;
+  out.open = depth.openShare();
+  if (out.open >= least_open) countSteps(flat, depth, threads, out);
+  return out;
+}
+
+}  // namespace
 
 bool Shadows::confirm() const {
   return steps > kFewSteps && covered < kMostCovered * steps && hidden < kMostHidden * steps &&

@@ -6,9 +6,7 @@
 #include <segorient/common/point_view.h>
 
 #include <array>
-#include <cstddef>
 
-#include "orientation/sensors/depth_steps.h"
 #include "orientation/sensors/flat_points.h"
 
 namespace segorient::detail {
@@ -56,10 +54,5 @@ SEGORIENT_ORIENTATION_EXPORT Shadows findShadows(const PointView& points,
 ///        as most in bodies are, it is known without a look at any step that they do not
 Shadows findShadows(const FlatPoints& flat, const std::array<float, 3>& place, int threads,
                     bool to_reveal = false);
-
-/// Fills in all but what is open.
-/// \param samples points on surfaces to look at, about
-void countSteps(const FlatPoints& flat, const DepthSteps& depth, std::size_t samples, int threads,
-                Shadows& out);
 
 }  // namespace segorient::detail
