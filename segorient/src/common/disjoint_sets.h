@@ -26,6 +26,8 @@ class DisjointSets {
     b = find(b);
     parent(std::max(a, b)) = std::min(a, b);
   }
+  /// Makes a root part of another one's set, whichever number is smaller.
+  void hang(std::int32_t root, std::int32_t other_root) { parent(root) = other_root; }
 
  private:
   std::int32_t& parent(std::int32_t s) { return parent_[static_cast<std::size_t>(s)]; }

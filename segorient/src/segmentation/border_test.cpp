@@ -20,8 +20,6 @@ constexpr int kLeastPatch = 12;
 /// way.
 constexpr double kShareWithin = 0.5;
 
-constexpr float kRightAngle = 1.5707963F;
-
 Eigen::Vector3d position(const Node& p) {
   return {static_cast<double>(p.x), static_cast<double>(p.y), static_cast<double>(p.z)};
 }
@@ -34,7 +32,7 @@ Eigen::Vector3d normal(const Node& p) {
 
 BorderTest::BorderTest(const SegmentationOptions& options, const GrowthState& state)
     : state_(state),
-      cos_alpha_(std::cos(std::min(options.alpha, kRightAngle))),
+      cos_alpha_(cosineOf(options.alpha)),
       max_curvature_(options.max_curvature),
       max_residual_(scaledResidual(options, state)),
       most_slope_(std::tan(0.5 * static_cast<double>(std::min(options.alpha, kRightAngle)))) {}

@@ -6,9 +6,9 @@
 #include <cstdint>
 #include <vector>
 
+#include "common/disjoint_sets.h"
 #include "features/point_set.h"
 #include "segmentation/growth_state.h"
-#include "segmentation/region_growing.h"
 #include "segmentation/small_adjacency.h"
 
 namespace segorient::segmentation {
@@ -57,10 +57,8 @@ class CleanUp {
   static void add(std::int32_t label, std::uint32_t points, std::vector<Count>& counts);
   void listHosts(std::int32_t label, Room& room, Hosts& hosts) const;
   std::int32_t bestHost(std::int32_t label, const Hosts& hosts);
-  std::int32_t joinedTo(std::int32_t label);
   void join(std::int32_t from, std::int32_t into);
   bool tryExtract(std::uint32_t slot);
-  void flip(std::size_t p);
 
   const SegmentationOptions& options_;
   GrowthState& state_;
@@ -68,7 +66,7 @@ class CleanUp {
   SmallAdjacency adjacency_;
   float cos_join_;
   float cos_alpha_;
-  std::vector<std::int32_t> joined_to_;  ///< by segment: where its points went, or itself
+  detail::DisjointSets joined_to_{0};  ///< the root of a segment: where its points went
   std::vector<Count> counts_;
 };
 

@@ -3,7 +3,6 @@
 #include <segorient/segmentation/impl/cloud_segmentation.hpp>
 
 #include <algorithm>
-#include <array>
 #include <limits>
 
 #include "common/bulk_bounds.h"

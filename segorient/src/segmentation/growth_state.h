@@ -12,6 +12,7 @@
 #include <limits>
 #include <vector>
 
+#include "common/at.h"
 #include "common/compiler.h"
 #include "segmentation/region_growing.h"
 #include "segmentation/sheet_edges.h"
@@ -20,6 +21,7 @@ namespace segorient::segmentation {
 
 /// Neighbours of the first ring, as on a hexagonal grid.
 constexpr int kRing = 6;
+constexpr float kRightAngle = 1.5707963F;
 
 /// What one comparison of two neighbours needs, in half a cache line. Coordinates are scaled to the
 /// unit cube by a power of two; the normal takes on its segment's sign when the point is accepted.
@@ -28,6 +30,12 @@ struct alignas(32) Node {
   float spacing;  ///< 0 where unknown
   float nx, ny, nz;
   float curvature;
+
+  void turn() {
+    nx = -nx;
+    ny = -ny;
+    nz = -nz;
+  }
 };
 
 /// Sum of signed normals; in double, so that millions of points do not wear it out.
@@ -62,6 +70,13 @@ inline float dotNormals(const Node& p, const Node& q) {
   return p.nx * q.nx + p.ny * q.ny + p.nz * q.nz;
 }
 
+inline float sqrDistance(const Node& p, const Node& q) {
+  const float dx = q.x - p.x;
+  const float dy = q.y - p.y;
+  const float dz = q.z - p.z;
+  return dx * dx + dy * dy + dz * dz;
+}
+
 /// How far q is off the tangent plane of p.
 inline float residual(const Node& p, const Node& q) {
   return std::abs((q.x - p.x) * p.nx + (q.y - p.y) * p.ny + (q.z - p.z) * p.nz);
@@ -73,10 +88,7 @@ struct PairLimits {
   float offset = 0.F;   ///< in units of the mean spacing
 
   bool near(const Node& p, const Node& q) const {
-    const float dx = q.x - p.x;
-    const float dy = q.y - p.y;
-    const float dz = q.z - p.z;
-    return dx * dx + dy * dy + dz * dz <= gap_sqr * p.spacing * q.spacing;
+    return sqrDistance(p, q) <= gap_sqr * p.spacing * q.spacing;
   }
   /// Whether two points look at each other across a thin wall: each lies along the other's normal.
   static bool facing(const Node& p, const Node& q) {
@@ -92,12 +104,7 @@ struct PairLimits {
   /// Whether q lies in the surface around p: p's tangent plane alone, as the normal of a candidate
   /// near an edge leans over.
   bool admissible(const Node& p, const Node& q) const {
-    const float dx = q.x - p.x;
-    const float dy = q.y - p.y;
-    const float dz = q.z - p.z;
-    const float limit = offset * 0.5F * (p.spacing + q.spacing);
-    return dx * dx + dy * dy + dz * dz <= gap_sqr * p.spacing * q.spacing &&
-           std::abs(dx * p.nx + dy * p.ny + dz * p.nz) <= limit;
+    return near(p, q) && residual(p, q) <= offset * 0.5F * (p.spacing + q.spacing);
   }
 };
 
@@ -140,8 +147,7 @@ struct GrowthState {
 
   /// Whether a cluster is one that points can be moved to and others be measured by.
   bool isFace(std::int32_t label, std::size_t small_size) const {
-    const auto at = static_cast<std::size_t>(label);
-    return clusters[at].size >= small_size && strips[at] == 0;
+    return clusters[at(label)].size >= small_size && strips[at(label)] == 0;
   }
   /// Whether q, a neighbour of p, lies in the surface around p.
   bool joins(std::size_t p, std::size_t q) const {
@@ -170,10 +176,31 @@ struct GrowthState {
   std::uint32_t membersAmong(std::size_t p, std::int32_t label) const {
     return labelledAmong(labels.data(), neighborhoods->indices(p) + 1, rowSize(p) - 1, label);
   }
+  /// Gives a point the other sign.
+  void turn(std::size_t p) {
+    nodes[p].turn();
+    signs[p] = static_cast<std::int8_t>(-signs[p]);
+  }
+  /// Takes a point out of its segment into another one, whose sign it gets.
+  void move(std::size_t p, std::int32_t into) {
+    Cluster& source = clusters[at(labels[p])];
+    Cluster& target = clusters[at(into)];
+    source.normal.add(nodes[p], -1.0);
+    --source.size;
+    if (target.normal.dot(nodes[p]) < 0.0) turn(p);
+    target.normal.add(nodes[p]);
+    ++target.size;
+    labels[p] = into;
+  }
   /// Asks the memory for a row of the table that is looked at soon.
   void fetchRow(std::size_t row) const { prefetch(neighborhoods->indices(row)); }
   int rowSize(std::size_t row) const { return std::min(neighborhoods->count(row), neighbors); }
 };
+
+/// Normals without signs are at right angles at most.
+inline float cosineOf(float angle) {
+  return std::cos(std::min(angle, kRightAngle));
+}
 
 /// The largest residual that growing passes, in the unit of the nodes.
 inline float scaledResidual(const SegmentationOptions& options, const GrowthState& state) {

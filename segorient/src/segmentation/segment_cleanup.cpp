@@ -1,33 +1,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026, the segorient authors
-#include <numeric>
-
-#include "common/disjoint_sets.h"
 #include "common/parallel_for.h"
 #include "segmentation/clean_up.h"
 
 namespace segorient::segmentation {
-namespace {
-
-constexpr float kRightAngle = 1.5707963F;
-
-}  // namespace
 
 CleanUp::CleanUp(const SegmentationOptions& options, GrowthState& state)
     : options_(options),
       state_(state),
       small_size_(static_cast<std::uint32_t>(std::min(options.small_size, state.nodes.size() + 1))),
       adjacency_(state, small_size_, options.threads),
-      cos_join_(std::cos(std::min(options.beta + options.epsilon, kRightAngle))),
-      cos_alpha_(std::cos(std::min(options.alpha, kRightAngle))) {}
-
-void CleanUp::flip(std::size_t p) {
-  Node& node = state_.nodes[p];
-  node.nx = -node.nx;
-  node.ny = -node.ny;
-  node.nz = -node.nz;
-  state_.signs[p] = static_cast<std::int8_t>(-state_.signs[p]);
-}
+      cos_join_(cosineOf(options.beta + options.epsilon)),
+      cos_alpha_(cosineOf(options.alpha)) {}
 
 void CleanUp::add(std::int32_t label, std::uint32_t points, std::vector<Count>& counts) {
   const auto it =
@@ -51,20 +35,12 @@ void CleanUp::listHosts(std::int32_t label, Room& room, Hosts& hosts) const {
   });
 }
 
-std::int32_t CleanUp::joinedTo(std::int32_t label) {
-  const auto at = [this](std::int32_t s) -> std::int32_t& {
-    return joined_to_[static_cast<std::size_t>(s)];
-  };
-  while (at(label) != label) label = at(label) = at(at(label));
-  return label;
-}
-
 // Pass 1, one segment: the neighbouring segment of the smallest angle among those that hold enough
 // of the points around, or -1.
 // \param hosts as listed at any time since other segments joined this one
 std::int32_t CleanUp::bestHost(std::int32_t label, const Hosts& hosts) {
   counts_.clear();
-  for (const Count& c : hosts.counts) add(joinedTo(c.label), c.points, counts_);
+  for (const Count& c : hosts.counts) add(joined_to_.find(c.label), c.points, counts_);
   const NormalSum& own = state_.clusters[static_cast<std::size_t>(label)].normal;
   std::int32_t best = -1;
   double best_cosine = cos_join_;
@@ -88,12 +64,12 @@ void CleanUp::join(std::int32_t from, std::int32_t into) {
   const double sign = target.normal.dot(source.normal) < 0.0 ? -1.0 : 1.0;
   adjacency_.forEachPoint(from, [&](std::size_t p) {
     state_.labels[p] = into;
-    if (sign < 0.0) flip(p);
+    if (sign < 0.0) state_.turn(p);
   });
   target.normal.add(source.normal, sign);
   target.size += source.size;
   source = Cluster{};
-  joined_to_[static_cast<std::size_t>(from)] = into;
+  joined_to_.hang(from, into);
   adjacency_.append(from, into);
 }
 
@@ -104,8 +80,7 @@ std::size_t CleanUp::absorbSmall() {
   constexpr double kPointTime = 1000.0;  // ns, see resolveThreads()
   std::size_t absorbed = 0;
   std::vector<std::vector<std::int32_t>> by_size(small_size_);
-  joined_to_.resize(state_.clusters.size());
-  std::iota(joined_to_.begin(), joined_to_.end(), 0);
+  joined_to_ = detail::DisjointSets(state_.clusters.size());
   for (std::size_t s = 0; s < state_.clusters.size(); ++s) {
     const std::uint32_t size = state_.clusters[s].size;
     if (size < small_size_) by_size[size].push_back(static_cast<std::int32_t>(s));
@@ -152,7 +127,6 @@ bool CleanUp::tryExtract(std::uint32_t slot) {
   const std::int32_t own = state_.labels[p];
   std::int32_t best = -1;
   double best_cosine = cos_join_;
-  double best_sign = 1.0;
   std::int32_t last = own;  // neighbours next to each other mostly have one label
   const auto consider = [&](std::size_t q) {
     const std::int32_t label = state_.labels[q];
@@ -160,12 +134,11 @@ bool CleanUp::tryExtract(std::uint32_t slot) {
     last = label;
     if (!isFace(label) || !state_.supports(p, label)) return;
     const NormalSum& reference = state_.clusters[static_cast<std::size_t>(label)].normal;
-    const double along = reference.dot(state_.nodes[p]) / std::sqrt(reference.squaredNorm());
-    const double cosine = std::abs(along);
+    const double cosine =
+        std::abs(reference.dot(state_.nodes[p]) / std::sqrt(reference.squaredNorm()));
     if (cosine > best_cosine || (cosine == best_cosine && best >= 0 && label < best)) {
       best_cosine = cosine;
       best = label;
-      best_sign = along < 0.0 ? -1.0 : 1.0;
     }
   };
   if (state_.support > 0) {
@@ -174,14 +147,7 @@ bool CleanUp::tryExtract(std::uint32_t slot) {
     adjacency_.forEachMarked(slot, consider);
   }
   if (best < 0) return false;
-  Cluster& source = state_.clusters[static_cast<std::size_t>(own)];
-  Cluster& target = state_.clusters[static_cast<std::size_t>(best)];
-  source.normal.add(state_.nodes[p], -1.0);
-  --source.size;
-  if (best_sign < 0.0) flip(p);
-  target.normal.add(state_.nodes[p]);
-  ++target.size;
-  state_.labels[p] = best;
+  state_.move(p, best);
   return true;
 }
 
@@ -244,7 +210,7 @@ void CleanUp::connectSmall() {
   for (std::uint32_t slot = 0; slot < adjacency_.size(); ++slot) {
     const std::size_t p = adjacency_.point(slot);
     const std::int32_t own = state_.labels[p];
-    if (sign[static_cast<std::size_t>(own)] < 0) flip(p);
+    if (sign[static_cast<std::size_t>(own)] < 0) state_.turn(p);
     state_.labels[p] = sets.find(own);
   }
 }

@@ -6,12 +6,50 @@
 #include <memory>
 
 #include "common/compiler.h"
-#include "segmentation/growth_edges.h"
 #include "segmentation/growth_state.h"
 #include "segmentation/seed_order.h"
 
 namespace segorient::segmentation {
 namespace {
+
+/// Edge policies of growing: which neighbours it may go on to from a point, and whether a segment
+/// that wants one has support for it.
+
+/// By distances and tangent planes, as PairLimits has them.
+struct LimitedEdges {
+  static constexpr bool kLooksAtRows = false;  ///< of candidates, before these are accepted
+  PairLimits limits;
+
+  std::uint32_t among(std::size_t /*p*/) const { return ~0U; }
+  bool admits(const Node& p, const Node& q, std::size_t /*index*/) const {
+    return limits.admissible(p, q);
+  }
+  bool supports(std::size_t /*q*/, std::int32_t /*label*/, std::uint32_t /*size*/) const {
+    return true;
+  }
+};
+
+/// Within single sheets, by SheetEdges.
+struct ListedEdges {
+  static constexpr bool kLooksAtRows = true;
+  const GrowthState& state;
+  const std::uint8_t* reliable;  ///< null = all points are
+
+  std::uint32_t among(std::size_t p) const { return state.joined[p]; }
+  bool admits(const Node& /*p*/, const Node& /*q*/, std::size_t index) const {
+    return reliable == nullptr || reliable[index] != 0;
+  }
+
+  // As GrowthState::supports().
+  bool supports(std::size_t q, std::int32_t label, std::uint32_t size) const {
+    constexpr std::uint32_t kYoung = 6;  // a segment that small has not so many to offer
+    const int wanted = size <= kYoung ? 0 : state.support;
+    const std::uint32_t members = state.membersAmong(q, label);
+    const int good = countBits(members & state.joined[q]);
+    const int bad = countBits(members & ~state.joined[q]);
+    return good >= wanted && (state.support == 0 || bad <= good);
+  }
+};
 
 /// Grows one segment after the other; the queue is one array for all of them. The arrays are held
 /// by plain pointers: this loop is most of the time that segmentation takes.
@@ -97,7 +135,6 @@ class Grower {
   static constexpr std::size_t kLabelsAhead = 16;
   static constexpr std::size_t kNodesAhead = 12;
   static constexpr int kMaskBits = 32;
-  static constexpr float kRightAngle = 1.5707963F;
 
   // The table of counts is looked into only where it has something to tell.
   int rowSize(std::size_t p) const {
@@ -106,11 +143,7 @@ class Grower {
 
   void accept(std::size_t q, int sign, bool flat) {
     Node& node = nodes_[q];
-    if (sign < 0) {
-      node.nx = -node.nx;
-      node.ny = -node.ny;
-      node.nz = -node.nz;
-    }
+    if (sign < 0) node.turn();
     labels_[q] = label_;
     signs_[q] = static_cast<std::int8_t>(sign);
     cluster_.normal.add(node);

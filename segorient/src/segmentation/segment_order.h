@@ -3,9 +3,9 @@
 #pragma once
 
 #include <segorient/common/export.h>
-#include <segorient/segmentation/segmentation.h>
 
 #include <cstddef>
+#include <cstdint>
 #include <vector>
 
 namespace segorient::segmentation {

@@ -57,15 +57,13 @@ Scaling scalingOf(const PointView& points) {
 }
 
 // Mean squared distance to the first ring, duplicates left out.
-float sqrSpacing(const Node* nodes, const pcl::index_t* row, std::size_t p, int count) {
+// \param sqrTo of neighbour j of a row
+template <typename SqrTo>
+float sqrSpacing(int count, const SqrTo& sqrTo) {
   float sum = 0.F;
   int found = 0;
   for (int j = 1; j < count && found < kRing; ++j) {
-    const Node& q = nodes[row[j]];
-    const float dx = q.x - nodes[p].x;
-    const float dy = q.y - nodes[p].y;
-    const float dz = q.z - nodes[p].z;
-    const float d = dx * dx + dy * dy + dz * dz;
+    const float d = sqrTo(j);
     if (d > 0.F) {
       sum += d;
       ++found;
@@ -74,23 +72,14 @@ float sqrSpacing(const Node* nodes, const pcl::index_t* row, std::size_t p, int 
   return found > 0 ? sum / static_cast<float>(found) : 0.F;
 }
 
-float sqrSpacing(const float* sqr_distances, int count) {
-  const float* d = sqr_distances;
+float sqrSpacing(const float* d, int count) {
   static_assert(kRing == 6, "the terms below");
   // Nearly always there are no duplicates, and nothing to look for.
   if (count > kRing && d[1] > 0.F && d[2] > 0.F && d[3] > 0.F && d[4] > 0.F && d[5] > 0.F &&
       d[6] > 0.F) {
     return (d[1] + d[2] + d[3] + d[4] + d[5] + d[6]) / static_cast<float>(kRing);
   }
-  float sum = 0.F;
-  int found = 0;
-  for (int j = 1; j < count && found < kRing; ++j) {
-    if (sqr_distances[j] > 0.F) {
-      sum += sqr_distances[j];
-      ++found;
-    }
-  }
-  return found > 0 ? sum / static_cast<float>(found) : 0.F;
+  return sqrSpacing(count, [d](int j) { return d[j]; });
 }
 
 void packNodes(const PointView& points, const NormalView& normals, const Scaling& scaling,
@@ -130,7 +119,9 @@ void packNodes(const PointView& points, const NormalView& normals, const Scaling
   });
   if (use_table) return;
   parallelFor(points.size, threads, 40.0, [&](std::size_t row) {
-    const float mean = sqrSpacing(nodes, hood.indices(row), row, hood.count(row));
+    const pcl::index_t* near = hood.indices(row);
+    const float mean =
+        sqrSpacing(hood.count(row), [&](int j) { return sqrDistance(nodes[row], nodes[near[j]]); });
     nodes[row].spacing = std::sqrt(mean * kSqrSpacingPerMean);
   });
 }
@@ -148,9 +139,7 @@ float typicalOffset(const GrowthState& state) {
     if (count < kRing || !(p.spacing > 0.F) || !std::isfinite(p.nx)) continue;
     std::array<float, kRing> ring{};
     for (int j = 1; j < count; ++j) {
-      const Node& q = state.nodes[static_cast<std::size_t>(row[j])];
-      ring[static_cast<std::size_t>(j - 1)] =
-          std::abs((q.x - p.x) * p.nx + (q.y - p.y) * p.ny + (q.z - p.z) * p.nz);
+      ring[static_cast<std::size_t>(j - 1)] = residual(p, state.nodes[at(row[j])]);
     }
     std::sort(ring.begin(), ring.begin() + (count - 1));
     offsets.push_back(ring[static_cast<std::size_t>((count - 1) / 2)] / p.spacing);

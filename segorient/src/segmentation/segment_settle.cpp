@@ -45,9 +45,7 @@ int reachOf(const Neighborhoods& neighborhoods, std::size_t row) {
 class Settler {
  public:
   Settler(const SegmentationOptions& options, const GrowthState& state)
-      : state_(state),
-        small_size_(options.small_size),
-        cos_alpha_(std::cos(std::min(options.alpha, kRightAngle))) {}
+      : state_(state), small_size_(options.small_size), cos_alpha_(cosineOf(options.alpha)) {}
 
   /// Label that a point should have.
   std::int32_t settle(std::size_t p, DistinctPoints& around) const {
@@ -194,29 +192,10 @@ class Settler {
            std::cos(kMostLean) * std::sqrt(reference.squaredNorm());
   }
 
-  static constexpr float kRightAngle = 1.5707963F;
-
   const GrowthState& state_;
   std::size_t small_size_;
   float cos_alpha_;
 };
-
-void move(std::size_t p, std::int32_t into, GrowthState& state) {
-  Node& node = state.nodes[p];
-  Cluster& source = state.clusters[static_cast<std::size_t>(state.labels[p])];
-  Cluster& target = state.clusters[static_cast<std::size_t>(into)];
-  source.normal.add(node, -1.0);
-  --source.size;
-  if (target.normal.dot(node) < 0.0) {
-    node.nx = -node.nx;
-    node.ny = -node.ny;
-    node.nz = -node.nz;
-    state.signs[p] = static_cast<std::int8_t>(-state.signs[p]);
-  }
-  target.normal.add(node);
-  ++target.size;
-  state.labels[p] = into;
-}
 
 // All decide on the old labels; so the order does not matter.
 // \return those that moved
@@ -240,7 +219,7 @@ std::vector<pcl::index_t> settleOnce(const SegmentationOptions& options,
         (state.clusters[static_cast<std::size_t>(own)].size == options.small_size &&
          state.isFace(own, options.small_size)))
       continue;
-    move(p, wanted[i], state);
+    state.move(p, wanted[i]);
     moved.push_back(border[i]);
   }
   return moved;

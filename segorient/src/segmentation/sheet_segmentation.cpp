@@ -22,21 +22,13 @@ float automaticAlpha(float residual) {
   return (15.F + 5.F * t) * kDegree;
 }
 
-SegmentationOptions growthOptions(const SheetSegmentationOptions& options, float residual) {
-  SegmentationOptions out;
-  out.alpha = options.alpha > 0.F ? options.alpha : automaticAlpha(residual);
-  out.beta = options.beta;
-  out.epsilon = options.epsilon;
-  out.threads = options.threads;
-  return out;
-}
-
 }  // namespace
 
 Segmentation segmentSheets(const PointView& points, const Neighborhoods& neighborhoods,
                            const SheetField& field, const SheetSegmentationOptions& options,
                            FinishedSegments* finished) {
-  const SegmentationOptions growth = growthOptions(options, field.residual);
+  SegmentationOptions growth = options;
+  if (!(growth.alpha > 0.F)) growth.alpha = automaticAlpha(field.residual);
   const SheetEdges edges(points, field);
   segmentation::GrowthState state;
   state.neighborhoods = &neighborhoods;

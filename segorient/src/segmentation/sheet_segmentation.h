@@ -11,15 +11,13 @@
 
 namespace segorient {
 
-/// Options of segmentSheets(). Angles in radians.
-struct SheetSegmentationOptions {
-  /// Largest angle between neighbours' normals; 0 = 15 degrees on clean data to 20 on noisy.
-  float alpha = 0.F;
-  float beta = 0.5235988F;      ///< largest angle to the segment's reference normal (30 degrees)
-  float epsilon = 0.1745329F;   ///< what clean-up allows beyond beta (10 degrees)
+/// Options of segmentSheets().
+struct SheetSegmentationOptions : SegmentationOptions {
   bool require_support = true;  ///< a point joins only with several neighbours inside
   bool clean_up = true;         ///< passes 1 and 2 of the paper
-  int threads = 0;              ///< see resolveThreads()
+
+  /// Alpha 0 = 15 degrees on clean data to 20 on noisy.
+  SheetSegmentationOptions() { alpha = 0.F; }
 };
 
 /// Segments as a user wants to see them, and how.
