@@ -10,7 +10,6 @@
 #include <limits>
 
 #include "common/peak_memory.h"
-#include "features/automatic_normals.h"
 #include "features/sheet_normals.h"
 #include "orientation/pipeline_stages.h"
 #include "orientation/sensors/sensor_hints.h"
@@ -48,17 +47,10 @@ void fillReport(const detail::OrientedStages& work, const OrientedCloud& cloud,
     if (!std::isfinite(cloud.normals[4 * row])) ++report.without_normal;
   }
   for (std::size_t s = 0; s < cloud.segments.size(); ++s) {
-    switch (cloud.segmentation.segments[s].kind) {
-      case SegmentKind::REGULAR:
-        ++report.regular_segments;
-        break;
-      case SegmentKind::CONNECTED:
-        ++report.connected_segments;
-        break;
-      case SegmentKind::ISOLATED:
-        ++report.isolated_segments;
-        break;
-    }
+    const SegmentKind kind = cloud.segmentation.segments[s].kind;
+    report.regular_segments += kind == SegmentKind::REGULAR;
+    report.connected_segments += kind == SegmentKind::CONNECTED;
+    report.isolated_segments += kind == SegmentKind::ISOLATED;
     if (cloud.segments[s].hard) ++report.hard_segments;
   }
   report.components = work.orientation.components;
