@@ -3,6 +3,7 @@
 #include "orientation/paper/combination.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "orientation/paper/spanning_tree.h"
 
@@ -19,13 +20,14 @@ void finish(SegmentSpread& spread) {
 }
 
 // From the largest segment of each component in turn.
-void finishFromSeeds(SegmentSpread& spread) {
+Results finishFromSeeds(SegmentSpread spread) {
   finish(spread);
   for (const std::int32_t segment : spread.bySize()) {
     if (!spread.isOpen(segment)) continue;
     spread.orient(segment, 1, DecidedBy::SEED, 1.F);
     finish(spread);
   }
+  return spread.results();
 }
 
 float weight(const ExtremalEvidence& evidence) {
@@ -59,15 +61,11 @@ void askExtremalPoints(const SegmentEvidence& evidence, const OrientationSetting
 }  // namespace
 
 Results propagateOrientation(const SegmentEvidence& evidence, const OrientationSettings& options) {
-  SegmentSpread spread(evidence, options, SegmentSpread::Rule::ANGLE);
-  finishFromSeeds(spread);
-  return spread.results();
+  return finishFromSeeds(SegmentSpread(evidence, options, SegmentSpread::Rule::ANGLE));
 }
 
 Results orientByBoundaries(const SegmentEvidence& evidence, const OrientationSettings& options) {
-  SegmentSpread spread(evidence, options, SegmentSpread::Rule::BOUNDARY);
-  finishFromSeeds(spread);
-  return spread.results();
+  return finishFromSeeds(SegmentSpread(evidence, options, SegmentSpread::Rule::BOUNDARY));
 }
 
 Results orientCombined(const SegmentEvidence& evidence, const OrientationSettings& options) {
@@ -81,8 +79,7 @@ Results orientCombined(const SegmentEvidence& evidence, const OrientationSetting
   }
   spread.spread();
   askExtremalPoints(evidence, options, spread);
-  finishFromSeeds(spread);
-  return spread.results();
+  return finishFromSeeds(std::move(spread));
 }
 
 Results orientByExtremalPoints(const SegmentEvidence& evidence,
@@ -94,8 +91,7 @@ Results orientByExtremalPoints(const SegmentEvidence& evidence,
     spread.orient(static_cast<std::int32_t>(s), extremal.sign, DecidedBy::EXTREMAL,
                   std::max(0.F, extremal.agreement));
   }
-  finishFromSeeds(spread);
-  return spread.results();
+  return finishFromSeeds(std::move(spread));
 }
 
 }  // namespace segorient

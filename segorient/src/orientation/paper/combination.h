@@ -9,7 +9,6 @@
 #include <vector>
 
 #include "orientation/paper/extremal_points.h"
-#include "orientation/paper/segment_links.h"
 #include "orientation/paper/segment_relations.h"
 
 namespace segorient {

@@ -6,6 +6,7 @@
 #include <cstddef>
 
 #include "common/at.h"
+#include "orientation/paper/segment_links.h"
 
 namespace segorient {
 namespace {

@@ -7,7 +7,6 @@
 #include <cstdint>
 #include <vector>
 
-#include "orientation/paper/segment_links.h"
 #include "orientation/paper/segment_relations.h"
 
 namespace segorient {

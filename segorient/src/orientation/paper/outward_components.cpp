@@ -5,8 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <numeric>
-#include <utility>
 #include <vector>
 
 #include "common/at.h"
@@ -85,16 +83,12 @@ constexpr std::size_t kSources =
 
 // Components by how many others' boxes contain theirs: outer ones first.
 std::vector<std::size_t> outerFirst(const std::vector<Box>& boxes) {
-  std::vector<std::size_t> order(boxes.size());
-  std::iota(order.begin(), order.end(), std::size_t{0});
   std::vector<std::ptrdiff_t> depth;
   for (const Box& own : boxes) {
     depth.push_back(std::count_if(boxes.begin(), boxes.end(),
                                   [&](const Box& other) { return other.encloses(own); }));
   }
-  std::stable_sort(order.begin(), order.end(),
-                   [&](std::size_t l, std::size_t r) { return depth[l] < depth[r]; });
-  return order;
+  return BySize(boxes.size(), [&](std::size_t b) { return -depth[b]; }).order();
 }
 
 // How often a turned component winds around the points of another: 1 in a closed body, 0 outside,

@@ -10,7 +10,6 @@
 #include <cstdint>
 #include <vector>
 
-#include "orientation/orient_segments.h"
 #include "orientation/paper/extremal_points.h"
 #include "orientation/paper/mixed_segments.h"
 

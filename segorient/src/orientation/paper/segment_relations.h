@@ -10,8 +10,6 @@
 #include <cstdint>
 #include <vector>
 
-#include "orientation/paper/segment_links.h"
-
 namespace segorient {
 
 /// Cosine of the angle between the two segments of each link, in [-1, 1]; signed: positive means

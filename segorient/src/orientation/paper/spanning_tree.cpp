@@ -7,6 +7,8 @@
 
 #include "common/at.h"
 #include "common/by_size.h"
+#include "common/disjoint_sets.h"
+#include "orientation/paper/segment_links.h"
 
 namespace segorient {
 namespace {
@@ -40,25 +42,14 @@ void SegmentSpread::sortBySize() {
 }
 
 void SegmentSpread::labelComponents() {
-  const SegmentGraph& links = evidence_.links;
+  detail::DisjointSets sets(results_.size());
+  for (const SegmentBorder& link : evidence_.links.borders) sets.join(link.a, link.b);
   std::int32_t components = 0;
-  std::vector<std::int32_t> stack;
   for (std::size_t s = 0; s < results_.size(); ++s) {
-    if (results_[s].component >= 0) continue;
-    if (!isRegular(evidence_.segmentation, static_cast<std::int32_t>(s))) continue;
-    results_[s].component = components;
-    stack.push_back(static_cast<std::int32_t>(s));
-    while (!stack.empty()) {
-      const std::int32_t top = stack.back();
-      stack.pop_back();
-      for (const std::uint32_t link : LinksOf(links, top)) {
-        const std::int32_t other = otherOf(links.borders[link], top);
-        if (results_[at(other)].component >= 0) continue;
-        results_[at(other)].component = components;
-        stack.push_back(other);
-      }
-    }
-    ++components;
+    const auto segment = static_cast<std::int32_t>(s);
+    if (!isRegular(evidence_.segmentation, segment)) continue;
+    const std::int32_t root = sets.find(segment);
+    results_[s].component = root == segment ? components++ : results_[at(root)].component;
   }
 }
 

@@ -8,7 +8,6 @@
 
 #include <vector>
 
-#include "orientation/paper/segment_links.h"
 #include "orientation/paper/segment_relations.h"
 
 namespace segorient {
