@@ -22,23 +22,22 @@ struct Run {
   float radius;  ///< the largest
 };
 
-template <typename RadiusAt>
-std::vector<Run> cutRuns(const PointView& at, const RadiusAt& radius) {
+std::vector<Run> cutRuns(const PointView& at, const std::vector<float>& radii) {
   constexpr float kWidest = 6.F;       // in radii; 4 and 9 take a tenth longer
   constexpr std::size_t kPlaces = 32;  // more share a list then, but each has more to sum
   std::vector<Run> runs;
   for (std::size_t first = 0; first < at.size;) {
     Box box;
     box.add(at[first]);
-    const float widest = kWidest * radius(first);
-    float largest = radius(first);
+    const float widest = kWidest * radii[first];
+    float largest = radii[first];
     std::size_t last = first + 1;
     for (; last < at.size && last - first < kPlaces; ++last) {
       Box wider = box;
       wider.add(at[last]);
       if (0.5F * wider.diagonal() > widest) break;
       box = wider;
-      largest = std::max(largest, radius(last));
+      largest = std::max(largest, radii[last]);
     }
     runs.push_back({first, last, box.center(), 0.5F * box.diagonal(), largest});
     first = last;
@@ -57,10 +56,10 @@ DipoleList listOf(const DipoleCloud& from, const std::vector<std::uint32_t>& row
   return out;
 }
 
-template <typename RadiusAt, typename Evaluate>
-void forEachPlace(const PointView& at, const DipoleCloud& from, const RadiusAt& radius, int threads,
-                  Evaluate&& evaluate) {
-  const std::vector<Run> runs = cutRuns(at, radius);
+template <typename Evaluate>
+void forEachPlace(const PointView& at, const DipoleCloud& from, const std::vector<float>& radii,
+                  int threads, Evaluate&& evaluate) {
+  const std::vector<Run> runs = cutRuns(at, radii);
   WindingNumber tree;
   const std::vector<std::uint32_t> all;
   const std::vector<std::uint32_t>& rows = from.rows != nullptr ? *from.rows : all;
@@ -75,18 +74,8 @@ void forEachPlace(const PointView& at, const DipoleCloud& from, const RadiusAt& 
       });
 }
 
-auto everywhere(float radius) {
-  return [radius](std::size_t) { return radius; };
-}
-
-template <typename RadiusAt>
-std::vector<float> descents(const PointView& at, const DipoleCloud& from, const RadiusAt& radius,
-                            int threads) {
-  std::vector<float> out(4 * at.size, 0.F);
-  forEachPlace(at, from, radius, threads, [&](const DipoleList& seen, std::size_t i) {
-    steepestDescent(seen, at[i], radius(i), &out[4 * i]);
-  });
-  return out;
+std::vector<float> everywhere(const PointView& at, float radius) {
+  return std::vector<float>(at.size, radius);
 }
 
 }  // namespace
@@ -104,29 +93,34 @@ std::vector<float> dipolesOf(const std::vector<float>& normals, const std::vecto
 std::vector<float> windingNumbers(const PointView& at, const DipoleCloud& from, float radius,
                                   int threads) {
   std::vector<float> out(at.size, 0.F);
-  forEachPlace(at, from, everywhere(radius), threads, [&](const DipoleList& seen, std::size_t i) {
-    out[i] = windingNumberOf(seen, at[i], radius);
-  });
+  forEachPlace(at, from, everywhere(at, radius), threads,
+               [&](const DipoleList& seen, std::size_t i) {
+                 out[i] = windingNumberOf(seen, at[i], radius);
+               });
   return out;
 }
 
 std::vector<float> steepestDescents(const PointView& at, const DipoleCloud& from, float radius,
                                     int threads) {
-  return descents(at, from, everywhere(radius), threads);
+  return steepestDescents(at, from, everywhere(at, radius), threads);
 }
 
 std::vector<float> steepestDescents(const PointView& at, const DipoleCloud& from,
                                     const std::vector<float>& radii, int threads) {
-  return descents(
-      at, from, [&](std::size_t i) { return radii[i]; }, threads);
+  std::vector<float> out(4 * at.size, 0.F);
+  forEachPlace(at, from, radii, threads, [&](const DipoleList& seen, std::size_t i) {
+    steepestDescent(seen, at[i], radii[i], &out[4 * i]);
+  });
+  return out;
 }
 
 std::vector<float> windingPulls(const PointView& at, const DipoleCloud& from, float radius,
                                 int threads) {
   std::vector<float> out(4 * at.size, 0.F);
-  forEachPlace(at, from, everywhere(radius), threads, [&](const DipoleList& seen, std::size_t i) {
-    windingPull(seen, at[i], radius, &out[4 * i]);
-  });
+  forEachPlace(at, from, everywhere(at, radius), threads,
+               [&](const DipoleList& seen, std::size_t i) {
+                 windingPull(seen, at[i], radius, &out[4 * i]);
+               });
   return out;
 }
 

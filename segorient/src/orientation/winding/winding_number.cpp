@@ -116,9 +116,8 @@ WindingNumber::Extent WindingNumber::sumLeaf(Node& node) const {
     const float* d = dipoles_ + 4 * row(i);
     const double a = static_cast<double>(d[3]) + 1e-30;
     extent.area += a;
+    extent.box.add(p);
     for (int k = 0; k < 3; ++k) {
-      extent.low[k] = std::min(extent.low[k], p[k]);
-      extent.high[k] = std::max(extent.high[k], p[k]);
       center[k] += a * static_cast<double>(p[k]);
       dipole[k] += static_cast<double>(d[k]);
     }
@@ -132,14 +131,14 @@ WindingNumber::Extent WindingNumber::sumLeaf(Node& node) const {
 
 WindingNumber::Extent WindingNumber::sumHalves(const Node& a, const Extent& in_a, const Node& b,
                                                const Extent& in_b, Node& node) {
-  Extent extent;
-  extent.area = in_a.area + in_b.area;
+  Extent extent = in_a;
+  extent.area += in_b.area;
+  extent.box.add(in_b.box.low.data());
+  extent.box.add(in_b.box.high.data());
   const auto share = static_cast<float>(in_b.area / extent.area);
   for (int k = 0; k < 3; ++k) {
     node.center[k] = a.center[k] + share * (b.center[k] - a.center[k]);
     node.dipole[k] = a.dipole[k] + b.dipole[k];
-    extent.low[k] = std::min(in_a.low[k], in_b.low[k]);
-    extent.high[k] = std::max(in_a.high[k], in_b.high[k]);
   }
   return extent;
 }
@@ -172,8 +171,9 @@ WindingNumber::Extent WindingNumber::buildLeaf(std::uint32_t first, std::uint32_
 void WindingNumber::finish(std::uint32_t index, std::uint32_t end, const Extent& extent) {
   Node& node = nodes_[index];
   float r2 = 0.F;  // to the farthest corner of the box
-  for (int k = 0; k < 3; ++k) {
-    const float reach = std::max(extent.high[k] - node.center[k], node.center[k] - extent.low[k]);
+  for (std::size_t k = 0; k < 3; ++k) {
+    const float reach =
+        std::max(extent.box.high[k] - node.center[k], node.center[k] - extent.box.low[k]);
     r2 += reach * reach;
   }
   node.radius = std::sqrt(r2);

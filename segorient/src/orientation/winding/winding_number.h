@@ -6,9 +6,9 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <limits>
 #include <vector>
 
+#include "common/box.h"
 #include "orientation/winding/dipole_sums.h"
 
 namespace segorient {
@@ -53,15 +53,11 @@ class WindingNumber {
   void listDipoles(const float* center, float reach, const DipoleList& points,
                    DipoleList& out) const;
 
-  bool empty() const { return nodes_.empty(); }
-
  private:
-  static constexpr float kHuge = std::numeric_limits<float>::max();
   using Node = WindingNode;
   struct Extent {
     double area = 0.0;
-    float low[3] = {kHuge, kHuge, kHuge};
-    float high[3] = {-kHuge, -kHuge, -kHuge};
+    Box box;
   };
   /// Points [first, last), and the nodes over them from that index on.
   struct Part {
