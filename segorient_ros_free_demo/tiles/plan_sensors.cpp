@@ -60,7 +60,7 @@ void PlanSensors::choose(const OrientationHints& given, int threads) {
   const PointView points{points_.data(), 3, points_.size() / 3};
   PreparedCloud cloud(points, nullptr, threads);
   detail::PlaceChoice choice = detail::choosePlaces(points, given, true, cloud, threads);
-  place_ = {choice.shadows, choice.place_found, choice.faces_up};
+  place_ = choice.place;
   follows_given_ = !choice.hints;
   if (choice.hints) directions_ = std::move(choice.hints->normals);
   report_ = std::move(choice.sensors);

@@ -103,7 +103,7 @@ TEST(HeightField, WhoWasFoundAboveMaySeeThroughTrees) {
   const std::vector<float> spacing(points.size, 0.1F);
   for (const bool found : {false, true}) {
     PointHints hints;
-    hints.place_found = found;
+    hints.place.found = found;
     for (std::size_t i = 0; i < points.size; ++i) {
       hints.sensors.insert(hints.sensors.end(), {5.F, 5.F, 1000.F});
     }

@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026, the segorient authors
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <cstdint>
 #include <iomanip>
 #include <memory>
 #include <optional>
@@ -59,9 +57,7 @@ PointHints findHints(const PointView& points, const OrientationHints& given,
   PlaceChoice choice = choosePlaces(points, given, options.orientation.automatic.find_sensors,
                                     cloud, options.threads);
   PointHints known = resolveHints(choice.hints ? *choice.hints : given, cloud);
-  known.shadows = choice.shadows;
-  known.place_found = choice.place_found;
-  known.faces_up = choice.faces_up;
+  known.place = choice.place;
   if (choice.refused) report.known_sensors.push_back(*choice.refused);
   if (choice.hiding) hiding = std::move(choice.hiding);
   report.sensors = std::move(choice.sensors);

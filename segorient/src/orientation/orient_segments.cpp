@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <utility>
-#include <vector>
 
 #include "orientation/paper/completion.h"
 #include "orientation/paper/hoppe_tree.h"

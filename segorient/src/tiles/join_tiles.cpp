@@ -7,6 +7,7 @@
 #include <map>
 #include <utility>
 
+#include "common/at.h"
 #include "common/median.h"
 #include "orientation/automatic/noise_field.h"
 #include "orientation/automatic/orient_sheets.h"
@@ -21,10 +22,6 @@ namespace segorient {
 namespace {
 
 using detail::PieceTie;
-
-std::size_t at(std::int32_t i) {
-  return static_cast<std::size_t>(i);
-}
 
 // Pairs of something that both tiles have numbers for, by the points that both have.
 // \param of the number of a tie, -1 = none \param compare a pair of ties, from -1 to 1
@@ -58,9 +55,7 @@ void tally(const std::vector<TileTie>& in_a, std::int32_t first_a, const std::ve
 // Neighbours are needed only to check sensors.
 PointHints hintsOf(const OrientationHints& hints, const CloudPlace& place, PreparedCloud& cloud) {
   PointHints out = resolveHints(hints, cloud);
-  out.shadows = place.shadows;
-  out.place_found = place.found;
-  out.faces_up = place.faces_up;
+  out.place = place;
   if (out.has_viewpoint || !out.sensors.empty()) {
     cloud.findNeighbors(kSheetNeighbors, false);
   }

@@ -6,14 +6,11 @@
 #include <map>
 #include <utility>
 
+#include "common/at.h"
 #include "common/disjoint_sets.h"
 
 namespace segorient::detail {
 namespace {
-
-std::size_t at(std::int32_t i) {
-  return static_cast<std::size_t>(i);
-}
 
 void add(const float* from, Evidence& to) {
   to.add({from[0], from[1], from[2]});

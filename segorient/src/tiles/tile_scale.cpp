@@ -5,12 +5,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "common/at.h"
+
 namespace segorient::detail {
 namespace {
-
-std::size_t at(std::int32_t i) {
-  return static_cast<std::size_t>(i);
-}
 
 void normalize(float (&normal)[3]) {
   float length = 0.F;
@@ -28,7 +26,7 @@ void copyEvidence(const Evidence& from, float* to) {
 // Of points of the halo: their own tile knows whether their sensors are to be believed; here it is
 // the surroundings that they are for.
 void towardSensor(const float* point, std::size_t i, const PointHints& hints, float* toward) {
-  if (hints.faces_up) toward[2] = 1.F;
+  if (hints.place.faces_up) toward[2] = 1.F;
   const bool own = !hints.sensors.empty();
   if (!own && !hints.has_viewpoint) return;
   float squares = 0.F;

@@ -2,10 +2,10 @@
 // Copyright (c) 2026, the segorient authors
 #include "tiles/tile_share.h"
 
-#include <algorithm>
 #include <cmath>
 #include <limits>
 
+#include "common/at.h"
 #include "orientation/automatic/coarse_levels.h"
 #include "orientation/automatic/hand_down.h"
 #include "orientation/automatic/stages.h"
@@ -18,10 +18,6 @@ namespace segorient {
 namespace {
 
 constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
-
-std::size_t at(std::int32_t i) {
-  return static_cast<std::size_t>(i);
-}
 
 class Tile {
  public:
@@ -142,9 +138,7 @@ void Tile::run() {
   record.typical_offset = traits.typical_offset;
   record.denoise = traits.denoise != 0;
   hints_ = resolveHints(options_.hints, cloud_);
-  hints_.shadows = options_.place.shadows;
-  hints_.place_found = options_.place.found;
-  hints_.faces_up = options_.place.faces_up;
+  hints_.place = options_.place;
   const PipelineOptions pipeline = pipelineOptions();
   if (signs_ != nullptr && !hasLevel()) {
     fine_.prepareRecord(*signs_, options_.patch_points, hints_);

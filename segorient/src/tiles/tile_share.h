@@ -6,12 +6,11 @@
 #include <segorient/common/point_view.h>
 #include <segorient/orientation/orientation_hints.h>
 
-#include <cstddef>
 #include <cstdint>
 #include <vector>
 
 #include "common/bulk_bounds.h"
-#include "orientation/sensors/shadows.h"
+#include "orientation/sensors/point_hints.h"
 
 // What one tile of a large cloud contributes to its orientation. The structures of numbers are
 // stored as they are in memory.
@@ -61,15 +60,6 @@ struct TileTraits {
 /// \param hints as for orientCloud(); they are not sought where there are none
 SEGORIENT_TILES_EXPORT TileTraits measureTileTraits(const PointView& points, int k,
                                                     const OrientationHints& hints, int threads = 0);
-
-/// What the whole cloud says of the one place that all of its points are said to have been seen
-/// from, see PointHints.
-struct CloudPlace {
-  detail::Shadows shadows;
-  bool found = false;  ///< whether a search for sensors came to it, too, by itself
-  /// Whether nobody knows a place, but all of it is one surface over the ground.
-  bool faces_up = false;
-};
 
 /// Which points of a tile's input are its own.
 enum class TileRole : std::uint8_t {

@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <utility>
@@ -41,7 +40,7 @@ PointHints hintsOfSubset(const PointHints& hints, const std::vector<float>& towa
   PointHints out;
   const std::size_t size = level.cloud.size();
   out.surface = hints.surface;
-  out.faces_up = hints.faces_up;
+  out.place.faces_up = hints.place.faces_up;
   out.has_viewpoint = hints.has_viewpoint;
   for (std::size_t a = 0; a < 3; ++a) out.viewpoint[a] = hints.viewpoint[a] / level.cloud.unit();
   if (!hints.directions.empty()) {

@@ -27,7 +27,7 @@ bool turnLooseParts(SheetSigns& sheets, const std::vector<std::int32_t>& part_of
   const LooseParts loose = findLooseParts(sheets.segmentation, sheets.votes, sheets.signs,
                                           sheets.component_of, part_of, looked_at);
   if (loose.none()) return false;
-  std::vector<float> dipoles = sheets.orientedNormals(true);
+  std::vector<float> dipoles = sheets.dipoles();
   for (std::size_t i = 0; i < sheets.points.size; ++i) {
     const std::int32_t c = sheets.componentOf(i);
     const auto sign = static_cast<float>(c < 0 ? 1 : sheets.windings[at(c)].sign);

@@ -11,7 +11,6 @@
 
 #include "common/box.h"
 #include "common/dot.h"
-#include "common/parallel_for.h"
 #include "features/sheet_fit.h"
 #include "orientation/automatic/blue_noise.h"
 #include "search/index_of.h"
@@ -94,14 +93,10 @@ namespace {
 
 std::vector<std::uint32_t> nearestBy(const search::MedianHashIndex& index, const PointView& points,
                                      int threads) {
-  std::vector<std::uint32_t> out(points.size, 0);
-  parallelFor(points.size, threads, 200.0, [&](std::size_t i) {
-    pcl::index_t cell = 0;
-    float square = 0.F;
-    if (index.nearestK(points[i], 1, &cell, &square) > 0) {
-      out[i] = static_cast<std::uint32_t>(cell);
-    }
-  });
+  std::vector<std::uint32_t> out;
+  for (const std::int32_t cell : search::nearestOf(index, points, threads)) {
+    out.push_back(static_cast<std::uint32_t>(std::max(cell, 0)));
+  }
   return out;
 }
 

@@ -14,7 +14,6 @@
 #include "common/dot.h"
 #include "common/parallel_for.h"
 #include "features/automatic_normals.h"
-#include "features/recompute_normals.h"
 #include "features/recompute_scene.h"
 #include "features/sheet_normals.h"
 #include "features/surface_sizes.h"

@@ -2,7 +2,6 @@
 // Copyright (c) 2026, the segorient authors
 #include "orientation/automatic/grazing_normals.h"
 
-#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>

@@ -2,7 +2,6 @@
 // Copyright (c) 2026, the segorient authors
 #include "orientation/automatic/hand_down.h"
 
-#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>

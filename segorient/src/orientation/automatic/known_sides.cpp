@@ -119,7 +119,7 @@ void followSensors(SheetSigns& sheets) {
   }
   for (std::size_t c = 0; c < seen.size(); ++c) {
     // That a sheet's upper side is the seen one is a convention, if a good one.
-    if (!(seen[c].total > 0.F) || sheets.hints.faces_up) continue;
+    if (!(seen[c].total > 0.F) || sheets.hints.place.faces_up) continue;
     sheets.found.result.components[c].by = DecidedBy::HINTS;
     sheets.found.result.components[c].confidence = std::fabs(seen[c].share());
   }
@@ -130,7 +130,7 @@ void believeSensors(SheetSigns& sheets) {
   for (std::size_t i = 0; i < sheets.points.size; ++i) {
     if (!isClear(sheets.facing[i])) continue;
     sheets.found.result.point_signs[i] = sheets.facing[i] < 0.F ? std::int8_t{-1} : std::int8_t{1};
-    if (!sheets.hints.faces_up) sheets.found.result.point_confidences[i] = 1.F;
+    if (!sheets.hints.place.faces_up) sheets.found.result.point_confidences[i] = 1.F;
   }
   sheets.found.sensors = std::move(sheets.sensors.scans);
   sheets.found.toward = std::move(sheets.sensors.toward);

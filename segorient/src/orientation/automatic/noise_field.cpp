@@ -105,25 +105,24 @@ bool hidesTwoSides(const PointView& points, const Neighborhoods& table,
   return squares > 0.0 && count * fourths / (squares * squares) - 3.0 < kTwoSides;
 }
 
+// 4 floats a point: how the field falls there.
+std::vector<float> fallsOf(const PointView& points, const NoiseField& field, int threads) {
+  return steepestDescents(points, {field.points(), field.dipoles}, field.radius, threads);
+}
+
 // What the field says of points.
 struct FieldSides {
-  std::vector<float> falls;           ///< 4 floats a point: how it falls
+  std::vector<float> falls;           ///< see fallsOf()
   std::vector<std::uint8_t> against;  ///< whether it falls the other way than the normal
 
   FieldSides(const PointView& points, const NoiseField& field, const std::vector<float>& normals,
              int threads)
-      : against(points.size, 0) {
-    const PointView places{field.places.data(), 4, field.places.size() / 4};
-    falls = steepestDescents(points, {places, field.dipoles}, field.radius, threads);
+      : falls(fallsOf(points, field, threads)), against(points.size, 0) {
     for (std::size_t i = 0; i < points.size; ++i) {
       against[i] = dot(&normals[4 * i], &falls[4 * i]) < 0.F ? 1 : 0;
     }
   }
 };
-
-std::vector<std::uint32_t> cellsOf(const PointView& points, const NoiseField& field, int threads) {
-  return nearestCells(points, {field.places.data(), 4, field.places.size() / 4}, threads);
-}
 
 // Of the points that the field is against, those that are to be turned.
 std::vector<std::uint8_t> pointsToTurn(const PointView& points, const Neighborhoods& neighborhoods,
@@ -135,7 +134,7 @@ std::vector<std::uint8_t> pointsToTurn(const PointView& points, const Neighborho
   if (whole) keepSheetsWhole(neighborhoods, normals, turned);
   const std::vector<std::uint8_t>& told = whole ? field.turns : field.keeps;
   if (told.empty()) return turned;
-  const std::vector<std::uint32_t> cells = cellsOf(points, field, threads);
+  const std::vector<std::uint32_t> cells = nearestCells(points, field.points(), threads);
   for (std::size_t i = 0; i < turned.size(); ++i) {
     if (against[i] != 0 && told[cells[i]] != 0) turned[i] = whole ? 1 : 0;
   }
@@ -177,7 +176,7 @@ void findWhatSheetsKeep(const PointView& points, const Neighborhoods& neighborho
   const std::vector<std::uint8_t> against = FieldSides(points, field, normals, threads).against;
   const std::vector<std::uint8_t> turned =
       pointsToTurn(points, neighborhoods, field, normals, against, threads);
-  const std::vector<std::uint32_t> cells = cellsOf(points, field, threads);
+  const std::vector<std::uint32_t> cells = nearestCells(points, field.points(), threads);
   std::vector<int> balance(field.places.size() / 4, 0);
   for (std::size_t i = 0; i < against.size(); ++i) {
     if (against[i] != 0) balance[cells[i]] += turned[i] != 0 ? -1 : 1;
@@ -287,10 +286,10 @@ void takeNoiseField(const PointView& points, const Neighborhoods& neighborhoods,
 void takeFieldLines(const PointView& points, const NoiseField& field, int threads,
                     std::vector<float>& normals) {
   if (field.empty()) return;
-  const FieldSides sides(points, field, normals, threads);
+  const std::vector<float> falls = fallsOf(points, field, threads);
   for (std::size_t i = 0; i < points.size; ++i) {
     float* n = &normals[4 * i];
-    const float* g = &sides.falls[4 * i];
+    const float* g = &falls[4 * i];
     const float length = std::sqrt(dot(g, g));
     if (!std::isfinite(length)) continue;
     const float along = dot(n, g);

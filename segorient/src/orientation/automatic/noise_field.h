@@ -57,6 +57,7 @@ struct NoiseField {
   std::vector<std::uint8_t> keeps;
 
   bool empty() const { return places.empty(); }
+  PointView points() const { return {places.data(), 4, places.size() / 4}; }
 };
 
 /// Of the cloud that points are part of, see NoiseField.

@@ -137,7 +137,6 @@ AutoNormals orientAtOneScale(MoreNeighbors& more, const Neighborhoods& neighborh
     if (!plane_around) out.around[i] = static_cast<std::uint8_t>(out.around[i] & ~ONE_PLANE);
   });
   out.confidences = std::move(filtered.confidences);
-  out.scan_scales = sheets.traits.scan_scales;
   out.sheets = sheets.traits;
   out.components = std::move(result.point_components);
   // The less of both: do the normals around agree, and is their segment sure? Of a part of a cloud

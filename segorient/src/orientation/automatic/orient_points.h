@@ -32,7 +32,6 @@ struct AutoNormals {
   std::vector<float> confidences;        ///< of the orientation, 0 to 1
   std::vector<std::int32_t> components;  ///< -1 where there is no normal
   std::vector<std::uint8_t> around;      ///< what is around each point: bits of Around
-  bool scan_scales = false;              ///< see SheetNormals
   /// Whether a final normal comes from a surface that leaves no more of the points around than the
   /// noise explains, and that agrees with the filtered one; empty where no surfaces were fitted.
   std::vector<std::uint8_t> sure;

@@ -23,7 +23,6 @@ namespace segorient {
 /// What orientSheets() found beside the result itself.
 struct AutoOrientation {
   OrientationResult result;
-  std::vector<std::int32_t> cluster_of;            ///< per segment, into `clusters`
   std::vector<ClusterOrientationResult> clusters;  ///< by descending number of points
   std::vector<Contradiction> contradictions;       ///< by descending weight
   bool place_idle = false;                         ///< the one place for all points decided nothing

@@ -67,15 +67,9 @@ void listClusters(SheetSigns& sheets) {
     cluster.component = sheets.component_of[s];
     cluster.confidence = std::clamp(agreement[at(sheets.clusters.of(s))], 0.F, 1.F);
   }
-  const BySize by_size(all.size(), [&](std::size_t c) { return all[c].points; });
-  by_size.sort(all);
+  BySize(all.size(), [&](std::size_t c) { return all[c].points; }).sort(all);
   while (!all.empty() && all.back().points == 0) all.pop_back();
   sheets.found.clusters = std::move(all);
-  sheets.found.cluster_of = sheets.clusters.of();
-  by_size.renumber(sheets.found.cluster_of);
-  for (std::int32_t& c : sheets.found.cluster_of) {
-    if (at(c) >= sheets.found.clusters.size()) c = -1;
-  }
 }
 
 }  // namespace

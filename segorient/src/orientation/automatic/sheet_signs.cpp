@@ -2,8 +2,6 @@
 // Copyright (c) 2026, the segorient authors
 #include "orientation/automatic/sheet_signs.h"
 
-#include <algorithm>
-#include <numeric>
 #include <utility>
 
 #include "common/by_size.h"
@@ -60,7 +58,7 @@ void SheetSigns::numberComponents() {
   ground.assign(roots.size(), false);
 }
 
-std::vector<float> SheetSigns::orientedNormals(bool dipoles) const {
+std::vector<float> SheetSigns::dipoles() const {
   std::vector<float> out(4 * points.size, 0.F);
   // The mean distance to the 6 nearest of points of density 1/a is 0.977 sqrt(a). Noise of r
   // spacings takes two points sqrt(2) r apart across the surface, which adds about 2 r^2 to the
@@ -69,7 +67,7 @@ std::vector<float> SheetSigns::orientedNormals(bool dipoles) const {
   const float per_square = 1.047F / (1.F + 2.F * r * r);
   parallelFor(points.size, threads, 10.0, [&](std::size_t i) {
     const float h = field.spacing[i];
-    const float area = dipoles ? per_square * h * h : 1.F;
+    const float area = per_square * h * h;
     const float sign = pointSign(i);
     if (sign == 0.F) return;
     for (std::size_t a = 0; a < 3; ++a) out[4 * i + a] = sign * area * field.normals[4 * i + a];
@@ -88,8 +86,8 @@ std::vector<std::int32_t> SheetSigns::ofPoints(const std::vector<std::int32_t>& 
 
 void SheetSigns::windComponents() {
   const std::vector<float> spacing(field.spacing, field.spacing + points.size);
-  windings = solveComponents(points, orientedNormals(true), spacing, ofPoints(component_of),
-                             windings.size(), threads);
+  windings =
+      solveComponents(points, dipoles(), spacing, ofPoints(component_of), windings.size(), threads);
 }
 
 bool SheetSigns::isClosed(std::size_t component, float residual) const {

@@ -59,8 +59,8 @@ struct SheetSigns {
     const std::int32_t s = segmentation.labels[i];
     return s < 0 ? -1 : component_of[at(s)];
   }
-  /// 4 floats a point: normal and 1, or, as dipoles, normal times area and area; 0 without one.
-  std::vector<float> orientedNormals(bool dipoles) const;
+  /// 4 floats a point: normal times area and area; 0 without one.
+  std::vector<float> dipoles() const;
   /// What is known of segments, one a point; -1 without a segment.
   std::vector<std::int32_t> ofPoints(const std::vector<std::int32_t>& of_segments) const;
   /// Whether a component is told or known to be closed. \param residual most of the winding

@@ -64,7 +64,6 @@ WideVoter::WideVoter(const PointView& points, const Neighborhoods& neighborhoods
 SheetGroup WideVoter::gather(std::size_t from, std::int32_t label,
                              std::vector<std::uint32_t>& front) {
   SheetGroup group;
-  group.label = label;
   ++gatherings_;
   front.clear();
   const auto take = [&](std::size_t q) {

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdint>
+#include <tuple>
 
 #include "common/every_nth.h"
 #include "common/median.h"
@@ -105,10 +105,9 @@ DensityPatches atScale(const PointView& points, const search::MedianHashIndex& i
   });
   DensityPatches out;
   out.k = k;
-  for (std::size_t i = 0; i < pieces.size(); ++i) {
-    const Piece& piece = pieces[i];
+  for (const Piece& piece : pieces) {
     if (!piece.flat || !std::isfinite(piece.log_density)) continue;
-    out.add(piece.center.data(), piece.normal.data(), piece.log_density, sample.rows[i]);
+    out.add(piece.center.data(), piece.normal.data(), piece.log_density);
   }
   out.setSparsity();
   out.flat = static_cast<float>(out.size()) / static_cast<float>(pieces.size());
@@ -122,8 +121,7 @@ DensityPatches atScale(const PointView& points, const search::MedianHashIndex& i
 
 }  // namespace
 
-void DensityPatches::add(const float* center, const float* normal, float density,
-                         std::size_t of_point) {
+void DensityPatches::add(const float* center, const float* normal, float density) {
   x.push_back(center[0]);
   y.push_back(center[1]);
   z.push_back(center[2]);
@@ -131,7 +129,6 @@ void DensityPatches::add(const float* center, const float* normal, float density
   ny.push_back(normal[1]);
   nz.push_back(normal[2]);
   log_density.push_back(density);
-  point.push_back(of_point);
 }
 
 std::vector<float> DensityPatches::heightsOver(const std::array<double, 3>& place) const {
@@ -165,7 +162,7 @@ DensityPatches DensityPatches::thinned(std::size_t count) const {
   for (const std::size_t i : EveryNth(size(), std::max<std::size_t>(1, count))) {
     const float center[3] = {x[i], y[i], z[i]};
     const float normal[3] = {nx[i], ny[i], nz[i]};
-    out.add(center, normal, log_density[i], point[i]);
+    out.add(center, normal, log_density[i]);
     out.sparsity.push_back(sparsity[i]);
   }
   return out;
@@ -207,6 +204,17 @@ std::pair<float, float> rangeWithout(std::size_t cut, std::vector<float> values)
   const float least = *low;
   std::nth_element(values.begin(), high, values.end());
   return {least, *high};
+}
+
+Box boxWithout(std::size_t part, const PointView& points, std::size_t sample) {
+  Box box;
+  for (std::size_t a = 0; a < 3; ++a) {
+    std::vector<float> values;
+    for (const std::size_t i : EveryNth(points.size, sample)) values.push_back(points[i][a]);
+    const std::size_t cut = values.size() / part;
+    std::tie(box.low[a], box.high[a]) = rangeWithout(cut, std::move(values));
+  }
+  return box;
 }
 
 float deviation(const std::vector<float>& values) {

@@ -10,6 +10,8 @@
 #include <utility>
 #include <vector>
 
+#include "common/box.h"
+
 namespace segorient::detail {
 
 /// Flat pieces of a cloud's surface with the density of the points on them: what tells where a
@@ -19,7 +21,6 @@ struct DensityPatches {
   std::vector<float> nx, ny, nz;   ///< unit normal, of either sign
   std::vector<float> log_density;  ///< of points per area *in* the surface
   std::vector<float> sparsity;     ///< median density over density
-  std::vector<std::size_t> point;  ///< row of the cloud
   int k = 0;                       ///< neighbours that each was made of
   float flat = 0.F;                ///< share of the neighbourhoods that were flat
   float spacing = 0.F;             ///< median distance to the sixth neighbour
@@ -29,7 +30,7 @@ struct DensityPatches {
   std::size_t size() const { return x.size(); }
 
   /// Appends a piece, without its sparsity.
-  void add(const float* center, const float* normal, float density, std::size_t of_point);
+  void add(const float* center, const float* normal, float density);
 
   /// How far a place is in front of each piece's plane; below 0 behind it.
   std::vector<float> heightsOver(const std::array<double, 3>& place) const;
@@ -57,6 +58,10 @@ constexpr float kDeviationCut = 1.5F;
 
 /// The least and the largest of some values, but for `cut` at either end.
 std::pair<float, float> rangeWithout(std::size_t cut, std::vector<float> values);
+
+/// The box around a sample of about so many points, but for one `part` of them at either end of
+/// each axis.
+Box boxWithout(std::size_t part, const PointView& points, std::size_t sample);
 
 /// Mean over the values of |value - median|, cut off at kDeviationCut.
 float deviation(const std::vector<float>& values);

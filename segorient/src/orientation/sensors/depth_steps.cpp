@@ -10,6 +10,7 @@
 #include "common/dot.h"
 #include "common/median.h"
 #include "common/parallel_for.h"
+#include "search/index_of.h"
 
 namespace segorient::detail {
 namespace {
@@ -49,12 +50,11 @@ float DepthSteps::openShare() const {
     const float r = std::sqrt(1.F - z * z);
     const float turn = kGolden * static_cast<float>(k);
     const std::array<float, 4> ray{r * std::cos(turn), r * std::sin(turn), z, 0.F};
-    pcl::index_t nearest = 0;
-    float square = 0.F;
-    if (directions_.nearestK(ray.data(), 1, &nearest, &square) < 1) return 1.F;
-    const auto q = static_cast<std::size_t>(nearest);
+    const search::Nearest nearest(directions_, ray.data());
+    if (nearest.point < 0) return 1.F;
+    const auto q = static_cast<std::size_t>(nearest.point);
     const float reach = kReach * flat_.spacing(q) / seen_.distance[q];
-    open += square > reach * reach ? 1 : 0;
+    open += nearest.square > reach * reach ? 1 : 0;
   }
   return static_cast<float>(open) / static_cast<float>(kDirections);
 }

@@ -3,7 +3,6 @@
 #include <segorient/orientation/sensors.h>
 
 #include <algorithm>
-#include <cmath>
 #include <optional>
 
 #include "common/in_double.h"

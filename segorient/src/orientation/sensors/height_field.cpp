@@ -7,7 +7,6 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -36,23 +35,8 @@ constexpr float kBehind = 1.F;    // spacings
 constexpr float kOnPlane = 0.5F;  // spacings: noise that leaves a piece flat
 constexpr float kShareBehind = 0.2F;
 constexpr float kFewBacked = 0.5F;
-
-struct Ground {
-  std::array<float, 3> low{};
-  std::array<float, 3> high{};
-};
-
-Ground groundOf(const PointView& points) {
-  constexpr std::size_t kSample = 20000;
-  Ground out;
-  for (std::size_t a = 0; a < 3; ++a) {
-    std::vector<float> values;
-    for (const std::size_t i : EveryNth(points.size, kSample)) values.push_back(points[i][a]);
-    const std::size_t cut = values.size() / 50;
-    std::tie(out.low[a], out.high[a]) = rangeWithout(cut, std::move(values));
-  }
-  return out;
-}
+// Points that the extent is taken from.
+constexpr std::size_t kSample = 20000;
 
 // Columns are numbered by x in the upper half of the bits, y in the lower.
 constexpr std::uint64_t columnAt(float x, float y) {
@@ -72,7 +56,7 @@ std::size_t countSquares(const std::vector<std::uint64_t>& columns) {
       }));
 }
 
-void measureColumns(const PointView& points, const Ground& ground, float side, HeightField& out) {
+void measureColumns(const PointView& points, const Box& ground, float side, HeightField& out) {
   std::vector<std::pair<std::uint64_t, float>> heights;
   for (std::size_t i = 0; i < points.size; ++i) {
     const float x = (points[i][0] - ground.low[0]) / side;
@@ -173,7 +157,7 @@ HeightField measureHeightField(PreparedCloud& cloud, const DensityPatches& patch
   HeightField out;
   if (!(patches.spacing > 0.F)) return out;
   const PointView points = cloud.points();
-  const Ground ground = groundOf(points);
+  const Box ground = boxWithout(50, points, kSample);
   const float width = std::hypot(ground.high[0] - ground.low[0], ground.high[1] - ground.low[1]);
   out.relief = width > 0.F ? (ground.high[2] - ground.low[2]) / width : 1e30F;
   // Cheap things first: most clouds end here.

@@ -3,7 +3,6 @@
 #pragma once
 
 #include <segorient/common/point_view.h>
-#include <segorient/orientation/orientation_hints.h>
 #include <segorient/segmentation/segmentation.h>
 
 #include <vector>

@@ -4,15 +4,12 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <cstddef>
 #include <limits>
 #include <optional>
-#include <utility>
 #include <vector>
 
 #include "common/by_size.h"
-#include "common/parallel_for.h"
 #include "orientation/sensors/height_field.h"
 #include "orientation/sensors/moving_sensor.h"
 #include "orientation/sensors/occupancy.h"
@@ -47,16 +44,8 @@ std::vector<std::int32_t> nearestPieces(PreparedCloud& cloud, const DensityPatch
   for (std::size_t i = 0; i < patches.size(); ++i) {
     centers.insert(centers.end(), {patches.x[i], patches.y[i], patches.z[i]});
   }
-  const search::MedianHashIndex index =
-      search::indexOf({centers.data(), 3, patches.size()}, threads);
-  constexpr double kQueryTime = 300.0;  // ns, see resolveThreads()
-  std::vector<std::int32_t> out(cloud.size(), -1);
-  parallelFor(cloud.size(), threads, kQueryTime, [&](std::size_t i) {
-    pcl::index_t nearest = 0;
-    float distance = 0.F;
-    if (index.nearestK(cloud.points()[i], 1, &nearest, &distance) > 0) out[i] = nearest;
-  });
-  return out;
+  return search::nearestOf(search::indexOf({centers.data(), 3, patches.size()}, threads),
+                           cloud.points(), threads);
 }
 
 // For each point the place that left most of the density of the nearest piece.

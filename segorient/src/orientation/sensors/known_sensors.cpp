@@ -5,12 +5,17 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <functional>
 #include <limits>
 #include <numeric>
+#include <unordered_map>
+#include <vector>
 
+#include "common/at.h"
 #include "common/in_double.h"
 #include "common/unit_vector.h"
-#include "orientation/sensors/number_places.h"
 #include "orientation/sensors/scan_checks.h"
 
 namespace segorient::detail {
@@ -28,6 +33,54 @@ constexpr float kMostHidden = 0.1F;
 // then kFewHidden are enough.
 constexpr float kDenied = 1.3F;
 constexpr float kVaries = 0.3F;
+
+using Place = std::array<float, 3>;
+
+// The places that points have, in ascending order.
+// \param places_of_points 3 floats a point, NaN = unknown
+// \param of resized to the points: which of them each has, -1 = none
+std::vector<Place> numberPlaces(const std::vector<float>& places_of_points,
+                                std::vector<std::int32_t>& of) {
+  of.assign(places_of_points.size() / 3, -1);
+  // Points of one place mostly come one after another, and there are few places or as many as
+  // points.
+  struct Hash {
+    std::size_t operator()(const Place& p) const {
+      std::size_t h = 0;
+      for (const float v : p) h = h * 1000003U + std::hash<float>()(v);
+      return h;
+    }
+  };
+  std::unordered_map<Place, std::int32_t, Hash> found;
+  std::vector<Place> places;
+  std::int32_t last = -1;
+  for (std::size_t i = 0; i < of.size(); ++i) {
+    const float* v = &places_of_points[3 * i];
+    if (!isFinite(v)) continue;
+    const Place place{v[0], v[1], v[2]};
+    if (last < 0 || place != places[at(last)]) {
+      const auto next = static_cast<std::int32_t>(places.size());
+      const auto [entry, is_new] = found.emplace(place, next);
+      if (is_new) places.push_back(place);
+      last = entry->second;
+    }
+    of[i] = last;
+  }
+  std::vector<std::int32_t> order(places.size());
+  std::iota(order.begin(), order.end(), 0);
+  std::sort(order.begin(), order.end(),
+            [&](std::int32_t a, std::int32_t b) { return places[at(a)] < places[at(b)]; });
+  std::vector<std::int32_t> rank(places.size());
+  std::vector<Place> sorted;
+  for (const std::int32_t p : order) {
+    rank[at(p)] = static_cast<std::int32_t>(sorted.size());
+    sorted.push_back(places[at(p)]);
+  }
+  for (std::int32_t& p : of) {
+    if (p >= 0) p = rank[at(p)];
+  }
+  return sorted;
+}
 
 class Finder {
  public:
@@ -53,7 +106,7 @@ class Finder {
   }
 
  private:
-  void fillIn(const std::array<float, 3>& place, std::vector<float>& sensors) const {
+  void fillIn(const Place& place, std::vector<float>& sensors) const {
     sensors.resize(3 * points_.size, std::numeric_limits<float>::quiet_NaN());
     for (std::size_t i = 0; i < points_.size; ++i) {
       if (!isFinite(&sensors[3 * i])) std::copy(place.begin(), place.end(), &sensors[3 * i]);
@@ -62,10 +115,10 @@ class Finder {
 
   void listScans(const std::vector<float>& sensors) {
     std::vector<std::int32_t> place_of;
-    const std::vector<std::array<float, 3>> places = numberPlaces(sensors, place_of);
+    const std::vector<Place> places = numberPlaces(sensors, place_of);
     std::vector<std::uint32_t> size(places.size(), 0);
     for (const std::int32_t p : place_of) {
-      if (p >= 0) ++size[static_cast<std::size_t>(p)];
+      if (p >= 0) ++size[at(p)];
     }
     std::vector<std::int32_t> number(places.size(), -1);
     std::array<double, 3> sum{0.0, 0.0, 0.0};
@@ -93,27 +146,12 @@ class Finder {
       out_.scans.push_back(moving);
     }
     out_.scan.assign(points_.size, -1);
+    rows_.resize(out_.scans.size());
     for (std::size_t i = 0; i < points_.size; ++i) {
       if (place_of[i] < 0) continue;
-      const std::int32_t n = number[static_cast<std::size_t>(place_of[i])];
+      const std::int32_t n = number[at(place_of[i])];
       out_.scan[i] = n < 0 ? together : n;
-    }
-    listRows();
-  }
-
-  // The points of each scan, one scan after the other.
-  void listRows() {
-    start_.assign(out_.scans.size() + 1, 0);
-    for (const std::int32_t s : out_.scan) {
-      if (s >= 0) ++start_[static_cast<std::size_t>(s) + 1];
-    }
-    std::partial_sum(start_.begin(), start_.end(), start_.begin());
-    std::vector<std::ptrdiff_t> next(start_.begin(), start_.end() - 1);
-    rows_.resize(static_cast<std::size_t>(start_.back()));
-    for (std::size_t i = 0; i < points_.size; ++i) {
-      if (out_.scan[i] < 0) continue;
-      std::ptrdiff_t& at = next[static_cast<std::size_t>(out_.scan[i])];
-      rows_[static_cast<std::size_t>(at++)] = static_cast<std::uint32_t>(i);
+      rows_[at(out_.scan[i])].push_back(static_cast<std::uint32_t>(i));
     }
   }
 
@@ -130,14 +168,13 @@ class Finder {
   void look(std::size_t s) {
     KnownSensor& report = out_.scans[s];
     if (report.moving || report.points < kLeastPoints) return;
-    const std::vector<std::uint32_t> rows(rows_.begin() + start_[s], rows_.begin() + start_[s + 1]);
-    const Scan scan(points_, rows, report.position, &nb_, threads_);
+    const Scan scan(points_, rows_[s], report.position, &nb_, threads_);
     const Scan::Density density = scan.density();
     report.density = density.ratio;
     report.hidden = shareOf(scan.hidden());
     // Of what was not seen from one place, the part nearest to it may have such a density, too.
     const bool hides = report.hidden > kMostHidden;
-    if (report.density < kConfirmed && !(out_.common && hides && !hints_.place_found)) {
+    if (report.density < kConfirmed && !(out_.common && hides && !hints_.place.found)) {
       out_.confirmed = out_.one_place;
       return;
     }
@@ -145,17 +182,17 @@ class Finder {
         report.density > kDenied && density.constant > kVaries && std::isfinite(report.density);
     denied_[s] = denied ? 1 : 0;
     if (out_.one_place) {
-      out_.confirmed = hints_.shadows.reveal();
-      out_.allowed = hints_.shadows.allow();
+      out_.confirmed = hints_.place.shadows.reveal();
+      out_.allowed = hints_.place.shadows.allow();
       out_.hides = hides && !out_.allowed;
-      out_.in_a_room = !hides && hints_.shadows.inARoom();
+      out_.in_a_room = !hides && hints_.place.shadows.inARoom();
       if (out_.confirmed) return;
       out_.doubtful = out_.allowed || hides || denied || density.constant < kVaries;
       if (out_.allowed) return;
     }
     // Who was found has passed such tests already.
-    if (out_.common || hints_.place_found) return;
-    if (out_.one_place && hints_.shadows.excuse()) return;
+    if (out_.common || hints_.place.found) return;
+    if (out_.one_place && hints_.place.shadows.excuse()) return;
     if (hides || (denied && report.hidden > kFewHidden)) report.used = false;
   }
 
@@ -207,9 +244,8 @@ class Finder {
   const float* spacing_;
   const PointHints& hints_;
   int threads_;
-  std::vector<std::uint32_t> rows_;    // by scan
-  std::vector<std::ptrdiff_t> start_;  // of each scan's rows
-  std::vector<std::uint8_t> denied_;   // by scan: its density is far from what its sensor leaves
+  std::vector<std::vector<std::uint32_t>> rows_;  // of each scan
+  std::vector<std::uint8_t> denied_;  // by scan: its density is far from what its sensor leaves
   KnownSensors out_;
 };
 
@@ -219,13 +255,13 @@ void KnownSensors::countSeen() {
   for (KnownSensor& s : scans) s.seen = 0;
   for (std::size_t i = 0; i < scan.size(); ++i) {
     const float* v = of(i);
-    if (v[0] != 0.F || v[1] != 0.F || v[2] != 0.F) ++scans[static_cast<std::size_t>(scan[i])].seen;
+    if (v[0] != 0.F || v[1] != 0.F || v[2] != 0.F) ++scans[at(scan[i])].seen;
   }
 }
 
 void KnownSensors::dropUnused() {
   for (std::size_t i = 0; i < scan.size(); ++i) {
-    if (scan[i] >= 0 && !scans[static_cast<std::size_t>(scan[i])].used) {
+    if (scan[i] >= 0 && !scans[at(scan[i])].used) {
       std::fill_n(&toward[3 * i], 3, 0.F);
     }
   }
@@ -238,7 +274,7 @@ KnownSensors findKnownSensors(const PointView& points, const Neighborhoods& neig
     believed.toward = hints.toward;
     return believed;
   }
-  if (hints.faces_up) {
+  if (hints.place.faces_up) {
     KnownSensors above;
     above.toward.assign(3 * points.size, 0.F);
     for (std::size_t i = 0; i < points.size; ++i) above.toward[3 * i + 2] = 1.F;

@@ -34,16 +34,16 @@ PlaceChoice findOthers(const PointView& points, OrientationHints hints, Prepared
   PlaceChoice out;
   out.sensors = addFoundSensors(points, cloud, threads, hints, seen);
   // What one layer told is not to be told by others again, which know nothing of trees.
-  out.place_found = out.sensors.sure() && out.sensors.sensors[0].evidence == SensorEvidence::LAYERS;
+  out.place.found = out.sensors.sure() && out.sensors.sensors[0].evidence == SensorEvidence::LAYERS;
   // Whoever names a side of a sheet means it.
   if (out.sensors.faces_up && !hints.seeds.empty()) {
     out.sensors.faces_up = false;
     out.sensors.why += ", unless seeds say otherwise";
   }
-  out.faces_up = out.sensors.faces_up;
+  out.place.faces_up = out.sensors.faces_up;
   if (out.sensors.sensors.empty()) out.sensors.sensor_of = {};
   out.hints = std::move(hints);
-  out.shadows = seen.of_sensor;
+  out.place.shadows = seen.of_sensor;
   return out;
 }
 
@@ -62,20 +62,20 @@ PlaceChoice choosePlaces(const PointView& points, const OrientationHints& given,
   PlaceChoice as_given;
   SeenShadows seen;
   if (!isImage(given, points.size)) {
-    as_given.shadows = findShadows(cloud.points(), cloud.inUnit(*place), threads);
+    as_given.place.shadows = findShadows(cloud.points(), cloud.inUnit(*place), threads);
     // What does not confirm a place reveals none.
     seen.nothing_at = place;
   }
-  if (as_given.shadows.confirm()) return as_given;
+  if (as_given.place.shadows.confirm()) return as_given;
   others.suggested.push_back(*place);
   PlaceChoice found = findOthers(points, std::move(others), cloud, threads, seen);
   if (contradictsPlace(cloud, found.sensors, *place)) {
     found.refused = refusedPlace(*place, cloud);
     return found;
   }
-  as_given.place_found = found.sensors.sure() && !found.sensors.sensors[0].suggested;
-  const bool is_fact = as_given.place_found || !given.viewpoints.empty();
-  if (is_fact || !as_given.shadows.deny()) return as_given;
+  as_given.place.found = found.sensors.sure() && !found.sensors.sensors[0].suggested;
+  const bool is_fact = as_given.place.found || !given.viewpoints.empty();
+  if (is_fact || !as_given.place.shadows.deny()) return as_given;
   // What was found in that very place is no more than compared, either.
   if (found.sensors.sure()) found = findOthers(points, asIfNotThere(given, *place), cloud, threads);
   found.hiding = lookFrom(cloud.points(), cloud.inUnit(*place), threads);

@@ -4,15 +4,12 @@
 
 #include <segorient/common/export.h>
 #include <segorient/common/point_view.h>
-#include <segorient/orientation/orientation_hints.h>
 #include <segorient/orientation/sensors.h>
 
 #include <optional>
-#include <vector>
 
 #include "orientation/sensors/hiding_place.h"
-#include "orientation/sensors/shadows.h"
-#include "search/prepared_cloud.h"
+#include "orientation/sensors/point_hints.h"
 
 namespace segorient::detail {
 
@@ -20,9 +17,7 @@ namespace segorient::detail {
 struct PlaceChoice {
   /// What is followed in the place of what was given; none = that as it is.
   std::optional<OrientationHints> hints;
-  Shadows shadows;           ///< of the one place that is followed, see PointHints
-  bool place_found = false;  ///< see PointHints
-  bool faces_up = false;     ///< see PointHints
+  CloudPlace place;  ///< the one that is followed
   /// Of a search that nobody's knowledge made needless.
   SensorReport sensors;
   std::optional<KnownSensor> refused;  ///< a place that others were found instead of

@@ -8,6 +8,7 @@
 
 #include "common/in_double.h"
 #include "common/unit_vector.h"
+#include "search/index_of.h"
 
 namespace segorient {
 namespace {
@@ -92,17 +93,15 @@ void addSensors(const OrientationHints& hints, const PreparedCloud& cloud,
 void addSeeds(const OrientationHints& hints, PreparedCloud& cloud,
               std::vector<PointHints::Seed>& seeds) {
   if (hints.seeds.empty() || cloud.size() == 0) return;
-  const search::MedianHashIndex& index = cloud.index();
   for (const OrientationHints::Seed& given : hints.seeds) {
     PointHints::Seed seed;
     const Vector position = scaled(given.position, cloud.unit());
     if (!unitVector(inDouble(given.normal.data()), seed.normal.data()) ||
         !isFinite(position.data()))
       continue;
-    pcl::index_t nearest = 0;
-    float distance = 0.F;
-    if (index.nearestK(position.data(), 1, &nearest, &distance) < 1) continue;
-    seed.point = static_cast<std::size_t>(nearest);
+    const search::Nearest nearest(cloud.index(), position.data());
+    if (nearest.point < 0) continue;
+    seed.point = static_cast<std::size_t>(nearest.point);
     seeds.push_back(seed);
   }
 }

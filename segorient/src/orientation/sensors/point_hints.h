@@ -14,6 +14,17 @@
 
 namespace segorient {
 
+/// What the whole cloud says of the one place that all of its points are said to have been seen
+/// from.
+struct CloudPlace {
+  detail::Shadows shadows;  ///< what steps of depth say of it; no steps where nobody looked
+  /// Whether a search for sensors came to it, too, by itself, or found it by layers, which is told
+  /// about trees already.
+  bool found = false;
+  /// Whether nobody knows a place, but all of it is one surface over the ground, see SensorReport.
+  bool faces_up = false;
+};
+
 /// OrientationHints by distinct point, in the unit of a PreparedCloud.
 struct PointHints {
   struct Seed {
@@ -24,13 +35,7 @@ struct PointHints {
   SurfaceKind surface = SurfaceKind::UNKNOWN;
   bool has_viewpoint = false;
   std::array<float, 3> viewpoint{0.F, 0.F, 0.F};
-  /// Whether a search for sensors came to the one place for all points, too, by itself, or found it
-  /// by layers, which is told about trees already.
-  bool place_found = false;
-  /// Whether all of it is one surface over the ground, see SensorReport.
-  bool faces_up = false;
-  /// What steps of depth say of that place; no steps where nobody looked.
-  detail::Shadows shadows;
+  CloudPlace place;
   /// 3 floats a point: where it was seen from, NaN = unknown; empty = none
   std::vector<float> sensors;
   /// 3 floats a point: sum of the unit vectors that its normal is said to point along; empty = none
@@ -42,7 +47,7 @@ struct PointHints {
 
   /// Whether there is nothing that knows sides better than the points themselves.
   bool nothing() const {
-    return surface != SurfaceKind::OPEN && !has_viewpoint && !faces_up && sensors.empty() &&
+    return surface != SurfaceKind::OPEN && !has_viewpoint && !place.faces_up && sensors.empty() &&
            directions.empty() && seeds.empty() && toward.empty();
   }
 };

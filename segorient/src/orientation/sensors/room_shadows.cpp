@@ -7,10 +7,12 @@
 #include <cmath>
 #include <cstddef>
 
+#include "common/at.h"
+#include "common/box.h"
 #include "common/dot.h"
 #include "common/every_nth.h"
 #include "common/median.h"
-#include "common/parallel_for.h"
+#include "orientation/sensors/density_patches.h"
 #include "orientation/sensors/depth_steps.h"
 #include "search/index_of.h"
 
@@ -45,24 +47,15 @@ constexpr float kMostCovered = 0.5F;
 std::vector<Place> placesInBox(const FlatPoints& flat) {
   // Fractions that fill a cube evenly: powers of the inverse of the root of x^4 = x + 1.
   constexpr double kRoot = 1.2207440846057596;
-  std::array<float, 3> low{};
-  std::array<float, 3> high{};
-  const std::size_t n = flat.size();
-  std::vector<float> values(n);
-  for (std::size_t a = 0; a < 3; ++a) {
-    for (std::size_t i = 0; i < n; ++i) values[i] = flat.view()[i][a];
-    std::sort(values.begin(), values.end());
-    low[a] = values[n / 100];
-    high[a] = values[n - 1 - n / 100];
-  }
+  const Box box = boxWithout(100, flat.view(), flat.size());
   std::vector<Place> out;
   for (int k = 1; k <= kPlaces; ++k) {
     Place place{};
     double step = 1.0;
     for (std::size_t a = 0; a < 3; ++a) {
       step /= kRoot;
-      const auto at = static_cast<float>(std::fmod(0.5 + k * step, 1.0));
-      place[a] = low[a] + at * (high[a] - low[a]);
+      const auto part = static_cast<float>(std::fmod(0.5 + k * step, 1.0));
+      place[a] = box.low[a] + part * (box.high[a] - box.low[a]);
     }
     out.push_back(place);
   }
@@ -76,12 +69,11 @@ std::vector<Place> deepestPlaces(const FlatPoints& flat) {
   };
   std::vector<Deep> deep;
   for (const Place& place : placesInBox(flat)) {
-    pcl::index_t nearest = 0;
-    float square = 0.F;
-    if (flat.index().nearestK(place.data(), 1, &nearest, &square) < 1) continue;
-    const float h = flat.spacing(static_cast<std::size_t>(nearest));
-    if (h > 0.F && std::sqrt(square) > kClearance * h)
-      deep.push_back({std::sqrt(square) / h, place});
+    const search::Nearest nearest(flat.index(), place.data());
+    if (nearest.point < 0) continue;
+    const float h = flat.spacing(at(nearest.point));
+    const float distance = std::sqrt(nearest.square);
+    if (h > 0.F && distance > kClearance * h) deep.push_back({distance / h, place});
   }
   std::stable_sort(deep.begin(), deep.end(),
                    [](const Deep& a, const Deep& b) { return a.clearance > b.clearance; });
@@ -157,7 +149,6 @@ class Room {
 // Of the nearest sample.
 std::vector<float> ofPoints(const PointView& points, const FlatPoints& flat, const Room& room,
                             int threads) {
-  constexpr double kQueryTime = 300.0;  // ns, see resolveThreads()
   std::vector<float> samples;
   for (std::size_t s = 0; s < room.size(); ++s) {
     const float* p = flat.view()[room.row(s)];
@@ -165,12 +156,10 @@ std::vector<float> ofPoints(const PointView& points, const FlatPoints& flat, con
   }
   const search::MedianHashIndex index = search::indexOf({samples.data(), 3, room.size()}, threads);
   std::vector<float> out(3 * points.size, 0.F);
-  parallelFor(points.size, threads, kQueryTime, [&](std::size_t i) {
-    pcl::index_t nearest = 0;
-    float square = 0.F;
-    if (index.nearestK(points[i], 1, &nearest, &square) < 1) return;
-    std::copy_n(room.toward(static_cast<std::size_t>(nearest)), 3, &out[3 * i]);
-  });
+  const std::vector<std::int32_t> nearest = search::nearestOf(index, points, threads);
+  for (std::size_t i = 0; i < points.size; ++i) {
+    if (nearest[i] >= 0) std::copy_n(room.toward(at(nearest[i])), 3, &out[3 * i]);
+  }
   return out;
 }
 

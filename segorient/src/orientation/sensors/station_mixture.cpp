@@ -6,9 +6,9 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
-#include <cstdint>
 #include <numeric>
 
+#include "common/by_size.h"
 #include "common/compiler.h"
 #include "common/parallel_for.h"
 #include "common/vectors.h"
@@ -164,12 +164,9 @@ std::vector<Position> mixturePlaces(const DensityPatches& patches, const Occupan
       mixtureOf(patches, occupancy, places, {{}, axis, SamplingLaw::ANGLE_GRID}, threads);
   const std::vector<float>& weights = mixture.weights;
   const float all = std::accumulate(weights.begin(), weights.end(), 0.F);
-  std::vector<std::size_t> order(weights.size());
-  std::iota(order.begin(), order.end(), std::size_t{0});
-  std::stable_sort(order.begin(), order.end(),
-                   [&](std::size_t a, std::size_t b) { return weights[a] > weights[b]; });
+  const BySize by_weight(weights.size(), [&](std::size_t j) { return weights[j]; });
   std::vector<Heap> heaps;
-  for (const std::size_t j : order) {
+  for (const std::size_t j : by_weight.order()) {
     if (weights[j] < kShare * all) break;
     const Position& p = places[mixture.place[j]];
     const auto near = std::find_if(heaps.begin(), heaps.end(), [&](const Heap& h) {

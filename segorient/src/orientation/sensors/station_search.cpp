@@ -5,9 +5,9 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <numeric>
 #include <utility>
 
+#include "common/by_size.h"
 #include "common/parallel_for.h"
 
 namespace segorient::detail {
@@ -73,12 +73,9 @@ std::vector<FittedPlace> valleys(const DensityPatches& coarse, const std::vector
         if (law.law == SamplingLaw::PINHOLE) place.axis = meanView(coarse, places[i]);
         costs[i] = costOf(coarse, place, scratch);
       });
-  std::vector<std::size_t> order(places.size());
-  std::iota(order.begin(), order.end(), std::size_t{0});
-  std::stable_sort(order.begin(), order.end(),
-                   [&](std::size_t a, std::size_t b) { return costs[a] < costs[b]; });
+  const BySize by_cost(places.size(), [&](std::size_t i) { return -costs[i]; });
   std::vector<FittedPlace> starts;
-  for (const std::size_t i : order) {
+  for (const std::size_t i : by_cost.order()) {
     const bool apart = std::all_of(starts.begin(), starts.end(), [&](const FittedPlace& s) {
       return distance(s.place.position, places[i]) > kApart * extent;
     });
