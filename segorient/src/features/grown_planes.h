@@ -6,7 +6,6 @@
 
 #include <array>
 #include <cstddef>
-#include <vector>
 
 #include "features/local_fit_job.h"
 #include "features/sheet_fit.h"

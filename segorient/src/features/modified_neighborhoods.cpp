@@ -2,7 +2,6 @@
 // Copyright (c) 2026, the segorient authors
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <map>
 #include <utility>
 

@@ -3,7 +3,6 @@
 #include "features/recompute_normals.h"
 
 #include <algorithm>
-#include <cstddef>
 
 #include "features/recompute_scene.h"
 

@@ -3,7 +3,6 @@
 #include <segorient/features/impl/searched_normals.hpp>
 
 #include <algorithm>
-#include <cmath>
 #include <iterator>
 #include <limits>
 

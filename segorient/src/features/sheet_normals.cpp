@@ -3,12 +3,10 @@
 #include "features/sheet_normals.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstdint>
 #include <limits>
 #include <memory>
-#include <optional>
 #include <utility>
 
 #include "common/median.h"

@@ -7,7 +7,6 @@
 #include <atomic>
 #include <cmath>
 #include <limits>
-#include <memory>
 #include <vector>
 
 #include "common/parallel_for.h"

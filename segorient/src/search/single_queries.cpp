@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026, the segorient authors
 #include <algorithm>
-#include <cmath>
-#include <utility>
 
 #include "search/index_impl.h"
 #include "search/search_workspace.h"

@@ -2,7 +2,6 @@
 // Copyright (c) 2026, the segorient authors
 #include "tiles/cloud_field.h"
 
-#include <algorithm>
 #include <utility>
 
 #include "orientation/automatic/noise_field.h"

@@ -3,6 +3,7 @@
 #include "tiles/tile_tree.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <utility>
 

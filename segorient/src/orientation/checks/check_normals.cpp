@@ -2,7 +2,6 @@
 // Copyright (c) 2026, the segorient authors
 #include <segorient/orientation/check_normals.h>
 
-#include <algorithm>
 #include <cmath>
 #include <map>
 

@@ -2,7 +2,6 @@
 // Copyright (c) 2026, the segorient authors
 #include "orientation/checks/fault_patches.h"
 
-#include <algorithm>
 #include <array>
 #include <cmath>
 #include <map>

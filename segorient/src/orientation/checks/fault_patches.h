@@ -4,7 +4,6 @@
 
 #include <segorient/orientation/check_normals.h>
 
-#include <cstddef>
 #include <cstdint>
 #include <vector>
 
