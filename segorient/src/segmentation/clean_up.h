@@ -66,7 +66,7 @@ class CleanUp {
   SmallAdjacency adjacency_;
   float cos_join_;
   float cos_alpha_;
-  detail::DisjointSets joined_to_{0};  ///< the root of a segment: where its points went
+  detail::DisjointSets joined_to_{0};  ///< the root of a segment: where its points are
   std::vector<Count> counts_;
 };
 

@@ -139,7 +139,8 @@ float typicalOffset(const GrowthState& state) {
     if (count < kRing || !(p.spacing > 0.F) || !std::isfinite(p.nx)) continue;
     std::array<float, kRing> ring{};
     for (int j = 1; j < count; ++j) {
-      ring[static_cast<std::size_t>(j - 1)] = residual(p, state.nodes[at(row[j])]);
+      const Node& q = state.nodes[static_cast<std::size_t>(row[j])];
+      ring[static_cast<std::size_t>(j - 1)] = residual(p, q);
     }
     std::sort(ring.begin(), ring.begin() + (count - 1));
     offsets.push_back(ring[static_cast<std::size_t>((count - 1) / 2)] / p.spacing);

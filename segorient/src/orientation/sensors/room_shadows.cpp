@@ -71,7 +71,7 @@ std::vector<Place> deepestPlaces(const FlatPoints& flat) {
   for (const Place& place : placesInBox(flat)) {
     const search::Nearest nearest(flat.index(), place.data());
     if (nearest.point < 0) continue;
-    const float h = flat.spacing(at(nearest.point));
+    const float h = flat.spacing(static_cast<std::size_t>(nearest.point));
     const float distance = std::sqrt(nearest.square);
     if (h > 0.F && distance > kClearance * h) deep.push_back({distance / h, place});
   }
