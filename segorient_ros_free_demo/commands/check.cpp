@@ -139,7 +139,8 @@ int runCheck(const std::vector<std::string>& words) {
       "its surface: patches that are turned over, and closed parts that are inside out.\n"
       "Sensors are those that IN brings along, or the options name. Exit status: 0 none\n"
       "does, 3 some do. OUT (.pcd, .ply or .las) has the points of IN with fields\n"
-      "contradiction (0 none, 1 sensor, 2 surface, 3 inside out) and place.",
+      "contradiction (0 none, 1 sensor, 2 surface, 3 inside out) and place (4294967295\n"
+      "where there is none).",
       "segorient check scan.ply --picture places.png --report places.json");
   CommonOptions common;
   HintOptions hints;
@@ -188,6 +189,10 @@ int runCheck(const std::vector<std::string>& words) {
     bar.update("check", 0.9);
     check = checkNormals(points.view(), ownNormals(table), ours, *options.orientation.hints,
                          common.threads);
+  }
+  // "None contradicts" would be said of nothing.
+  if (check.judged == 0 && check.without_normal > 0) {
+    throw FileError(path, "has no normals to check: all are zero or not finite");
   }
   if (report) report->write(reportText(check, points.origin()));
   if (out) writeMarked(table, check, *out);

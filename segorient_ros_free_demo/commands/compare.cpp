@@ -21,6 +21,7 @@
 #include "support/pcl_limits.h"
 #include "support/poisson.h"
 #include "support/progress_bar.h"
+#include "support/sensor_report.h"
 #include "support/stage_options.h"
 #include "support/stopwatch.h"
 #include "support/true_surface.h"
@@ -77,11 +78,15 @@ void printAgainstTruth(const char* name, const Normals& truth, const Normals& no
       d.share(std::max(d.opposite, d.compared - d.opposite)), d.rms, d.median);
 }
 
+bool knowsViewpoint(const OrientationHints& hints) {
+  return hints.has_viewpoint && isFinite(hints.viewpoint.data());
+}
+
 // What PCL's normals were turned to, and how far both face it.
 void printSensors(const PointView& points, const OrientationHints& hints, const Normals& pcl,
                   const Normals& ours) {
   const bool own = !hints.viewpoints.empty();
-  if (!own && !hints.has_direction && !hints.has_viewpoint) {
+  if (!own && !hints.has_direction && !knowsViewpoint(hints)) {
     std::printf("viewpoint   not known; PCL took the origin\n");
     return;
   }
@@ -172,7 +177,7 @@ int runCompare(const std::vector<std::string>& words) {
   hints.apply(table, line.argument("IN"), points, options);
   // PCL's viewpoint is 0, 0, 0 unless it is told otherwise.
   std::array<float, 3> viewpoint = options.orientation.hints->viewpoint;
-  for (std::size_t a = 0; a < 3 && !options.orientation.hints->has_viewpoint; ++a) {
+  for (std::size_t a = 0; a < 3 && !knowsViewpoint(*options.orientation.hints); ++a) {
     viewpoint[a] = static_cast<float>(-points.origin()[a]);
   }
   OrientedCloud ours;
@@ -200,6 +205,8 @@ int runCompare(const std::vector<std::string>& words) {
   if (!common.quiet) {
     print(table, ours.report, pcl_result, ours.normals);
     printSensors(points.view(), *options.orientation.hints, pcl_result.normals, ours.normals);
+    constexpr int kColumn = 14;  // the line's name is longer than others
+    printNotFollowed(ours.report.known_sensors, points.origin(), kColumn);
   }
   if (picture) {
     view.threads = common.threads;

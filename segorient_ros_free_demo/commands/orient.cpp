@@ -61,14 +61,7 @@ void printSummary(const PipelineReport& report, const StageMemory& memory,
         report.contradictions.size(), origin[0] + static_cast<double>(where[0]),
         origin[1] + static_cast<double>(where[1]), origin[2] + static_cast<double>(where[2]));
   }
-  for (const KnownSensor& s : report.known_sensors) {
-    if (s.used) continue;
-    std::printf(
-        "not followed    the sensor at (%g, %g, %g) contradicts the surface of its %zu points\n",
-        origin[0] + static_cast<double>(s.position[0]),
-        origin[1] + static_cast<double>(s.position[1]),
-        origin[2] + static_cast<double>(s.position[2]), s.points);
-  }
+  printNotFollowed(report.known_sensors, origin, 16);
   std::printf("seconds         %.2f: %s\n", report.seconds, timesText(report.stages).c_str());
   std::printf("peak memory     %.0f MB\n", static_cast<double>(memory.most()) / 1048576.0);
   std::printf("written         %s\n", out.c_str());

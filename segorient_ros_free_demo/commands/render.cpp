@@ -25,8 +25,8 @@ class KnownOptions {
                    "of orient: hard segments are violet, dark where they face away (colour "
                    "orientation); confidences of segments; contradictions are ringed")(
         "sensors", po::value(&sensors_),
-        "places of sensors to mark: JSON of segorient sensors, or a cloud; else as the file says "
-        "(its place, or fields vp_x, vp_y, vp_z)");
+        "places of sensors to mark, which points faced: JSON of segorient sensors, or a cloud; "
+        "else as the file says (its place, or fields vp_x, vp_y, vp_z)");
   }
   Facts read(const CloudTable& table) const {
     Facts facts;
@@ -34,6 +34,7 @@ class KnownOptions {
     const std::array<double, 3> own{table.viewpoint[0], table.viewpoint[1], table.viewpoint[2]};
     if (!sensors_.empty()) {
       facts.sensors = readSensors(sensors_);
+      facts.sensors_told = true;
     } else if (own != std::array<double, 3>{0.0, 0.0, 0.0}) {
       facts.sensors = {own};
     } else {

@@ -50,7 +50,7 @@ PageCloud pageCloud(const CloudTable& table, const LocalPoints& points, const Fa
   cloud.origin = points.origin();
   if (table.hasNormals()) {
     const NormalSource normals(table, nullptr);
-    const PointSensors sensors(table);
+    const PointSensors sensors(table, facts);
     cloud.normals.reserve(3 * table.size);
     for (std::size_t i = 0; i < table.size; ++i) {
       const auto n = normals.at(i);

@@ -7,6 +7,7 @@
 #include <cstring>
 #include <limits>
 #include <set>
+#include <utility>
 
 #include "io/errors.h"
 #include "support/colors.h"
@@ -65,25 +66,42 @@ std::uint32_t labelOf(const CloudTable& table, const Field* field, std::size_t r
   return none ? kNoSegment : static_cast<std::uint32_t>(value);
 }
 
-PointSensors::PointSensors(const CloudTable& table) : table_(table) {
+PointSensors::PointSensors(const CloudTable& table, const Facts& facts) : table_(table) {
   fields_ = {table.find("vp_x"), table.find("vp_y"), table.find("vp_z")};
   if (std::find(fields_.begin(), fields_.end(), nullptr) != fields_.end()) fields_ = {};
+  if (facts.sensors_told) told_ = facts.sensors;
 }
 
 bool PointSensors::at(std::size_t row, std::array<double, 3>& place) const {
-  if (!any()) return false;
+  if (fields_[2] == nullptr) return false;
   place = table_.triple(fields_, row);
   return std::isfinite(place[0]) && std::isfinite(place[1]) && std::isfinite(place[2]);
 }
 
 Side PointSensors::side(std::size_t row, const std::array<float, 3>& normal, Side side) const {
-  std::array<double, 3> sensor{};
-  if (!std::isfinite(normal[0]) || !at(row, sensor)) return side;
+  if (!std::isfinite(normal[0])) return side;
   const std::array<double, 3> from = table_.position(row);
-  const std::array<double, 3> to{sensor[0] - from[0], sensor[1] - from[1], sensor[2] - from[2]};
-  double facing = 0.0;
-  for (std::size_t a = 0; a < 3; ++a) facing += to[a] * static_cast<double>(normal[a]);
-  return facing < -kGrazing * std::hypot(to[0], to[1], to[2]) ? Side::Contrary : Side::Outer;
+  // Nearest first: distance, and cosine of the normal.
+  std::pair<double, double> nearest{std::numeric_limits<double>::infinity(), 0.0};
+  double most = -1.0;
+  const auto look = [&](const std::array<double, 3>& sensor) {
+    const std::array<double, 3> to{sensor[0] - from[0], sensor[1] - from[1], sensor[2] - from[2]};
+    const double distance = std::hypot(to[0], to[1], to[2]);
+    double facing = 0.0;
+    for (std::size_t a = 0; a < 3; ++a) facing += to[a] * static_cast<double>(normal[a]);
+    const double cosine = distance > 0.0 ? facing / distance : 0.0;
+    nearest = std::min(nearest, {distance, cosine});
+    most = std::max(most, cosine);
+  };
+  std::array<double, 3> own{};
+  if (at(row, own)) {
+    look(own);
+  } else {
+    std::for_each(told_.begin(), told_.end(), look);
+  }
+  if (!std::isfinite(nearest.first)) return side;
+  if (nearest.second >= -kGrazing) return Side::Outer;
+  return most < -kGrazing ? Side::Contrary : side;
 }
 
 std::vector<std::array<double, 3>> sensorsOfPoints(const CloudTable& table) {
@@ -138,7 +156,7 @@ Palette::Palette(const CloudTable& table, Coloring coloring, const Facts& facts)
     : table_(table),
       coloring_(coloring),
       facts_(facts),
-      sensors_(table),
+      sensors_(table, facts),
       label_(table.find("label")) {
   if (coloring == Coloring::Rgb) field_ = table.find("rgb");
   if (coloring == Coloring::Confidence) field_ = table.find("confidence");

@@ -40,20 +40,22 @@ std::uint32_t packedColor(const CloudTable& table, const Field& field, std::size
 /// The segment of a point; kNoSegment without one.
 std::uint32_t labelOf(const CloudTable& table, const Field* field, std::size_t row);
 
-/// Where each point was seen from, as far as fields vp_x, vp_y, vp_z tell it. A sensor of the whole
-/// cloud is no such thing: it need not have seen every point.
+/// Where each point was seen from, as far as fields vp_x, vp_y, vp_z tell it, or Facts do. A sensor
+/// of the whole cloud that the file names is no such thing: it need not have seen every point.
 class PointSensors {
  public:
-  explicit PointSensors(const CloudTable& table);
-  bool any() const { return fields_[2] != nullptr; }
-  /// False where it is not known.
+  explicit PointSensors(const CloudTable& table, const Facts& facts = {});
+  bool any() const { return fields_[2] != nullptr || !told_.empty(); }
+  /// What the fields say. False where it is not known.
   bool at(std::size_t row, std::array<double, 3>& place) const;
-  /// The side of a point whose sensor is known: its true one faces it. `side` where it is not.
+  /// The side of a point whose sensor is known: its true one faces it. Of several that may have
+  /// seen it, its true side faces the nearest; the wrong one, none. `side` where that is not known.
   Side side(std::size_t row, const std::array<float, 3>& normal, Side side) const;
 
  private:
   const CloudTable& table_;
   std::array<const Field*, 3> fields_{};
+  std::vector<std::array<double, 3>> told_;
 };
 
 /// The different places that the points were seen from, a sample of them where they are many.

@@ -23,6 +23,7 @@ struct Facts {
   std::vector<SegmentFact> segments;  ///< by label; may be shorter than there are labels
   std::vector<std::array<double, 3>> contradictions;
   std::vector<std::array<double, 3>> sensors;
+  bool sensors_told = false;  ///< whether somebody said that these saw the points
 };
 
 /// Of `orient --report`. Throws FileError if it is none.

@@ -22,13 +22,14 @@ PlanSensors::PlanSensors(const Plan& plan, const PointSample& sample, const Plac
   const std::optional<TileTree::Place> of_points = said.one();
   const bool columns = plan.has_viewpoints && !said.none();
   // Each point knows its own, or what is known is not a place.
-  if ((columns && !of_points) || !plan.trajectory.empty()) return;
+  completes_given_ = columns && said.partly() && !plan.has_viewpoint;
+  if ((columns && !of_points && !completes_given_) || !plan.trajectory.empty()) return;
   if (plan.up || plan.keep_orientation) return;
   if (!plan.find_sensors || plan.closed) return;
   takeSample(plan, sample);
   const std::size_t size = points_.size() / 3;
   OrientationHints given = hintsOf(plan, plan.origin);
-  if (columns) {
+  if (columns && !completes_given_) {
     const std::array<float, 3> place = near(*of_points, plan.origin);
     for (std::size_t i = 0; i < size; ++i) {
       given.viewpoints.insert(given.viewpoints.end(), place.begin(), place.end());
@@ -38,6 +39,7 @@ PlanSensors::PlanSensors(const Plan& plan, const PointSample& sample, const Plac
   if (by_row_ && image_width > 0) given.grids = {{0, image_width, size / image_width}};
   choose(given, threads);
   // Whoever names a side of a sheet means it; and a thinner cloud hides the sides of a plate.
+  if (completes_given_) place_ = {};
   place_.faces_up = place_.faces_up && by_row_ && plan.seeds.empty();
   if (by_row_ || (sure_ == 0 && !seenWithin())) return;
   search::MedianHashIndex::Options search_options;
@@ -61,8 +63,8 @@ void PlanSensors::choose(const OrientationHints& given, int threads) {
   PreparedCloud cloud(points, nullptr, threads);
   detail::PlaceChoice choice = detail::choosePlaces(points, given, true, cloud, threads);
   place_ = choice.place;
-  follows_given_ = !choice.hints;
-  if (choice.hints) directions_ = std::move(choice.hints->normals);
+  follows_given_ = !choice.hints || completes_given_;
+  if (choice.hints && !completes_given_) directions_ = std::move(choice.hints->normals);
   report_ = std::move(choice.sensors);
   if (!report_.sure()) return;
   sure_ = static_cast<std::size_t>(std::count_if(report_.sensors.begin(), report_.sensors.end(),

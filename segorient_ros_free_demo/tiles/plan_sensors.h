@@ -25,16 +25,20 @@ class PlacesSaid {
     const bool known = std::isfinite(p[0]) && std::isfinite(p[1]) && std::isfinite(p[2]);
     if (!first_) first_ = p;
     one_ = one_ && known && p == *first_;
-    any_ = any_ || known;
+    ++points_;
+    if (known) ++known_;
   }
-  bool none() const { return !any_; }
+  bool none() const { return known_ == 0; }
+  /// Whether more than a hundredth of them do not know it.
+  bool partly() const { return known_ > 0 && 100 * (points_ - known_) > points_; }
   /// The place, if it is one for all of them.
-  std::optional<Place> one() const { return one_ && any_ ? first_ : std::nullopt; }
+  std::optional<Place> one() const { return one_ && !none() ? first_ : std::nullopt; }
 
  private:
   std::optional<Place> first_;
   bool one_ = true;
-  bool any_ = false;
+  std::size_t points_ = 0;
+  std::size_t known_ = 0;
 };
 
 /// Where the points of a cloud were seen from, by a sample of all of it, as choosePlaces() decides
@@ -53,6 +57,8 @@ class PlanSensors {
   /// What is known of the one that is followed.
   const CloudPlace& place() const { return place_; }
   std::size_t found() const { return sure_; }
+  /// Whether what is found is for points that do not know their own place.
+  bool completesGiven() const { return completes_given_; }
   bool seenWithin() const { return !directions_.empty(); }
   /// Where a point was seen from, relative to the plan's origin; NaN where no sensor is sure.
   std::array<float, 3> of(std::uint64_t row, const std::array<float, 3>& place) const;
@@ -68,6 +74,7 @@ class PlanSensors {
   std::vector<float> directions_;  // 3 a point of the sample, or empty
   CloudPlace place_;
   bool follows_given_ = true;
+  bool completes_given_ = false;
   std::size_t sure_ = 0;
   bool by_row_ = false;        // the sample is all there is
   std::vector<float> points_;  // 3 each

@@ -97,9 +97,11 @@ class Viewpoints {
   }
   std::array<float, 3> of(const CloudTable& block, std::size_t row, std::uint64_t number,
                           const Place& place, const Place& origin) const {
-    if (sensors_.found() > 0) return sensors_.of(number, near(place, origin));
-    if (columns_) return near(block.triple(block.viewpoints(), row), origin);
-    return near(header_, origin);
+    const std::array<float, 3> given =
+        near(columns_ ? block.triple(block.viewpoints(), row) : header_, origin);
+    const bool follows = sensors_.found() == 0 || sensors_.completesGiven();
+    if (follows && (segorient::isFinite(given.data()) || sensors_.found() == 0)) return given;
+    return sensors_.of(number, near(place, origin));
   }
 
  private:
@@ -205,7 +207,8 @@ void followSensors(const PlanSensors& sensors, Plan& plan) {
     plan.has_viewpoint = plan.has_viewpoints = false;
   }
   plan.place = sensors.place();
-  plan.found_sensors = static_cast<std::uint32_t>(sensors.found());
+  plan.found_sensors =
+      sensors.completesGiven() ? 0 : static_cast<std::uint32_t>(sensors.found());
   plan.seen_within = sensors.seenWithin();
   plan.has_viewpoints = plan.has_viewpoints || sensors.found() > 0;
 }

@@ -163,7 +163,11 @@ TEST(Check, UsageAndInputWithoutNormals) {
   EXPECT_EQ(runProgram({"check", fandisk(), "--picture", directory.file("a.jpg")}).status, 2);
   const std::string few = directory.write("few.xyz", "0 0 0 0 0 1\n1 0 0 0 0 1\n0 1 0 0 0 1\n");
   EXPECT_EQ(runProgram({"check", few}).status, 0) << "nothing to judge is nothing at fault";
-  EXPECT_EQ(directory.entries(), 2U);
+  const std::string none = directory.write("none.xyz", "0 0 0 0 0 0\n1 0 0 0 0 0\n0 1 0 0 0 0\n");
+  const Outcome run = runProgram({"check", none, directory.file("out.ply")});
+  EXPECT_EQ(run.status, 1) << "none contradicts would be said of nothing";
+  EXPECT_NE(run.err.find("no normals to check"), std::string::npos) << run.err;
+  EXPECT_EQ(directory.entries(), 3U);
 }
 
 }  // namespace

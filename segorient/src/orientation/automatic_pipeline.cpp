@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iomanip>
+#include <iterator>
 #include <memory>
 #include <optional>
 #include <sstream>
@@ -11,6 +12,7 @@
 
 #include "orientation/automatic/stages.h"
 #include "orientation/pipeline_stages.h"
+#include "orientation/sensors/given_places.h"
 #include "orientation/sensors/hiding_place.h"
 #include "orientation/sensors/known_sensors.h"
 #include "orientation/sensors/place_choice.h"
@@ -36,63 +38,115 @@ std::string sheetChoice(const AutoStages& stages) {
   return text.str();
 }
 
-// A column of unknown places, as some files have it, says no more than none.
-std::shared_ptr<const OrientationHints> givenHints(const PipelineOptions& options) {
+// Places that are unknown, or those of the points themselves, as some files have them, say no more
+// than none.
+std::shared_ptr<const OrientationHints> givenHints(const PointView& points,
+                                                   const PipelineOptions& options) {
   const auto& given = options.orientation.hints;
   if (!given) return std::make_shared<OrientationHints>();
-  const auto known = [](float v) { return std::isfinite(v); };
-  if (given->viewpoints.empty() ||
-      std::any_of(given->viewpoints.begin(), given->viewpoints.end(), known)) {
-    return given;
+  const std::size_t rows = std::min(points.size, given->viewpoints.size() / 3);
+  bool known = given->viewpoints.empty();
+  for (std::size_t i = 0; i < rows && !known; ++i) {
+    const float* place = &given->viewpoints[3 * i];
+    known = isFinite(place) && !std::equal(place, place + 3, points[i]);
   }
+  if (known) return given;
   auto out = std::make_shared<OrientationHints>(*given);
   out->viewpoints.clear();
   return out;
 }
 
-// \param hiding the place, where it is only to be compared with what is found without it
-PointHints findHints(const PointView& points, const OrientationHints& given,
-                     const PipelineOptions& options, PreparedCloud& cloud, PipelineReport& report,
-                     std::optional<HidingPlace>& hiding) {
-  PlaceChoice choice = choosePlaces(points, given, options.orientation.automatic.find_sensors,
-                                    cloud, options.threads);
-  PointHints known = resolveHints(choice.hints ? *choice.hints : given, cloud);
-  known.place = choice.place;
-  if (choice.refused) report.known_sensors.push_back(*choice.refused);
-  if (choice.hiding) hiding = std::move(choice.hiding);
-  report.sensors = std::move(choice.sensors);
-  return known;
+// Whether each point has been told its own sensor, and not all of that is to be relied on.
+bool isDoubtful(const OrientationHints& given, const std::vector<KnownSensor>& scans,
+                const PreparedCloud& cloud) {
+  return !given.viewpoints.empty() && !given.has_viewpoint && !given.has_direction &&
+         !onlyPlace(given, cloud.rows()) && leavesDoubt(scans, cloud);
 }
+
+// The default method, again where what is known of sensors turns out to be wrong or not to be enough.
+class AutomaticRun {
+ public:
+  AutomaticRun(const PointView& points, const PipelineOptions& options, StageClock& clock,
+               PreparedCloud& cloud, PipelineReport& report)
+      : points_(points), options_(options), clock_(clock), cloud_(cloud), report_(report) {}
+
+  AutoStages run(const OrientationHints& given) {
+    AutoStages result = findAndOrient(given);
+    std::vector<KnownSensor> doubted = std::move(report_.known_sensors);
+    if (!hiding_ && doubted.empty() && saysSensors(given) &&
+        result.orientation.leavesAllToSurface()) {
+      doubted = std::move(result.orientation.sensors);
+      result = findAndOrient(withoutSensors(given));
+    } else if (isDoubtful(given, result.orientation.sensors, cloud_)) {
+      complete(given, doubted, result);
+    }
+    if (hiding_) {
+      hiding_->report.used = hiding_->isPlausible(cloud_.points(), result.normals);
+      doubted.push_back(hiding_->report);
+    }
+    report_.known_sensors = std::move(doubted);
+    report_.known_sensors.insert(report_.known_sensors.end(), result.orientation.sensors.begin(),
+                                 result.orientation.sensors.end());
+    return result;
+  }
+
+ private:
+  PlaceChoice choose(const OrientationHints& hints) {
+    return choosePlaces(points_, hints, options_.orientation.automatic.find_sensors, cloud_,
+                        options_.threads);
+  }
+
+  AutoStages orient(const PointHints& known) {
+    return runAutoStages(
+        cloud_, options_, known,
+        [this](const char* stage, double fraction) { clock_.begin(stage, fraction); });
+  }
+
+  AutoStages findAndOrient(const OrientationHints& hints) {
+    PlaceChoice choice = choose(hints);
+    PointHints known = resolveHints(choice.hints ? *choice.hints : hints, cloud_);
+    known.place = choice.place;
+    if (choice.refused) report_.known_sensors.push_back(*choice.refused);
+    if (choice.hiding) hiding_ = std::move(choice.hiding);
+    report_.sensors = std::move(choice.sensors);
+    AutoStages result = orient(known);
+    if (!report_.sensors.sure() || !seeBothSides(result.orientation.sensors)) return result;
+    for (FoundSensor& s : report_.sensors.sensors) s.sure = false;
+    report_.sensors.why += ", but see surfaces from both sides";
+    return orient(resolveHints(withoutSensors(hints), cloud_));
+  }
+
+  // What a search finds takes the place of what is not known or not to be relied on.
+  void complete(const OrientationHints& given, std::vector<KnownSensor>& doubted,
+                AutoStages& result) {
+    PlaceChoice choice = choose(withoutSensors(given));
+    if (!choice.sensors.sure()) return;
+    std::vector<KnownSensor> scans = result.orientation.sensors;
+    const std::optional<OrientationHints> completed =
+        completePlaces(given, *choice.hints, cloud_, result.orientation.sensor_of, scans);
+    if (!completed) return;
+    AutoStages second = orient(resolveHints(*completed, cloud_));
+    if (seeBothSides(second.orientation.sensors)) return;
+    std::copy_if(scans.begin(), scans.end(), std::back_inserter(doubted),
+                 [](const KnownSensor& s) { return !s.used; });
+    report_.sensors = std::move(choice.sensors);
+    result = std::move(second);
+  }
+
+  const PointView& points_;
+  const PipelineOptions& options_;
+  StageClock& clock_;
+  PreparedCloud& cloud_;
+  PipelineReport& report_;
+  std::optional<HidingPlace> hiding_;  // a place that is only to be compared with the result
+};
 
 }  // namespace
 
 void runAutomatic(const PointView& points, const PipelineOptions& options, StageClock& clock,
                   OrientedStages& work, PipelineReport& report) {
-  const std::shared_ptr<const OrientationHints> given = givenHints(options);
-  std::optional<HidingPlace> hiding;
-  const auto runOnce = [&](const PointHints& known) {
-    return runAutoStages(
-        work.surface.cloud, options, known,
-        [&clock](const char* stage, double fraction) { clock.begin(stage, fraction); });
-  };
-  const auto run = [&](const OrientationHints& hints) {
-    AutoStages result =
-        runOnce(findHints(points, hints, options, work.surface.cloud, report, hiding));
-    if (!report.sensors.sure() || !seeBothSides(result.orientation.sensors)) return result;
-    for (FoundSensor& s : report.sensors.sensors) s.sure = false;
-    report.sensors.why += ", but see surfaces from both sides";
-    return runOnce(resolveHints(withoutPlaces(*given), work.surface.cloud));
-  };
-  AutoStages result = run(*given);
-  std::vector<KnownSensor> doubted = std::move(report.known_sensors);
-  if (!hiding && doubted.empty() && saysPlaces(*given) && result.orientation.leavesAllToSurface()) {
-    doubted = std::move(result.orientation.sensors);
-    result = run(withoutPlaces(*given));
-  }
-  if (hiding) {
-    hiding->report.used = hiding->isPlausible(work.surface.cloud.points(), result.normals);
-    doubted.push_back(hiding->report);
-  }
+  AutoStages result = AutomaticRun(points, options, clock, work.surface.cloud, report)
+                          .run(*givenHints(points, options));
   report.k = result.k;
   report.spacing = result.spacing;
   report.noise = result.noise;
@@ -101,9 +155,6 @@ void runAutomatic(const PointView& points, const PipelineOptions& options, Stage
   report.scales = std::move(result.scales);
   report.contradictions = std::move(result.orientation.contradictions);
   report.clusters = std::move(result.orientation.clusters);
-  report.known_sensors = std::move(doubted);
-  report.known_sensors.insert(report.known_sensors.end(), result.orientation.sensors.begin(),
-                              result.orientation.sensors.end());
   work.surface.normals = std::move(result.normals);
   work.surface.segmentation = std::move(result.segmentation);
   work.orientation.segments = std::move(result.segments);

@@ -123,6 +123,7 @@ void fieldsOf(const KnownSensor& s, const Origin& origin, Field&& field) {
   field("seen", s.seen);
   field("used", s.used);
   field("moving", s.moving);
+  field("scan", s.scan);
   field("hidden", s.hidden);
   field("contrary", s.contrary);
   field("density", s.density);

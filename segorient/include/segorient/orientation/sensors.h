@@ -26,6 +26,9 @@ struct KnownSensor {
   /// surfaces go on turns nothing anyway; of it this says whether the result suits it.
   bool used = true;
   bool moving = false;  ///< many places together
+  /// The scan that its points are of, as OrientationHints::scans numbers them; -1 = unknown, or of
+  /// several.
+  std::int32_t scan = -1;
   /// Share of its points that lie behind others of its own, as seen from there. A sensor sees no
   /// such points: noise and stray points make up to .09 of them.
   float hidden = 0.F;

@@ -27,6 +27,7 @@ struct AutoOrientation {
   std::vector<Contradiction> contradictions;       ///< by descending weight
   bool place_idle = false;                         ///< the one place for all points decided nothing
   std::vector<KnownSensor> sensors;                ///< positions in the points' unit
+  std::vector<std::int32_t> sensor_of;             ///< per point, into `sensors`, -1 = none known
   /// 3 floats a point: unit vector to the sensor that saw it, 0 where none is known or believed;
   /// empty without any
   std::vector<float> toward;

@@ -4,8 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
+#include <queue>
+#include <utility>
 
+#include "common/at.h"
 #include "common/dot.h"
 #include "features/scan_scale.h"
 
@@ -52,6 +54,50 @@ std::vector<Ballot> facingBySegment(const std::vector<float>& facing,
   return out;
 }
 
+namespace {
+
+// What borders tie to segments that sensors decided, the surest of the rest first: as its borders to
+// decided ones and its own points say together.
+void followDecided(const std::vector<Ballot>& ballots, const std::vector<BorderVote>& votes,
+                   std::vector<bool> decided, std::vector<std::int8_t>& signs) {
+  const std::size_t n = signs.size();
+  std::vector<Ballot> support = ballots;
+  std::vector<std::vector<std::uint32_t>> borders(n);
+  for (std::size_t v = 0; v < votes.size(); ++v) {
+    borders[at(votes[v].a)].push_back(static_cast<std::uint32_t>(v));
+    borders[at(votes[v].b)].push_back(static_cast<std::uint32_t>(v));
+  }
+  using Candidate = std::pair<float, std::int32_t>;
+  std::priority_queue<Candidate> queue;
+  const auto keyOf = [&](std::size_t s) {
+    return support[s].total > 0.F ? support[s].balance * support[s].balance / support[s].total
+                                  : 0.F;
+  };
+  const auto tell = [&](std::size_t s) {
+    for (const std::uint32_t v : borders[s]) {
+      const BorderVote& vote = votes[v];
+      const auto other = at(at(vote.a) == s ? vote.b : vote.a);
+      if (decided[other]) continue;
+      support[other].add({vote.weight, vote.absolute}, signs[s]);
+      queue.emplace(keyOf(other), -static_cast<std::int32_t>(other));
+    }
+  };
+  for (std::size_t s = 0; s < n; ++s) {
+    if (decided[s]) tell(s);
+  }
+  while (!queue.empty()) {
+    const auto [key, name] = queue.top();
+    queue.pop();
+    const auto s = at(-name);
+    if (decided[s] || key != keyOf(s) || key == 0.F) continue;
+    signs[s] = support[s].balance < 0.F ? std::int8_t{-1} : std::int8_t{1};
+    decided[s] = true;
+    tell(s);
+  }
+}
+
+}  // namespace
+
 std::vector<bool> turnToSensors(const std::vector<Ballot>& ballots,
                                 const std::vector<BorderVote>& votes,
                                 std::vector<std::int8_t>& signs) {
@@ -68,28 +114,7 @@ std::vector<bool> turnToSensors(const std::vector<Ballot>& ballots,
     by_sensors[s] = true;
     signs[s] = ballots[s].balance < 0.F ? std::int8_t{-1} : std::int8_t{1};
   }
-  // Ring by ring to the end of each component: each undecided segment as its borders to decided
-  // ones say together.
-  std::vector<bool> decided = by_sensors;
-  for (bool grown = true; grown;) {
-    std::map<std::int32_t, float> support;
-    for (const BorderVote& v : votes) {
-      const bool a = decided[static_cast<std::size_t>(v.a)];
-      const bool b = decided[static_cast<std::size_t>(v.b)];
-      if (a == b) continue;
-      const std::int32_t from = a ? v.a : v.b;
-      support[a ? v.b : v.a] +=
-          v.weight * static_cast<float>(signs[static_cast<std::size_t>(from)]);
-    }
-    grown = false;
-    for (const auto& [s, borders_say] : support) {
-      const float weight = borders_say + ballots[static_cast<std::size_t>(s)].balance;
-      if (weight == 0.F) continue;
-      signs[static_cast<std::size_t>(s)] = weight < 0.F ? std::int8_t{-1} : std::int8_t{1};
-      decided[static_cast<std::size_t>(s)] = true;
-      grown = true;
-    }
-  }
+  followDecided(ballots, votes, by_sensors, signs);
   return by_sensors;
 }
 

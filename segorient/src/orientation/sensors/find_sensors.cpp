@@ -25,16 +25,12 @@ namespace {
 
 // Deviations of log density that are hardly more than chance have nothing to explain.
 constexpr float kMoreThanChance = 1.3F;
-// What a law may leave of the constant's deviation. One place that is looked at because it was
-// suggested: true ones left .04 to .57, wrong ones .81 and more. The best of all places: true ones
-// .04 to .31, solids and sheets .99 and more, several stations around an object from .42 on.
+// What a law may leave of the constant's deviation at a place that is looked at because it was
+// suggested: true ones left .04 to .57, wrong ones .81 and more.
 constexpr float kSureSuggested = 0.6F;
-constexpr float kSureFound = 0.33F;
 // Several sensors can adapt to much, so that there must be enough to adapt to: at twice the
 // deviation of chance three quarters of the variance are something else.
 constexpr float kFarBeyondChance = 2.F;
-// A suggestion is kept unless a place beside it explains this much more.
-constexpr float kMuchBetter = 0.6F;
 // From farther away, in diagonals, distances hardly differ, and a law is one of incidence alone.
 constexpr double kFarthest = 10.0;
 
@@ -45,7 +41,7 @@ FoundSensor describe(const FittedPlace& fitted, float constant, bool suggested) 
   if (fitted.place.law != SamplingLaw::SOLID_ANGLE) out.axis = toFloat(fitted.place.axis);
   out.suggested = suggested;
   out.cost_ratio = fitted.cost / constant;
-  out.sure = out.cost_ratio <= (suggested ? kSureSuggested : kSureFound);
+  out.sure = out.cost_ratio <= (suggested ? kSureSuggested : detail::kSureFound);
   return out;
 }
 
@@ -75,12 +71,10 @@ FoundSensor findStation(const DensityPatches& patches, float constant,
                         const SensorOptions& options) {
   const std::optional<FittedPlace> suggested = trySuggestions(patches, constant, options);
   if (suggested) {
-    constexpr double kStep = 0.02;
-    constexpr int kEvaluations = 200;
-    FittedPlace beside = *suggested;
-    beside.cost = detail::refinePlace(patches, kStep * detail::extentOf(patches).diagonal(), true,
-                                      kEvaluations, beside.place);
-    if (beside.cost > kMuchBetter * suggested->cost) return describe(*suggested, constant, true);
+    const FittedPlace beside = detail::fitBeside(patches, *suggested);
+    if (beside.cost > detail::kMuchBetter * suggested->cost) {
+      return describe(*suggested, constant, true);
+    }
   }
   if (!options.search) return {};
   const std::optional<FittedPlace> found =

@@ -7,16 +7,16 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <functional>
 #include <limits>
-#include <numeric>
-#include <unordered_map>
+#include <utility>
 #include <vector>
 
 #include "common/at.h"
 #include "common/in_double.h"
 #include "common/unit_vector.h"
+#include "orientation/sensors/number_places.h"
 #include "orientation/sensors/scan_checks.h"
+#include "orientation/sensors/shadows.h"
 
 namespace segorient::detail {
 namespace {
@@ -36,52 +36,6 @@ constexpr float kVaries = 0.3F;
 
 using Place = std::array<float, 3>;
 
-// The places that points have, in ascending order.
-// \param places_of_points 3 floats a point, NaN = unknown
-// \param of resized to the points: which of them each has, -1 = none
-std::vector<Place> numberPlaces(const std::vector<float>& places_of_points,
-                                std::vector<std::int32_t>& of) {
-  of.assign(places_of_points.size() / 3, -1);
-  // Points of one place mostly come one after another, and there are few places or as many as
-  // points.
-  struct Hash {
-    std::size_t operator()(const Place& p) const {
-      std::size_t h = 0;
-      for (const float v : p) h = h * 1000003U + std::hash<float>()(v);
-      return h;
-    }
-  };
-  std::unordered_map<Place, std::int32_t, Hash> found;
-  std::vector<Place> places;
-  std::int32_t last = -1;
-  for (std::size_t i = 0; i < of.size(); ++i) {
-    const float* v = &places_of_points[3 * i];
-    if (!isFinite(v)) continue;
-    const Place place{v[0], v[1], v[2]};
-    if (last < 0 || place != places[at(last)]) {
-      const auto next = static_cast<std::int32_t>(places.size());
-      const auto [entry, is_new] = found.emplace(place, next);
-      if (is_new) places.push_back(place);
-      last = entry->second;
-    }
-    of[i] = last;
-  }
-  std::vector<std::int32_t> order(places.size());
-  std::iota(order.begin(), order.end(), 0);
-  std::sort(order.begin(), order.end(),
-            [&](std::int32_t a, std::int32_t b) { return places[at(a)] < places[at(b)]; });
-  std::vector<std::int32_t> rank(places.size());
-  std::vector<Place> sorted;
-  for (const std::int32_t p : order) {
-    rank[at(p)] = static_cast<std::int32_t>(sorted.size());
-    sorted.push_back(places[at(p)]);
-  }
-  for (std::int32_t& p : of) {
-    if (p >= 0) p = rank[at(p)];
-  }
-  return sorted;
-}
-
 class Finder {
  public:
   Finder(const PointView& points, const Neighborhoods& nb, const float* spacing,
@@ -97,7 +51,6 @@ class Finder {
     if (out_.scans.empty()) return {};
     out_.one_place =
         out_.scans.size() == 1 && !out_.scans[0].moving && out_.scans[0].points == points_.size;
-    denied_.assign(out_.scans.size(), 0);
     point(sensors);
     for (std::size_t s = 0; s < out_.scans.size(); ++s) look(s);
     if (!out_.allowed && (out_.scans.size() > 1 || !out_.common)) compare();
@@ -115,7 +68,8 @@ class Finder {
 
   void listScans(const std::vector<float>& sensors) {
     std::vector<std::int32_t> place_of;
-    const std::vector<Place> places = numberPlaces(sensors, place_of);
+    std::vector<Place> places = numberPlaces(sensors, place_of);
+    const std::vector<std::int32_t> scan_of_place = splitByScan(hints_.scans, places, place_of);
     std::vector<std::uint32_t> size(places.size(), 0);
     for (const std::int32_t p : place_of) {
       if (p >= 0) ++size[at(p)];
@@ -136,6 +90,7 @@ class Finder {
       KnownSensor scan;
       scan.position = places[p];
       scan.points = size[p];
+      scan.scan = scan_of_place[p];
       out_.scans.push_back(scan);
     }
     const auto together = static_cast<std::int32_t>(out_.scans.size());
@@ -172,6 +127,11 @@ class Finder {
     const Scan::Density density = scan.density();
     report.density = density.ratio;
     report.hidden = shareOf(scan.hidden());
+    if (!out_.one_place && report.hidden > kFewHidden &&
+        (scan.stoodElsewhere() || shadowsOf(s).deny())) {
+      report.used = false;
+      return;
+    }
     // Of what was not seen from one place, the part nearest to it may have such a density, too.
     const bool hides = report.hidden > kMostHidden;
     if (report.density < kConfirmed && !(out_.common && hides && !hints_.place.found)) {
@@ -180,7 +140,6 @@ class Finder {
     }
     const bool denied =
         report.density > kDenied && density.constant > kVaries && std::isfinite(report.density);
-    denied_[s] = denied ? 1 : 0;
     if (out_.one_place) {
       out_.confirmed = hints_.place.shadows.reveal();
       out_.allowed = hints_.place.shadows.allow();
@@ -233,10 +192,21 @@ class Finder {
     // nothing contradicts them.
     const bool mixed_up = std::any_of(out_.scans.begin(), out_.scans.end(),
                                       [](const KnownSensor& scan) { return !scan.used; });
-    for (std::size_t s = 0; s < n; ++s) {
-      if (mixed_up && denied_[s] != 0) out_.scans[s].used = false;
+    for (std::size_t s = 0; mixed_up && s < n; ++s) {
+      KnownSensor& scan = out_.scans[s];
+      if (scan.used && !scan.moving) scan.used = scan.density < kConfirmed || shadowsOf(s).confirm();
     }
     out_.dropUnused();
+  }
+
+  // Whether what the scan saw ends where something nearer hides the rest from its place.
+  Shadows shadowsOf(std::size_t s) const {
+    std::vector<float> own;
+    for (const std::uint32_t row : rows_[s]) {
+      const float* p = points_[row];
+      own.insert(own.end(), p, p + 3);
+    }
+    return findShadows({own.data(), 3, own.size() / 3}, out_.scans[s].position, threads_);
   }
 
   const PointView& points_;
@@ -245,7 +215,6 @@ class Finder {
   const PointHints& hints_;
   int threads_;
   std::vector<std::vector<std::uint32_t>> rows_;  // of each scan
-  std::vector<std::uint8_t> denied_;  // by scan: its density is far from what its sensor leaves
   KnownSensors out_;
 };
 

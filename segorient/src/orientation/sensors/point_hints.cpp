@@ -15,9 +15,11 @@ namespace {
 
 using Vector = std::array<float, 3>;
 
-// In the cloud's unit, where its extent is about 1: so far that all points see it in one direction,
-// and its square is still a number.
+// In the cloud's unit, where its extent is about 1: the square is still a number.
 constexpr double kFar = 1e15;
+// So far that all points see it in one direction, by .006 degrees, and still tell by distance who is
+// before whom.
+constexpr double kSeenAlongOneDirection = 1e4;
 
 // In the unit of a PreparedCloud; what is farther than floats can square is brought nearer.
 Vector scaled(const Vector& v, float unit) {
@@ -57,17 +59,18 @@ void addDirections(const OrientationHints& hints, const PreparedCloud& cloud,
 bool farPlace(const OrientationHints& hints, Vector& out) {
   if (!hints.has_direction || !unitVector(inDouble(hints.direction.data()), out.data()))
     return false;
-  for (float& v : out) v *= static_cast<float>(kFar);
+  for (float& v : out) v *= static_cast<float>(kSeenAlongOneDirection);
   return true;
 }
 
 // Of rows that repeat a point, the place that comes first in order, whatever the order of the rows.
 void addSensors(const OrientationHints& hints, const PreparedCloud& cloud,
-                std::vector<float>& sensors) {
+                std::vector<float>& sensors, std::vector<std::int32_t>& scans) {
   Vector far{};
   const bool has_far = farPlace(hints, far);
   if (hints.viewpoints.empty() && !has_far) return;
   sensors.assign(3 * cloud.size(), std::numeric_limits<float>::quiet_NaN());
+  if (!hints.scans.empty()) scans.assign(cloud.size(), -1);
   for (std::size_t row = 0; row < cloud.rows(); ++row) {
     if (cloud.pointOf(row) < 0) continue;
     Vector place = far;
@@ -81,13 +84,19 @@ void addSensors(const OrientationHints& hints, const PreparedCloud& cloud,
       }
     }
     if (!known) continue;
-    float* out = &sensors[3 * static_cast<std::size_t>(cloud.pointOf(row))];
-    if (!isFinite(out) || std::lexicographical_compare(place.begin(), place.end(), out, out + 3)) {
-      std::copy(place.begin(), place.end(), out);
+    const auto point = static_cast<std::size_t>(cloud.pointOf(row));
+    float* out = &sensors[3 * point];
+    if (isFinite(out) && !std::lexicographical_compare(place.begin(), place.end(), out, out + 3)) {
+      continue;
     }
+    std::copy(place.begin(), place.end(), out);
+    if (row < hints.scans.size()) scans[point] = std::max(-1, hints.scans[row]);
   }
   const auto known = [](float v) { return std::isfinite(v); };
-  if (std::none_of(sensors.begin(), sensors.end(), known)) sensors.clear();
+  if (std::none_of(sensors.begin(), sensors.end(), known)) {
+    sensors.clear();
+    scans.clear();
+  }
 }
 
 void addSeeds(const OrientationHints& hints, PreparedCloud& cloud,
@@ -114,7 +123,7 @@ PointHints resolveHints(const OrientationHints& hints, PreparedCloud& cloud) {
   out.viewpoint = scaled(hints.viewpoint, cloud.unit());
   out.has_viewpoint = hints.has_viewpoint && isFinite(out.viewpoint.data());
   addDirections(hints, cloud, out.directions);
-  addSensors(hints, cloud, out.sensors);
+  addSensors(hints, cloud, out.sensors, out.scans);
   addSeeds(hints, cloud, out.seeds);
   return out;
 }

@@ -9,9 +9,11 @@
 
 #include "common/box.h"
 #include "common/dot.h"
+#include "common/in_double.h"
 #include "common/parallel_for.h"
 #include "features/sheet_fit.h"
 #include "orientation/sensors/density_patches.h"
+#include "orientation/sensors/station_search.h"
 #include "search/index_of.h"
 
 namespace segorient::detail {
@@ -54,7 +56,7 @@ struct Scan::Row {
 
 Scan::Scan(const PointView& points, const std::vector<std::uint32_t>& rows,
            const std::array<float, 3>& sensor, const Neighborhoods* neighborhoods, int threads)
-    : view_(points), threads_(threads) {
+    : view_(points), sensor_(sensor), threads_(threads) {
   const bool all = rows.size() == points.size;
   if (!all) {
     xyz_.assign(4 * rows.size(), 0.F);
@@ -181,6 +183,26 @@ Scan::Density Scan::density() const {
     out.ratio = std::min(out.ratio, deviation(law) / out.constant);
   }
   return out;
+}
+
+bool Scan::stoodElsewhere() const {
+  const search::MedianHashIndex own =
+      near_ != nullptr ? search::indexOf(view_, threads_) : search::MedianHashIndex();
+  const DensityPatches patches = densityPatches(view_, near_ != nullptr ? own : index_, threads_);
+  if (!patches.tell_laws) return false;
+  const FittedPlace said = fitAt(patches, inDouble(sensor_.data()));
+  const FittedPlace beside = fitBeside(patches, said);
+  if (beside.cost > kSureFound * deviation(patches.log_density) ||
+      beside.cost > kMuchBetter * said.cost) {
+    return false;
+  }
+  // A place that is off by little sees from the other side what it sees edge-on.
+  constexpr double kFewTurned = 0.01;
+  const std::vector<float> as_said = patches.heightsOver(said.place.position);
+  const std::vector<float> as_found = patches.heightsOver(beside.place.position);
+  std::size_t turned = 0;
+  for (std::size_t p = 0; p < patches.size(); ++p) turned += as_said[p] * as_found[p] < 0.F ? 1 : 0;
+  return static_cast<double>(turned) > kFewTurned * static_cast<double>(patches.size());
 }
 
 std::vector<ScanPairs> findContraryPairs(const PointView& points, const Neighborhoods& nb,

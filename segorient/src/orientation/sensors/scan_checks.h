@@ -58,6 +58,10 @@ class Scan {
   /// distance and with incidence; whichever law fits best.
   Density density() const;
 
+  /// Whether the density tells that the sensor stood elsewhere: a place beside the one that is said
+  /// explains it nearly all, and far better, and saw the points from another side.
+  bool stoodElsewhere() const;
+
  private:
   struct Row;
 
@@ -67,6 +71,7 @@ class Scan {
 
   std::vector<float> xyz_;  ///< 4 floats; empty where all points are the sensor's
   PointView view_;
+  std::array<float, 3> sensor_;
   SeenFrom seen_;
   float extent_ = 0.F;  ///< diagonal of its box
   search::MedianHashIndex index_;

@@ -66,6 +66,12 @@ OrientationHints withoutPlaces(const OrientationHints& hints) {
   return out;
 }
 
+OrientationHints withoutSensors(const OrientationHints& hints) {
+  OrientationHints out = withoutPlaces(hints);
+  out.has_direction = false;
+  return out;
+}
+
 std::optional<std::array<float, 3>> onlyPlace(const OrientationHints& hints, std::size_t rows) {
   if (hints.viewpoints.empty()) {
     return hints.has_viewpoint ? std::optional(hints.viewpoint) : std::nullopt;
@@ -81,9 +87,6 @@ std::optional<std::array<float, 3>> onlyPlace(const OrientationHints& hints, std
 bool contradictsPlace(const PreparedCloud& cloud, const SensorReport& report,
                       const std::array<float, 3>& place) {
   constexpr std::size_t kSample = 1000;
-  // Mean cosine: 14 degrees. True places are 10 at most from what was found beside them; the middle
-  // of a scan, 18 and more where it sees the surface from another side.
-  constexpr double kSameWay = 0.97;
   if (!report.sure()) return false;
   const auto unit = static_cast<double>(cloud.unit());
   const auto directionTo = [unit](const float* from, const std::array<float, 3>& to) {

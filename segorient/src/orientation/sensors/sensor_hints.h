@@ -16,6 +16,11 @@
 
 namespace segorient::detail {
 
+/// Cosine from which on two directions to a sensor are one: 14 degrees. True places are 10 at most
+/// from what was found beside them; the middle of a scan, 18 and more where it sees the surface
+/// from another side.
+constexpr double kSameWay = 0.97;
+
 /// Whether places are given that points were seen from.
 bool saysPlaces(const OrientationHints& hints);
 
@@ -36,6 +41,9 @@ SensorReport addFoundSensors(const PointView& points, PreparedCloud& cloud, int 
 
 /// The hints without what they say of places that a sensor had.
 SEGORIENT_ORIENTATION_EXPORT OrientationHints withoutPlaces(const OrientationHints& hints);
+
+/// Nor of the direction that it was in.
+OrientationHints withoutSensors(const OrientationHints& hints);
 
 /// The place that all rows are said to have been seen from, if that is one.
 std::optional<std::array<float, 3>> onlyPlace(const OrientationHints& hints, std::size_t rows);

@@ -184,6 +184,15 @@ FittedPlace fitAt(const DensityPatches& patches, const Position& position) {
   return best;
 }
 
+FittedPlace fitBeside(const DensityPatches& patches, const FittedPlace& place) {
+  constexpr double kStep = 0.02;
+  constexpr int kEvaluations = 200;
+  FittedPlace beside = place;
+  beside.cost = refinePlace(patches, kStep * extentOf(patches).diagonal(), true, kEvaluations,
+                            beside.place);
+  return beside;
+}
+
 std::optional<FittedPlace> searchStation(const DensityPatches& patches, float constant,
                                          int threads) {
   const Extent extent = extentOf(patches);

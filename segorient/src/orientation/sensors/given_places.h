@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the segorient authors
+#pragma once
+
+#include <segorient/orientation/orientation_hints.h>
+#include <segorient/orientation/sensors.h>
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "search/prepared_cloud.h"
+
+namespace segorient::detail {
+
+/// Whether a search may know more than places that were given point by point: more than a hundredth
+/// of the points has none that is followed, or nothing confirms one of them.
+/// \param scans what became of them
+bool leavesDoubt(const std::vector<KnownSensor>& scans, const PreparedCloud& cloud);
+
+/// Places that were given point by point, completed by what a search found without them: rows that
+/// have none take it, and all rows of a scan that it contradicts. It may contradict a scan that
+/// nothing confirms, and any once some scan contradicts the surface, as poses that were mixed up
+/// are wrong together. It does if most of the scan's points were seen from another direction.
+/// \param given viewpoints by row \param found the same, of sensors that are sure
+/// \param scan_of each point's scan, into `scans`, -1 = none
+/// \param scans what is contradicted is no longer used
+/// \return none where that changes nothing
+std::optional<OrientationHints> completePlaces(const OrientationHints& given,
+                                               const OrientationHints& found,
+                                               const PreparedCloud& cloud,
+                                               const std::vector<std::int32_t>& scan_of,
+                                               std::vector<KnownSensor>& scans);
+
+}  // namespace segorient::detail
