@@ -207,8 +207,7 @@ void followSensors(const PlanSensors& sensors, Plan& plan) {
     plan.has_viewpoint = plan.has_viewpoints = false;
   }
   plan.place = sensors.place();
-  plan.found_sensors =
-      sensors.completesGiven() ? 0 : static_cast<std::uint32_t>(sensors.found());
+  plan.found_sensors = sensors.completesGiven() ? 0 : static_cast<std::uint32_t>(sensors.found());
   plan.seen_within = sensors.seenWithin();
   plan.has_viewpoints = plan.has_viewpoints || sensors.found() > 0;
 }

@@ -53,8 +53,8 @@ inline double hit(const Box& box, const Vector& from, const Vector& along, Vecto
 }
 
 // What a scanner of equal angles sees; noise along the ray.
-inline void scan(const std::vector<Box>& boxes, const Vector& from, int lines, double noise, unsigned seed,
-          Scans& out) {
+inline void scan(const std::vector<Box>& boxes, const Vector& from, int lines, double noise,
+                 unsigned seed, Scans& out) {
   std::mt19937 rng(seed);
   std::normal_distribution<double> gauss(0.0, noise > 0.0 ? noise : 1.0);
   const int number = out.scan.empty() ? 0 : out.scan.back() + 1;

@@ -19,9 +19,9 @@ namespace {
 constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
 
 std::size_t notFollowed(const OrientedCloud& cloud) {
-  return static_cast<std::size_t>(
-      std::count_if(cloud.report.known_sensors.begin(), cloud.report.known_sensors.end(),
-                    [](const KnownSensor& s) { return !s.used; }));
+  return static_cast<std::size_t>(std::count_if(cloud.report.known_sensors.begin(),
+                                                cloud.report.known_sensors.end(),
+                                                [](const KnownSensor& s) { return !s.used; }));
 }
 
 class GivenPlaces : public ::testing::Test {
@@ -58,7 +58,8 @@ TEST_F(GivenPlaces, OneScanThatIsKnownLeavesTheOthersAsTheyAreWithoutIt) {
 }
 
 TEST_F(GivenPlaces, AllPosesMixedUpCostNothing) {
-  for (const auto& mixed : {std::array{1, 2, 3, 0}, std::array{3, 2, 1, 0}, std::array{1, 0, 2, 3}}) {
+  for (const auto& mixed :
+       {std::array{1, 2, 3, 0}, std::array{3, 2, 1, 0}, std::array{1, 0, 2, 3}}) {
     const OrientedCloud cloud = oriented(mixed);
     EXPECT_GE(share(cloud), free_ - 0.001);
     EXPECT_GE(notFollowed(cloud), 2U);
@@ -151,7 +152,8 @@ TEST(CompletedPlaces, DoubtIsLeftByWhatNothingConfirmsOrTells) {
 TEST(CompletedPlaces, RowsWithoutOneTakeWhatWasFound) {
   Square square;
   std::vector<KnownSensor> scans{scanOf(50, true, 0.2F), scanOf(49, true, 0.2F)};
-  EXPECT_FALSE(detail::completePlaces(square.given, square.found, square.cloud, square.scan_of, scans));
+  EXPECT_FALSE(
+      detail::completePlaces(square.given, square.found, square.cloud, square.scan_of, scans));
   square.given.viewpoints[3 * 70] = kNaN;
   square.setFound(70, 30.F);
   square.setFound(10, -30.F);  // has its own

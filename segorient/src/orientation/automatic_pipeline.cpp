@@ -63,7 +63,8 @@ bool isDoubtful(const OrientationHints& given, const std::vector<KnownSensor>& s
          !onlyPlace(given, cloud.rows()) && leavesDoubt(scans, cloud);
 }
 
-// The default method, again where what is known of sensors turns out to be wrong or not to be enough.
+// The default method, again where what is known of sensors turns out to be wrong or not to be
+// enough.
 class AutomaticRun {
  public:
   AutomaticRun(const PointView& points, const PipelineOptions& options, StageClock& clock,
@@ -97,9 +98,9 @@ class AutomaticRun {
   }
 
   AutoStages orient(const PointHints& known) {
-    return runAutoStages(
-        cloud_, options_, known,
-        [this](const char* stage, double fraction) { clock_.begin(stage, fraction); });
+    return runAutoStages(cloud_, options_, known, [this](const char* stage, double fraction) {
+      clock_.begin(stage, fraction);
+    });
   }
 
   AutoStages findAndOrient(const OrientationHints& hints) {

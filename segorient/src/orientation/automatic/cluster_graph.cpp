@@ -118,19 +118,6 @@ void ClusterGraph::merge(std::int32_t keep, std::int32_t gone, int sign,
   }
 }
 
-void ClusterGraph::hold(const std::vector<std::int8_t>& signs) {
-  std::vector<Candidate> nothing;
-  std::int32_t keep = -1;
-  for (std::size_t s = 0; s < signs.size(); ++s) {
-    if (signs[s] == 0) continue;
-    if (keep < 0) {
-      keep = static_cast<std::int32_t>(s);
-    } else {
-      merge(keep, static_cast<std::int32_t>(s), signs[s] * signs[at(keep)], {}, nothing);
-    }
-  }
-}
-
 void ClusterGraph::contract(const std::vector<Rule>& rules) {
   std::vector<Candidate> heap;
   for (std::uint32_t e = 0; e < edges_.size(); ++e) {

@@ -46,9 +46,6 @@ class ClusterGraph {
   /// \param sizes points of each segment
   ClusterGraph(const std::vector<std::uint32_t>& sizes, const std::vector<BorderVote>& votes);
 
-  /// Joins all clusters whose signs are known beforehand. \param signs by segment, 0 = unknown
-  void hold(const std::vector<std::int8_t>& signs);
-
   /// Joins all that one of the rules allows, by |weight| * unanimity; nothing without rules.
   void contract(const std::vector<Rule>& rules);
 

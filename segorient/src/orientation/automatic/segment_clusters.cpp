@@ -5,25 +5,6 @@
 #include "common/at.h"
 
 namespace segorient::detail {
-
-void contractSurestFirst(ClusterGraph& graph, std::uint32_t both_larger) {
-  ClusterGraph::Rule certain;
-  certain.unanimity = 0.9F;
-  certain.weight = 4.F;  // a border of a few points
-  certain.reliable = 0.5F;
-  // Where next to all of a longer border agree, that makes up for fewer sure normals, as they are
-  // in sparse stripes of a clean cloud.
-  ClusterGraph::Rule unanimous;
-  unanimous.unanimity = 0.97F;
-  unanimous.weight = 4.F * certain.weight;
-  unanimous.reliable = 0.5F * certain.reliable;
-  graph.contract({certain, unanimous});
-  ClusterGraph::Rule likely;
-  likely.unanimity = 0.6F;
-  likely.both_larger = both_larger;
-  graph.contract({likely});
-}
-
 SegmentClusters::SegmentClusters(const Segmentation& segmentation,
                                  const std::vector<BorderVote>& votes, bool contract_certain,
                                  std::size_t points) {
@@ -31,7 +12,24 @@ SegmentClusters::SegmentClusters(const Segmentation& segmentation,
   std::vector<std::uint32_t> sizes(n);
   for (std::size_t s = 0; s < n; ++s) sizes[s] = segmentation.segments[s].size;
   ClusterGraph graph(sizes, votes);
-  if (contract_certain) contractSurestFirst(graph, static_cast<std::uint32_t>(points / 50));
+  if (contract_certain) {
+    ClusterGraph::Rule certain;
+    certain.unanimity = 0.9F;
+    certain.weight = 4.F;  // a border of a few points
+    certain.reliable = 0.5F;
+    // Where next to all of a longer border agree, that makes up for fewer sure normals, as they are
+    // in sparse stripes of a clean cloud.
+    ClusterGraph::Rule unanimous;
+    unanimous.unanimity = 0.97F;
+    unanimous.weight = 4.F * certain.weight;
+    unanimous.reliable = 0.5F * certain.reliable;
+    graph.contract({certain, unanimous});
+    // Two large clusters are joined only with all evidence on the table.
+    ClusterGraph::Rule likely;
+    likely.unanimity = 0.6F;
+    likely.both_larger = static_cast<std::uint32_t>(points / 50);
+    graph.contract({likely});
+  }
   of_.resize(n);
   inside_.resize(n);
   for (std::size_t s = 0; s < n; ++s) {

@@ -10,13 +10,8 @@
 
 #include "orientation/automatic/border_votes.h"
 #include "orientation/automatic/cluster_graph.h"
-#include "orientation/automatic/cluster_graph.h"
 
 namespace segorient::detail {
-
-/// Joins clusters over borders that are certain, then over those that are likely. \param both_larger
-/// see ClusterGraph::Rule: two large clusters are joined only with all evidence on the table
-void contractSurestFirst(ClusterGraph& graph, std::uint32_t both_larger);
 
 /// Segments joined over the borders that are certain, and the signs of these clusters by all their
 /// borders together. A cluster is named by one of its segments.

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <queue>
-#include <utility>
 
 #include "common/at.h"
 #include "common/dot.h"
@@ -56,43 +55,53 @@ std::vector<Ballot> facingBySegment(const std::vector<float>& facing,
 
 namespace {
 
-// What borders tie to segments that sensors decided, the surest of the rest first: as its borders to
-// decided ones and its own points say together.
+// What borders tie to segments that sensors decided, the surest of the rest first: as its borders
+// to decided ones and its own points say together, of all that these could say.
 void followDecided(const std::vector<Ballot>& ballots, const std::vector<BorderVote>& votes,
                    std::vector<bool> decided, std::vector<std::int8_t>& signs) {
   const std::size_t n = signs.size();
-  std::vector<Ballot> support = ballots;
   std::vector<std::vector<std::uint32_t>> borders(n);
-  for (std::size_t v = 0; v < votes.size(); ++v) {
-    borders[at(votes[v].a)].push_back(static_cast<std::uint32_t>(v));
-    borders[at(votes[v].b)].push_back(static_cast<std::uint32_t>(v));
+  std::vector<float> balance(n);
+  std::vector<float> all(n);
+  for (std::size_t s = 0; s < n; ++s) {
+    balance[s] = ballots[s].balance;
+    all[s] = ballots[s].total;
   }
-  using Candidate = std::pair<float, std::int32_t>;
-  std::priority_queue<Candidate> queue;
-  const auto keyOf = [&](std::size_t s) {
-    return support[s].total > 0.F ? support[s].balance * support[s].balance / support[s].total
-                                  : 0.F;
+  for (std::size_t v = 0; v < votes.size(); ++v) {
+    for (const std::int32_t s : {votes[v].a, votes[v].b}) {
+      borders[at(s)].push_back(static_cast<std::uint32_t>(v));
+      all[at(s)] += votes[v].absolute;
+    }
+  }
+  struct Candidate {
+    float sureness;
+    std::size_t segment;
+    bool operator<(const Candidate& o) const {
+      return sureness != o.sureness ? sureness < o.sureness : segment > o.segment;
+    }
   };
-  const auto tell = [&](std::size_t s) {
+  std::priority_queue<Candidate> queue;
+  const auto surenessOf = [&](std::size_t s) { return std::fabs(balance[s]) / all[s]; };
+  const auto tellNeighbors = [&](std::size_t s) {
     for (const std::uint32_t v : borders[s]) {
-      const BorderVote& vote = votes[v];
-      const auto other = at(at(vote.a) == s ? vote.b : vote.a);
-      if (decided[other]) continue;
-      support[other].add({vote.weight, vote.absolute}, signs[s]);
-      queue.emplace(keyOf(other), -static_cast<std::int32_t>(other));
+      const std::size_t other = at(at(votes[v].a) == s ? votes[v].b : votes[v].a);
+      if (decided[other] || votes[v].weight == 0.F) continue;
+      balance[other] += votes[v].weight * static_cast<float>(signs[s]);
+      queue.push({surenessOf(other), other});
     }
   };
   for (std::size_t s = 0; s < n; ++s) {
-    if (decided[s]) tell(s);
+    if (decided[s]) tellNeighbors(s);
   }
   while (!queue.empty()) {
-    const auto [key, name] = queue.top();
+    const Candidate next = queue.top();
     queue.pop();
-    const auto s = at(-name);
-    if (decided[s] || key != keyOf(s) || key == 0.F) continue;
-    signs[s] = support[s].balance < 0.F ? std::int8_t{-1} : std::int8_t{1};
+    const std::size_t s = next.segment;
+    // What has heard more since is in the queue again.
+    if (decided[s] || next.sureness != surenessOf(s) || balance[s] == 0.F) continue;
+    signs[s] = balance[s] < 0.F ? std::int8_t{-1} : std::int8_t{1};
     decided[s] = true;
-    tell(s);
+    tellNeighbors(s);
   }
 }
 

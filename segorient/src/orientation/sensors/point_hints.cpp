@@ -17,8 +17,8 @@ using Vector = std::array<float, 3>;
 
 // In the cloud's unit, where its extent is about 1: the square is still a number.
 constexpr double kFar = 1e15;
-// So far that all points see it in one direction, by .006 degrees, and still tell by distance who is
-// before whom.
+// So far that all points see it in one direction, by .006 degrees, and still tell by distance who
+// is before whom.
 constexpr double kSeenAlongOneDirection = 1e4;
 
 // In the unit of a PreparedCloud; what is farther than floats can square is brought nearer.

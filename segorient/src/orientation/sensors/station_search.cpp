@@ -188,8 +188,8 @@ FittedPlace fitBeside(const DensityPatches& patches, const FittedPlace& place) {
   constexpr double kStep = 0.02;
   constexpr int kEvaluations = 200;
   FittedPlace beside = place;
-  beside.cost = refinePlace(patches, kStep * extentOf(patches).diagonal(), true, kEvaluations,
-                            beside.place);
+  beside.cost =
+      refinePlace(patches, kStep * extentOf(patches).diagonal(), true, kEvaluations, beside.place);
   return beside;
 }
 

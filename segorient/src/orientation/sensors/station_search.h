@@ -17,8 +17,8 @@ namespace segorient::detail {
 constexpr float kHopeless = 0.8F;
 
 /// A place and how far the densities deviate from its law.
-/// What a law may leave of the constant's deviation at the best of all places: true ones .04 to .31,
-/// solids and sheets .99 and more, several stations around an object from .42 on.
+/// What a law may leave of the constant's deviation at the best of all places: true ones .04 to
+/// .31, solids and sheets .99 and more, several stations around an object from .42 on.
 constexpr float kSureFound = 0.33F;
 /// A place that somebody names is kept unless one beside it explains this much more.
 constexpr float kMuchBetter = 0.6F;
