@@ -191,7 +191,7 @@ int runCheck(const std::vector<std::string>& words) {
                          common.threads);
   }
   // "None contradicts" would be said of nothing.
-  if (check.judged == 0 && check.without_normal > 0) {
+  if (!check.faults.empty() && check.without_normal == check.faults.size()) {
     throw FileError(path, "has no normals to check: all are zero or not finite");
   }
   if (report) report->write(reportText(check, points.origin()));

@@ -69,9 +69,20 @@ bool isIdentity(const std::array<std::array<double, 4>, 4>& m) {
   return true;
 }
 
+// Whether the matrix leaves no volume, or none that is a number.
+bool flattens(const std::array<std::array<double, 4>, 4>& m) {
+  constexpr double kRounding = 1e-9;
+  double product = 1.0;
+  for (std::size_t r = 0; r < 3; ++r) product *= std::hypot(m[r][0], m[r][1], m[r][2]);
+  const double volume = m[0][0] * (m[1][1] * m[2][2] - m[1][2] * m[2][1]) -
+                        m[0][1] * (m[1][0] * m[2][2] - m[1][2] * m[2][0]) +
+                        m[0][2] * (m[1][0] * m[2][1] - m[1][1] * m[2][0]);
+  return !(std::fabs(volume) > kRounding * product);
+}
+
 // Scanner's place and axes, then the matrix that brings the points to where they belong. Both say
 // the same but where a program has moved the points already and left the matrix empty.
-void readPose(InputFile& file, Scan& scan) {
+void readPose(InputFile& file, std::size_t number, Scan& scan) {
   const std::vector<double> place = headerLine(file, 3);
   for (int axis = 0; axis < 3; ++axis) headerLine(file, 3);
   for (auto& row : scan.pose) {
@@ -79,6 +90,9 @@ void readPose(InputFile& file, Scan& scan) {
     std::copy(line.begin(), line.end(), row.begin());
   }
   auto& m = scan.pose;
+  if (flattens(m)) {
+    file.fail("has a pose that would flatten all points of scan " + std::to_string(number));
+  }
   const bool last_row = m[3][0] == 0.0 && m[3][1] == 0.0 && m[3][2] == 0.0;
   const bool last_column = m[0][3] == 0.0 && m[1][3] == 0.0 && m[2][3] == 0.0;
   if (last_row && !last_column) {  // written for column vectors
@@ -106,7 +120,7 @@ bool readScan(InputFile& file, std::size_t number, std::size_t& numbers_a_point,
   scan.columns = gridSize(file, row);
   if (!numbersOf(file, row)) file.fail("is cut short: it ends in a scan's header");
   scan.rows = gridSize(file, row);
-  readPose(file, scan);
+  readPose(file, number, scan);
   const std::uint64_t size = std::uint64_t{scan.columns} * scan.rows;
   constexpr std::uint64_t kLeastBytes = 6;  // "0 0 0" and the line's end
   if (size > (file.remaining() + 1) / kLeastBytes) {

@@ -30,6 +30,16 @@ bool known(const Facts& facts) {
                      [](const SegmentFact& s) { return s.confidence >= 0.F; });
 }
 
+std::vector<std::array<double, 3>> someOf(const std::set<std::array<double, 3>>& places) {
+  std::vector<std::array<double, 3>> out;
+  const std::size_t step = places.size() / kMostSensors + 1;
+  std::size_t i = 0;
+  for (const auto& p : places) {
+    if (i++ % step == 0) out.push_back(p);
+  }
+  return out;
+}
+
 std::string shortNumber(double value) {
   char text[32];
   std::snprintf(text, sizeof(text), "%.4g", value);
@@ -69,7 +79,7 @@ std::uint32_t labelOf(const CloudTable& table, const Field* field, std::size_t r
 PointSensors::PointSensors(const CloudTable& table, const Facts& facts) : table_(table) {
   fields_ = {table.find("vp_x"), table.find("vp_y"), table.find("vp_z")};
   if (std::find(fields_.begin(), fields_.end(), nullptr) != fields_.end()) fields_ = {};
-  if (facts.sensors_told) told_ = facts.sensors;
+  if (facts.sensors_told) told_ = someOf({facts.sensors.begin(), facts.sensors.end()});
 }
 
 bool PointSensors::at(std::size_t row, std::array<double, 3>& place) const {
@@ -111,13 +121,7 @@ std::vector<std::array<double, 3>> sensorsOfPoints(const CloudTable& table) {
   for (std::size_t i = 0; i < table.size && sensors.any(); ++i) {
     if (sensors.at(i, place)) places.insert(place);
   }
-  std::vector<std::array<double, 3>> out;
-  const std::size_t step = places.size() / kMostSensors + 1;
-  std::size_t i = 0;
-  for (const auto& p : places) {
-    if (i++ % step == 0) out.push_back(p);
-  }
-  return out;
+  return someOf(places);
 }
 
 Coloring parseColoring(const std::string& name, const CloudTable& table, const std::string& path,

@@ -49,7 +49,8 @@ class PointSensors {
   /// What the fields say. False where it is not known.
   bool at(std::size_t row, std::array<double, 3>& place) const;
   /// The side of a point whose sensor is known: its true one faces it. Of several that may have
-  /// seen it, its true side faces the nearest; the wrong one, none. `side` where that is not known.
+  /// seen it (a sample of them where they are many), its true side faces the nearest; the wrong
+  /// one, none. `side` where that is not known.
   Side side(std::size_t row, const std::array<float, 3>& normal, Side side) const;
 
  private:

@@ -25,9 +25,8 @@ void printNotFollowed(const std::vector<KnownSensor>& sensors, const std::array<
   for (const KnownSensor& s : sensors) {
     if (s.used) continue;
     const std::string scan = s.scan < 0 ? "" : " of scan " + std::to_string(s.scan);
-    std::printf("%-*sthe sensor%s at (%g, %g, %g) contradicts the surface of its %zu points\n",
-                column, "not followed", scan.c_str(),
-                origin[0] + static_cast<double>(s.position[0]),
+    std::printf("%-*sthe sensor%s at (%g, %g, %g): its %zu points contradict it\n", column,
+                "not followed", scan.c_str(), origin[0] + static_cast<double>(s.position[0]),
                 origin[1] + static_cast<double>(s.position[1]),
                 origin[2] + static_cast<double>(s.position[2]), s.points);
   }

@@ -13,7 +13,7 @@ namespace segorient::program {
 /// "station at (x, y, z), ...": one sensor in a line. \param origin added to its position
 std::string describeSensor(const FoundSensor& sensor, const std::array<double, 3>& origin);
 
-/// A line on standard output for each sensor that was given and is not followed.
+/// A line on standard output for each sensor that is not followed.
 /// \param origin added to positions \param column where text after the line's name begins
 void printNotFollowed(const std::vector<KnownSensor>& sensors, const std::array<double, 3>& origin,
                       int column);

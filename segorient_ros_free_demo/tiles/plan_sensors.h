@@ -21,8 +21,10 @@ namespace segorient::program {
 class PlacesSaid {
  public:
   using Place = TileTree::Place;
-  void add(const Place& p) {
-    const bool known = std::isfinite(p[0]) && std::isfinite(p[1]) && std::isfinite(p[2]);
+  /// \param point the place of the point itself says nothing
+  void add(const Place& p, const Place& point) {
+    const bool known =
+        std::isfinite(p[0]) && std::isfinite(p[1]) && std::isfinite(p[2]) && p != point;
     if (!first_) first_ = p;
     one_ = one_ && known && p == *first_;
     ++points_;

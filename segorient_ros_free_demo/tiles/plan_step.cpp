@@ -61,13 +61,16 @@ void drawSample(const Plan& plan, const StepProgress& progress, const Begin& beg
       if (!stream.next(block, static_cast<std::size_t>(page))) break;
       const auto xyz = block.xyz();
       const bool says_places = plan.has_viewpoints && block.hasViewpoints();
-      if (plan.has_viewpoints && !says_places) said.add(headerPlace(block));
       for (std::size_t i = 0; i < block.size; ++i) {
         if (!all && PointSample::scatter(in.first_row + row + i) % kOfPage != 0) continue;
         const Place place = block.triple(xyz, i);
         if (!isFinite(place)) continue;
         sample.add(in.first_row + row + i, place);
-        if (says_places) said.add(block.triple(block.viewpoints(), i));
+        if (says_places) {
+          said.add(block.triple(block.viewpoints(), i), place);
+        } else if (plan.has_viewpoints) {
+          said.add(headerPlace(block), place);
+        }
       }
       if (progress) {
         progress(0.35 * static_cast<double>(in.first_row + row) / static_cast<double>(plan.rows));
@@ -97,8 +100,11 @@ class Viewpoints {
   }
   std::array<float, 3> of(const CloudTable& block, std::size_t row, std::uint64_t number,
                           const Place& place, const Place& origin) const {
-    const std::array<float, 3> given =
-        near(columns_ ? block.triple(block.viewpoints(), row) : header_, origin);
+    Place said = columns_ ? block.triple(block.viewpoints(), row) : header_;
+    if (said == place)
+      said.fill(std::numeric_limits<double>::quiet_NaN());  // as some files have it where nothing
+                                                            // is known
+    const std::array<float, 3> given = near(said, origin);
     const bool follows = sensors_.found() == 0 || sensors_.completesGiven();
     if (follows && (segorient::isFinite(given.data()) || sensors_.found() == 0)) return given;
     return sensors_.of(number, near(place, origin));

@@ -168,6 +168,8 @@ TEST(Check, UsageAndInputWithoutNormals) {
   EXPECT_EQ(run.status, 1) << "none contradicts would be said of nothing";
   EXPECT_NE(run.err.find("no normals to check"), std::string::npos) << run.err;
   EXPECT_EQ(directory.entries(), 3U);
+  const std::string one = directory.write("one.xyz", "0 0 0 0 0 0\n1 0 0 0 0 1\n0 1 0 0 0 1\n");
+  EXPECT_EQ(runProgram({"check", one}).status, 0) << "some have one";
 }
 
 }  // namespace

@@ -123,6 +123,9 @@ TEST(Ptx, FilesThatAreNotWhole) {
   EXPECT_NE(
       outcome(directory.write("big.ptx", "999999\n999999\n" + whole.substr(4))).find("cut short"),
       std::string::npos);
+  const std::string singular =
+      "1\n1\n5 6 7\n1 0 0\n0 1 0\n0 0 1\n1 0 0 0\n0 1 0 0\n1 1 0 0\n0 0 0 1\n1 2 3 0\n";
+  EXPECT_NE(outcome(directory.write("flat.ptx", singular)).find("flatten"), std::string::npos);
   EXPECT_NE(outcome(directory.write("half.ptx", "1.5\n3\n" + whole.substr(4))).find("grid"),
             std::string::npos);
 }

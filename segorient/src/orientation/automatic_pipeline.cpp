@@ -38,9 +38,10 @@ std::string sheetChoice(const AutoStages& stages) {
   return text.str();
 }
 
-// Places that are unknown, or those of the points themselves, as some files have them, say no more
-// than none.
+// Places of no point, and those of the points themselves, as some files have them, say no more than
+// none.
 std::shared_ptr<const OrientationHints> givenHints(const PointView& points,
+                                                   const PreparedCloud& cloud,
                                                    const PipelineOptions& options) {
   const auto& given = options.orientation.hints;
   if (!given) return std::make_shared<OrientationHints>();
@@ -48,7 +49,7 @@ std::shared_ptr<const OrientationHints> givenHints(const PointView& points,
   bool known = given->viewpoints.empty();
   for (std::size_t i = 0; i < rows && !known; ++i) {
     const float* place = &given->viewpoints[3 * i];
-    known = isFinite(place) && !std::equal(place, place + 3, points[i]);
+    known = cloud.pointOf(i) >= 0 && isFinite(place) && !std::equal(place, place + 3, points[i]);
   }
   if (known) return given;
   auto out = std::make_shared<OrientationHints>(*given);
@@ -59,8 +60,8 @@ std::shared_ptr<const OrientationHints> givenHints(const PointView& points,
 // Whether each point has been told its own sensor, and not all of that is to be relied on.
 bool isDoubtful(const OrientationHints& given, const std::vector<KnownSensor>& scans,
                 const PreparedCloud& cloud) {
-  return !given.viewpoints.empty() && !given.has_viewpoint && !given.has_direction &&
-         !onlyPlace(given, cloud.rows()) && leavesDoubt(scans, cloud);
+  return !scans.empty() && !given.viewpoints.empty() && !given.has_viewpoint &&
+         !given.has_direction && !onlyPlace(given, cloud.rows()) && leavesDoubt(scans, cloud);
 }
 
 // The default method, again where what is known of sensors turns out to be wrong or not to be
@@ -124,7 +125,7 @@ class AutomaticRun {
     if (!choice.sensors.sure()) return;
     std::vector<KnownSensor> scans = result.orientation.sensors;
     const std::optional<OrientationHints> completed =
-        completePlaces(given, *choice.hints, cloud_, result.orientation.sensor_of, scans);
+        completePlaces(given, *choice.hints, cloud_, result.orientation, scans);
     if (!completed) return;
     AutoStages second = orient(resolveHints(*completed, cloud_));
     if (seeBothSides(second.orientation.sensors)) return;
@@ -147,7 +148,7 @@ class AutomaticRun {
 void runAutomatic(const PointView& points, const PipelineOptions& options, StageClock& clock,
                   OrientedStages& work, PipelineReport& report) {
   AutoStages result = AutomaticRun(points, options, clock, work.surface.cloud, report)
-                          .run(*givenHints(points, options));
+                          .run(*givenHints(points, work.surface.cloud, options));
   report.k = result.k;
   report.spacing = result.spacing;
   report.noise = result.noise;

@@ -262,7 +262,7 @@ JoinedTiles TileJoiner::join(const JoinOptions& options) {
   const bool dropped = options.sensors_found ? detail::seeBothSides(orientation.sensors)
                                              : orientation.leavesAllToSurface();
   if (dropped) {
-    hints = hintsOf(detail::withoutPlaces(options.hints), {}, patches.cloud);
+    hints = hintsOf(detail::withoutSensors(options.hints), {}, patches.cloud);
     orientation = orient();
     out.sensors_dropped = true;
   }

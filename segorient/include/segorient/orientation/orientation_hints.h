@@ -28,10 +28,12 @@ struct OrganizedGrid {
 ///
 /// Where a point was seen from is a fact: its normal faces that place, and the surface around it
 /// decides only where the view is so grazing that the normal's own error could turn it, and where
-/// nothing is known. Points that contradict their sensor, as a wrong pose makes them, are left to
-/// the surface and reported (KnownSensor). One viewpoint for all points does not count for what
-/// closes in itself, unless the density of the points shows that they were seen from there, or
-/// `surface` is OPEN; and for none where surfaces go on behind what would hide them from it.
+/// nothing is known. Scans that contradict their sensor, as a wrong pose makes them, are reported
+/// (KnownSensor), and so are those that nothing confirms if sensors are found elsewhere. For their
+/// points, and for others without a place, sensors that are found tell, or else the surface. One
+/// viewpoint for all points does not count for what closes in itself, unless the density of the
+/// points shows that they were seen from there, or `surface` is OPEN; and for none where surfaces
+/// go on behind what would hide them from it.
 ///
 /// Seeds and normals are evidence: seeds weigh most. Each turns over connected components, and
 /// clusters of segments that borders do not hold firmly.

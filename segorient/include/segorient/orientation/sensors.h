@@ -22,8 +22,9 @@ struct KnownSensor {
   std::array<float, 3> position{0.F, 0.F, 0.F};  ///< in input coordinates
   std::size_t points = 0;                        ///< distinct points that are said to be its own
   std::size_t seen = 0;  ///< of these, those that it could see: others were left to the surface
-  /// False: it contradicts the surface, and nothing was turned to it. A place behind whose shadows
-  /// surfaces go on turns nothing anyway; of it this says whether the result suits it.
+  /// False: the surface or the density contradicts it, and nothing was turned to it. A place behind
+  /// whose shadows surfaces go on turns nothing anyway; of it this says whether the result suits
+  /// it.
   bool used = true;
   bool moving = false;  ///< many places together
   /// The scan that its points are of, as OrientationHints::scans numbers them; -1 = unknown, or of

@@ -89,7 +89,7 @@ AutoOrientation inTermsOfTheCloud(CoarseLevel& level, const std::vector<std::int
                                   const AutoOrientation& fine) {
   AutoOrientation out = std::move(level.found.orientation);
   out.sensors = fine.sensors;
-  out.toward = fine.toward;
+  static_cast<SeenPoints&>(out) = fine;
   out.place_idle = fine.place_idle;
   for (Contradiction& c : out.contradictions) {
     for (float& v : c.where) v *= level.cloud.unit();

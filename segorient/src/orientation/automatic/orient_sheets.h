@@ -15,22 +15,19 @@
 #include <vector>
 
 #include "orientation/automatic/border_votes.h"
+#include "orientation/sensors/known_sensors.h"
 #include "orientation/sensors/point_hints.h"
 #include "segmentation/sheet_segmentation.h"
 
 namespace segorient {
 
 /// What orientSheets() found beside the result itself.
-struct AutoOrientation {
+struct AutoOrientation : detail::SeenPoints {
   OrientationResult result;
   std::vector<ClusterOrientationResult> clusters;  ///< by descending number of points
   std::vector<Contradiction> contradictions;       ///< by descending weight
   bool place_idle = false;                         ///< the one place for all points decided nothing
   std::vector<KnownSensor> sensors;                ///< positions in the points' unit
-  std::vector<std::int32_t> sensor_of;             ///< per point, into `sensors`, -1 = none known
-  /// 3 floats a point: unit vector to the sensor that saw it, 0 where none is known or believed;
-  /// empty without any
-  std::vector<float> toward;
 
   /// Whether places were given, and they decided nothing: none is believed, or the surface knows
   /// better everywhere.

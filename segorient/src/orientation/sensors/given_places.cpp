@@ -9,6 +9,7 @@
 #include <limits>
 #include <utility>
 
+#include "common/at.h"
 #include "common/dot.h"
 #include "common/in_double.h"
 #include "common/unit_vector.h"
@@ -27,10 +28,12 @@ bool hasPlace(const std::vector<float>& places, std::size_t row) {
   return 3 * row + 2 < places.size() && isFinite(&places[3 * row]);
 }
 
-bool directionTo(const float* place, const float* from, float* out) {
+// Whether a place is in the direction of a sensor, as seen from a point.
+bool isTowards(const float* toward, const float* place, const float* from) {
   std::array<double, 3> v = inDouble(place);
   for (std::size_t a = 0; a < 3; ++a) v[a] -= static_cast<double>(from[a]);
-  return unitVector(v, out);
+  float direction[3];
+  return unitVector(v, direction) && static_cast<double>(dot(toward, direction)) >= kSameWay;
 }
 
 }  // namespace
@@ -48,32 +51,23 @@ bool leavesDoubt(const std::vector<KnownSensor>& scans, const PreparedCloud& clo
 
 std::optional<OrientationHints> completePlaces(const OrientationHints& given,
                                                const OrientationHints& found,
-                                               const PreparedCloud& cloud,
-                                               const std::vector<std::int32_t>& scan_of,
+                                               const PreparedCloud& cloud, const SeenPoints& seen,
                                                std::vector<KnownSensor>& scans) {
-  std::vector<std::size_t> both(scans.size(), 0);
-  std::vector<std::size_t> same(scans.size(), 0);
+  std::vector<std::size_t> elsewhere(scans.size(), 0);
   for (std::size_t i = 0; i < cloud.size(); ++i) {
     const std::size_t row = cloud.rowOf(i);
-    if (scan_of[i] < 0 || !hasPlace(given.viewpoints, row) || !hasPlace(found.viewpoints, row)) {
-      continue;
+    if (seen.sensor_of[i] < 0 || !hasPlace(found.viewpoints, row)) continue;
+    const std::array<float, 3> place = cloud.inUnit(
+        {found.viewpoints[3 * row], found.viewpoints[3 * row + 1], found.viewpoints[3 * row + 2]});
+    if (!isTowards(&seen.toward[3 * i], place.data(), cloud.points()[i])) {
+      ++elsewhere[at(seen.sensor_of[i])];
     }
-    const std::array<float, 3> from{cloud.unit() * cloud.points()[i][0],
-                                    cloud.unit() * cloud.points()[i][1],
-                                    cloud.unit() * cloud.points()[i][2]};
-    float a[3];
-    float b[3];
-    if (!directionTo(&given.viewpoints[3 * row], from.data(), a) ||
-        !directionTo(&found.viewpoints[3 * row], from.data(), b)) {
-      continue;
-    }
-    ++both[static_cast<std::size_t>(scan_of[i])];
-    if (dot(a, b) >= kSameWay) ++same[static_cast<std::size_t>(scan_of[i])];
   }
   const bool mixed_up =
       std::any_of(scans.begin(), scans.end(), [](const KnownSensor& s) { return !s.used; });
   for (std::size_t s = 0; s < scans.size(); ++s) {
-    if (scans[s].used && (mixed_up || !isConfirmed(scans[s])) && 2 * same[s] < both[s]) {
+    if (scans[s].used && (mixed_up || !isConfirmed(scans[s])) &&
+        2 * elsewhere[s] > scans[s].points) {
       scans[s].used = false;
     }
   }
@@ -82,8 +76,8 @@ std::optional<OrientationHints> completePlaces(const OrientationHints& given,
   bool changed = false;
   for (std::size_t row = 0; row < cloud.rows(); ++row) {
     if (cloud.pointOf(row) < 0) continue;
-    const std::int32_t scan = scan_of[static_cast<std::size_t>(cloud.pointOf(row))];
-    if (scan >= 0 && scans[static_cast<std::size_t>(scan)].used) continue;
+    const std::int32_t scan = seen.sensor_of[at(cloud.pointOf(row))];
+    if (scan >= 0 && scans[at(scan)].used) continue;
     std::copy_n(&found.viewpoints[3 * row], 3, &out.viewpoints[3 * row]);
     changed = changed || isFinite(&found.viewpoints[3 * row]);
   }

@@ -9,6 +9,7 @@
 #include <optional>
 #include <vector>
 
+#include "orientation/sensors/known_sensors.h"
 #include "search/prepared_cloud.h"
 
 namespace segorient::detail {
@@ -19,17 +20,16 @@ namespace segorient::detail {
 bool leavesDoubt(const std::vector<KnownSensor>& scans, const PreparedCloud& cloud);
 
 /// Places that were given point by point, completed by what a search found without them: rows that
-/// have none take it, and all rows of a scan that it contradicts. It may contradict a scan that
-/// nothing confirms, and any once some scan contradicts the surface, as poses that were mixed up
-/// are wrong together. It does if most of the scan's points were seen from another direction.
+/// have none take it, and all rows of scans that are not used, or that it contradicts. It may
+/// contradict a scan that nothing confirms, and any once one is not used, as poses that were mixed
+/// up are wrong together. It does if most of the scan's points were seen from another direction.
 /// \param given viewpoints by row \param found the same, of sensors that are sure
-/// \param scan_of each point's scan, into `scans`, -1 = none
-/// \param scans what is contradicted is no longer used
+/// \param seen by the sensors that were given: both members are filled
+/// \param scans the sensors; what is contradicted is no longer used
 /// \return none where that changes nothing
 std::optional<OrientationHints> completePlaces(const OrientationHints& given,
                                                const OrientationHints& found,
-                                               const PreparedCloud& cloud,
-                                               const std::vector<std::int32_t>& scan_of,
+                                               const PreparedCloud& cloud, const SeenPoints& seen,
                                                std::vector<KnownSensor>& scans);
 
 }  // namespace segorient::detail

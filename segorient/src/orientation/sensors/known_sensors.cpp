@@ -69,7 +69,8 @@ class Finder {
   void listScans(const std::vector<float>& sensors) {
     std::vector<std::int32_t> place_of;
     std::vector<Place> places = numberPlaces(sensors, place_of);
-    const std::vector<std::int32_t> scan_of_place = splitByScan(hints_.scans, places, place_of);
+    const std::vector<std::int32_t> scan_of_place =
+        splitByScan(hints_.scans, kLeastPoints, places, place_of);
     std::vector<std::uint32_t> size(places.size(), 0);
     for (const std::int32_t p : place_of) {
       if (p >= 0) ++size[at(p)];

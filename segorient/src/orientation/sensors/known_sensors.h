@@ -31,11 +31,18 @@ inline bool seeBothSides(const std::vector<KnownSensor>& sensors) {
                      [](const KnownSensor& s) { return !s.used && s.contrary > kMostContrary; });
 }
 
+/// Points and the sensors that saw them; both empty where no sensor is known.
+struct SeenPoints {
+  std::vector<std::int32_t> sensor_of;  ///< by point, -1 = none known
+  /// 3 floats a point: unit vector to that sensor, 0 where none is known or believed
+  std::vector<float> toward;
+};
+
 /// Where each point was seen from, as far as that is known and not contradicted.
 struct KnownSensors {
   std::vector<float> toward;       ///< 3 a point: unit vector to its sensor; 0 = unknown
   std::vector<std::int32_t> scan;  ///< into `scans`, -1 = none
-  std::vector<KnownSensor> scans;  ///< positions in the cloud's unit, by position
+  std::vector<KnownSensor> scans;  ///< positions in the cloud's unit
   /// The one place for all points, which a closed surface may contradict as a whole; else every
   /// point has been told its own.
   bool common = false;
@@ -63,8 +70,9 @@ struct KnownSensors {
 /// Who saw what, checked.
 ///
 /// Scans are points with one sensor. A scan is not followed if its points contradict its sensor
-/// (some lie behind others, or a smooth sheet would have to face both ways), unless their density
-/// confirms that it was there. PointHints::toward is taken as it is; what faces up is towards +z.
+/// (shadows deny it, a place beside it explains their density far better, or some lie behind others
+/// or a smooth sheet would have to face both ways, unless their density confirms that it was
+/// there). PointHints::toward is taken as it is; what faces up is towards +z.
 /// \param spacing one a point: mean distance to the 6 nearest
 KnownSensors findKnownSensors(const PointView& points, const Neighborhoods& neighborhoods,
                               const float* spacing, const PointHints& hints, int threads);

@@ -65,26 +65,44 @@ std::vector<Place> numberPlaces(const std::vector<float>& places_of_points,
 }
 
 std::vector<std::int32_t> splitByScan(const std::vector<std::int32_t>& scan_of_points,
-                                      std::vector<Place>& places, std::vector<std::int32_t>& of) {
+                                      std::size_t least, std::vector<Place>& places,
+                                      std::vector<std::int32_t>& of) {
   constexpr std::int32_t kNotSeen = -2;
   std::vector<std::int32_t> scan_of(places.size(), kNotSeen);
-  std::map<std::pair<std::int32_t, std::int32_t>, std::int32_t> others;
-  for (std::size_t i = 0; i < scan_of_points.size() && places.size() > 1; ++i) {
+  if (scan_of_points.empty()) scan_of.assign(places.size(), -1);
+  // Points of the scans that a place has beside its first.
+  std::map<std::pair<std::int32_t, std::int32_t>, std::size_t> others;
+  std::vector<std::size_t> first(places.size(), 0);
+  for (std::size_t i = 0; i < scan_of_points.size(); ++i) {
     if (of[i] < 0) continue;
-    const std::size_t place = at(of[i]);
-    const std::int32_t scan = scan_of_points[i];
-    if (scan_of[place] == kNotSeen) scan_of[place] = scan;
-    if (scan_of[place] == scan) continue;
-    const auto next = static_cast<std::int32_t>(places.size());
-    const auto [other, is_new] = others.emplace(std::make_pair(of[i], scan), next);
-    if (is_new) {
-      const Place same = places[place];
-      places.push_back(same);
-      scan_of.push_back(scan);
+    if (scan_of[at(of[i])] == kNotSeen) scan_of[at(of[i])] = scan_of_points[i];
+    if (scan_of[at(of[i])] == scan_of_points[i]) {
+      ++first[at(of[i])];
+    } else {
+      ++others[{of[i], scan_of_points[i]}];
     }
-    of[i] = other->second;
   }
-  for (std::int32_t& scan : scan_of) scan = std::max(scan, -1);
+  std::map<std::pair<std::int32_t, std::int32_t>, std::int32_t> split;
+  const bool several = places.size() > 1;
+  std::vector<std::size_t> kept = first;
+  for (const auto& [part, points] : others) {
+    const std::size_t place = at(part.first);
+    if (several && points >= least) {
+      const Place same = places[place];
+      split.emplace(part, static_cast<std::int32_t>(places.size()));
+      places.push_back(same);
+      scan_of.push_back(part.second);
+    } else {
+      kept[place] += points;
+    }
+  }
+  for (std::size_t p = 0; p < first.size(); ++p) {
+    if (kept[p] != first[p]) scan_of[p] = -1;
+  }
+  for (std::size_t i = 0; !split.empty() && i < scan_of_points.size(); ++i) {
+    const auto part = split.find({of[i], scan_of_points[i]});
+    if (part != split.end()) of[i] = part->second;
+  }
   return scan_of;
 }
 

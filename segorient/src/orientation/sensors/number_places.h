@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
@@ -14,13 +15,15 @@ namespace segorient::detail {
 std::vector<std::array<float, 3>> numberPlaces(const std::vector<float>& places_of_points,
                                                std::vector<std::int32_t>& of);
 
-/// Gives each scan that is said to have been seen from one of several places a place of its own.
+/// Gives each scan that is said to have been seen from the place of another one, of several places,
+/// a place of its own.
 /// \param scan_of_points -1 = unknown; empty where none is known
+/// \param least points: what has fewer stays with the other scan
 /// \param places those of numberPlaces(); repeated at the end for further scans
 /// \param of of numberPlaces(); changed
-/// \return the scan of each place, -1 = unknown
+/// \return the scan of each place, -1 = unknown or several
 std::vector<std::int32_t> splitByScan(const std::vector<std::int32_t>& scan_of_points,
-                                      std::vector<std::array<float, 3>>& places,
+                                      std::size_t least, std::vector<std::array<float, 3>>& places,
                                       std::vector<std::int32_t>& of);
 
 }  // namespace segorient::detail

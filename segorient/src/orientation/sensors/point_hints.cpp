@@ -78,7 +78,8 @@ void addSensors(const OrientationHints& hints, const PreparedCloud& cloud,
     if (row < rowsOf(hints.viewpoints)) {
       const float* given = &hints.viewpoints[3 * row];
       const Vector own = scaled({given[0], given[1], given[2]}, cloud.unit());
-      if (isFinite(own.data())) {
+      const float* itself = cloud.points()[static_cast<std::size_t>(cloud.pointOf(row))];
+      if (isFinite(own.data()) && !std::equal(own.begin(), own.end(), itself)) {
         place = own;
         known = true;
       }
@@ -86,11 +87,15 @@ void addSensors(const OrientationHints& hints, const PreparedCloud& cloud,
     if (!known) continue;
     const auto point = static_cast<std::size_t>(cloud.pointOf(row));
     float* out = &sensors[3 * point];
-    if (isFinite(out) && !std::lexicographical_compare(place.begin(), place.end(), out, out + 3)) {
+    const std::int32_t scan = row < hints.scans.size() ? std::max(-1, hints.scans[row]) : -1;
+    const bool same = std::equal(place.begin(), place.end(), out);
+    if (same && !scans.empty()) scans[point] = std::min(scans[point], scan);
+    if (same || (isFinite(out) &&
+                 !std::lexicographical_compare(place.begin(), place.end(), out, out + 3))) {
       continue;
     }
     std::copy(place.begin(), place.end(), out);
-    if (row < hints.scans.size()) scans[point] = std::max(-1, hints.scans[row]);
+    if (!scans.empty()) scans[point] = scan;
   }
   const auto known = [](float v) { return std::isfinite(v); };
   if (std::none_of(sensors.begin(), sensors.end(), known)) {

@@ -43,7 +43,7 @@ SensorReport addFoundSensors(const PointView& points, PreparedCloud& cloud, int 
 SEGORIENT_ORIENTATION_EXPORT OrientationHints withoutPlaces(const OrientationHints& hints);
 
 /// Nor of the direction that it was in.
-OrientationHints withoutSensors(const OrientationHints& hints);
+SEGORIENT_ORIENTATION_EXPORT OrientationHints withoutSensors(const OrientationHints& hints);
 
 /// The place that all rows are said to have been seen from, if that is one.
 std::optional<std::array<float, 3>> onlyPlace(const OrientationHints& hints, std::size_t rows);

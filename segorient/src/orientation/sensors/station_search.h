@@ -16,13 +16,13 @@ namespace segorient::detail {
 /// moved, 1.0 and more on layers and bodies.
 constexpr float kHopeless = 0.8F;
 
-/// A place and how far the densities deviate from its law.
 /// What a law may leave of the constant's deviation at the best of all places: true ones .04 to
 /// .31, solids and sheets .99 and more, several stations around an object from .42 on.
 constexpr float kSureFound = 0.33F;
 /// A place that somebody names is kept unless one beside it explains this much more.
 constexpr float kMuchBetter = 0.6F;
 
+/// A place and how far the densities deviate from its law.
 struct FittedPlace {
   Place place;
   float cost = 0.F;
@@ -30,6 +30,7 @@ struct FittedPlace {
 
 /// One known position: the law, and its axis, that fit best there.
 FittedPlace fitAt(const DensityPatches& patches, const std::array<double, 3>& position);
+
 /// The place of least cost near another one.
 FittedPlace fitBeside(const DensityPatches& patches, const FittedPlace& place);
 
