@@ -25,16 +25,18 @@ class KnownOptions {
                    "of orient: hard segments are violet, dark where they face away (colour "
                    "orientation); confidences of segments; contradictions are ringed")(
         "sensors", po::value(&sensors_),
-        "places of sensors to mark, which points faced: JSON of segorient sensors, or a cloud; "
-        "else as the file says (its place, or fields vp_x, vp_y, vp_z)");
+        "places of sensors to mark: JSON of segorient sensors (what faces sure ones is right, if "
+        "they saw all points), or a cloud; else as the file says (its place, or fields vp_x, vp_y, "
+        "vp_z)");
   }
   Facts read(const CloudTable& table) const {
     Facts facts;
     if (!report_.empty()) facts = readReport(report_);
     const std::array<double, 3> own{table.viewpoint[0], table.viewpoint[1], table.viewpoint[2]};
     if (!sensors_.empty()) {
-      facts.sensors = readSensors(sensors_);
-      facts.sensors_told = true;
+      std::size_t explained = 0;
+      facts.sensors = readSensors(sensors_, &explained);
+      facts.saw_all = 100 * explained >= 99 * table.size;
     } else if (own != std::array<double, 3>{0.0, 0.0, 0.0}) {
       facts.sensors = {own};
     } else {

@@ -79,7 +79,7 @@ std::uint32_t labelOf(const CloudTable& table, const Field* field, std::size_t r
 PointSensors::PointSensors(const CloudTable& table, const Facts& facts) : table_(table) {
   fields_ = {table.find("vp_x"), table.find("vp_y"), table.find("vp_z")};
   if (std::find(fields_.begin(), fields_.end(), nullptr) != fields_.end()) fields_ = {};
-  if (facts.sensors_told) told_ = someOf({facts.sensors.begin(), facts.sensors.end()});
+  if (facts.saw_all) told_ = someOf({facts.sensors.begin(), facts.sensors.end()});
 }
 
 bool PointSensors::at(std::size_t row, std::array<double, 3>& place) const {
@@ -89,7 +89,7 @@ bool PointSensors::at(std::size_t row, std::array<double, 3>& place) const {
 }
 
 Side PointSensors::side(std::size_t row, const std::array<float, 3>& normal, Side side) const {
-  if (!std::isfinite(normal[0])) return side;
+  if (!any() || !std::isfinite(normal[0])) return side;
   const std::array<double, 3> from = table_.position(row);
   // Nearest first: distance, and cosine of the normal.
   std::pair<double, double> nearest{std::numeric_limits<double>::infinity(), 0.0};

@@ -91,12 +91,17 @@ Facts readReport(const std::string& path) {
   return facts;
 }
 
-std::vector<std::array<double, 3>> readSensors(const std::string& path) {
+std::vector<std::array<double, 3>> readSensors(const std::string& path, std::size_t* explained) {
   std::vector<std::array<double, 3>> out;
   if (fileEnding(path) == ".json") {
     try {
       const Tree tree = readTree(path);
-      for (const auto& [key, s] : tree.get_child("sensors")) out.push_back(place(s));
+      for (const auto& [key, s] : tree.get_child("sensors")) {
+        out.push_back(place(s));
+        if (explained != nullptr && s.get<bool>("sure", false)) {
+          *explained += s.get<std::size_t>("points", 0);
+        }
+      }
     } catch (const boost::property_tree::ptree_error&) {
       throw FileError(path, "has no list of sensors");
     }

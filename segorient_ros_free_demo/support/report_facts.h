@@ -23,7 +23,7 @@ struct Facts {
   std::vector<SegmentFact> segments;  ///< by label; may be shorter than there are labels
   std::vector<std::array<double, 3>> contradictions;
   std::vector<std::array<double, 3>> sensors;
-  bool sensors_told = false;  ///< whether somebody said that these saw the points
+  bool saw_all = false;  ///< whether it is known that these saw next to all points
 };
 
 /// Of `orient --report`. Throws FileError if it is none.
@@ -31,6 +31,8 @@ Facts readReport(const std::string& path);
 
 /// Places of sensors: JSON with an array `sensors` whose items have x, y, z or a `position` of
 /// three numbers, else a cloud of these places. Throws FileError.
-std::vector<std::array<double, 3>> readSensors(const std::string& path);
+/// \param explained the points that those of them explain that the JSON calls sure are added
+std::vector<std::array<double, 3>> readSensors(const std::string& path,
+                                               std::size_t* explained = nullptr);
 
 }  // namespace segorient::program

@@ -22,7 +22,10 @@ std::vector<float> twoSquares() {
   std::uniform_real_distribution<float> unit(0.F, 1.F);
   std::vector<float> xyz;
   for (int i = 0; i < 1600; ++i) {
-    for (const float v : {unit(rng), unit(rng), i < 800 ? 0.F : 5.F}) xyz.push_back(v);
+    const bool second = i >= 800;  // higher, and beside the first: it hides nothing
+    for (const float v : {unit(rng) + (second ? 2.F : 0.F), unit(rng), second ? 5.F : 0.F}) {
+      xyz.push_back(v);
+    }
   }
   return xyz;
 }

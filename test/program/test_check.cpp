@@ -163,13 +163,18 @@ TEST(Check, UsageAndInputWithoutNormals) {
   EXPECT_EQ(runProgram({"check", fandisk(), "--picture", directory.file("a.jpg")}).status, 2);
   const std::string few = directory.write("few.xyz", "0 0 0 0 0 1\n1 0 0 0 0 1\n0 1 0 0 0 1\n");
   EXPECT_EQ(runProgram({"check", few}).status, 0) << "nothing to judge is nothing at fault";
-  const std::string none = directory.write("none.xyz", "0 0 0 0 0 0\n1 0 0 0 0 0\n0 1 0 0 0 0\n");
+  const auto withNormals = [&](const char* name, const char* first) {
+    return directory.write(name, std::string("ply\nformat ascii 1.0\nelement vertex 3\n") +
+                                     "property float x\nproperty float y\nproperty float z\n" +
+                                     "property float nx\nproperty float ny\nproperty float nz\n" +
+                                     "end_header\n0 0 0 " + first + "\n1 0 0 0 0 0\n0 1 0 0 0 0\n");
+  };
+  const std::string none = withNormals("none.ply", "0 0 0");
   const Outcome run = runProgram({"check", none, directory.file("out.ply")});
   EXPECT_EQ(run.status, 1) << "none contradicts would be said of nothing";
-  EXPECT_NE(run.err.find("no normals to check"), std::string::npos) << run.err;
+  EXPECT_NE(run.err.find("all are zero"), std::string::npos) << run.err;
   EXPECT_EQ(directory.entries(), 3U);
-  const std::string one = directory.write("one.xyz", "0 0 0 0 0 0\n1 0 0 0 0 1\n0 1 0 0 0 1\n");
-  EXPECT_EQ(runProgram({"check", one}).status, 0) << "some have one";
+  EXPECT_EQ(runProgram({"check", withNormals("one.ply", "0 0 1")}).status, 0) << "one is there";
 }
 
 }  // namespace

@@ -12,6 +12,7 @@
 #include "render/page/disc_radii.h"
 #include "render/page/sides.h"
 #include "render/page/thinning.h"
+#include "render/palette.h"
 #include "render/scene.h"
 #include "scratch_directory.h"
 
@@ -88,6 +89,24 @@ std::size_t redFromAllSides(const CloudTable& table) {
     }
   }
   return red;
+}
+
+// Who is nearest counts; what faces none is wrong; else it is for others to tell.
+TEST(Pictures, SidesByTheSensorsThatSomebodyNames) {
+  const ScratchDirectory directory;
+  const CloudTable table = tableOf(directory, {{{0.0, 0.0, 0.0}, {0.0, 0.0, 1.0}}});
+  program::Facts facts;
+  facts.sensors = {{0.0, 0.0, 2.0}, {0.0, 0.0, -5.0}};
+  EXPECT_FALSE(program::PointSensors(table, facts).any()) << "need not have seen it";
+  facts.saw_all = true;
+  const program::PointSensors sensors(table, facts);
+  EXPECT_TRUE(sensors.any());
+  EXPECT_EQ(sensors.side(0, {0.F, 0.F, 1.F}, program::Side::Open), program::Side::Outer);
+  EXPECT_EQ(sensors.side(0, {0.F, 0.F, -1.F}, program::Side::Open), program::Side::Open);
+  EXPECT_EQ(sensors.side(0, {1.F, 0.F, 0.F}, program::Side::Open), program::Side::Outer);
+  facts.sensors = {{0.0, 0.0, 2.0}, {0.0, 1.0, 5.0}};
+  EXPECT_EQ(program::PointSensors(table, facts).side(0, {0.F, 0.F, -1.F}, program::Side::Open),
+            program::Side::Contrary);
 }
 
 TEST(Pictures, ACloudThatIsRightHasNoRedFromAnySide) {

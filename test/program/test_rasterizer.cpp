@@ -228,6 +228,13 @@ TEST(Sensors, AreReadFromJsonOrACloud) {
           "a.json", "{\"sensors\": [{\"x\": 1, \"y\": 2, \"z\": 3}, {\"position\": [4, 5, 6]}]}")),
       expected);
   EXPECT_EQ(program::readSensors(directory.write("a.xyz", "1 2 3\n4 5 6\n")), expected);
+  std::size_t explained = 0;
+  program::readSensors(
+      directory.write("c.json",
+                      R"({"sensors": [{"x": 1, "y": 2, "z": 3, "points": 7, "sure": true},)"
+                      R"({"x": 1, "y": 2, "z": 3, "points": 5, "sure": false}]})"),
+      &explained);
+  EXPECT_EQ(explained, 7U);
   for (const std::string text : {"", "{}", "{\"sensors\": [{\"position\": [1, 2]}]}",
                                  "{\"sensors\": [{\"x\": 1, \"y\": \"nan\", \"z\": 2}]}"}) {
     EXPECT_THROW(program::readSensors(directory.write("b.json", text)), program::FileError) << text;

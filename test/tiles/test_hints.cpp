@@ -12,6 +12,7 @@
 #include "run_program.h"
 #include "sensor_scans.h"
 #include "tile_clouds.h"
+#include "tiles/plan_sensors.h"
 
 namespace segorient::test {
 namespace {
@@ -243,6 +244,47 @@ TEST_F(Hints, UnknownPlacesAreNone) {
   std::ifstream file(report);
   const std::string text{std::istreambuf_iterator<char>(file), {}};
   EXPECT_NE(text.find("\"viewpoint_left_aside\": false"), std::string::npos) << text;
+}
+
+// Points that do not know who saw them are told by a search, as in memory.
+TEST_F(Hints, PlacesOfSomePointsAreCompleted) {
+  Scan scan = scanFrom({2.0, 1.5, 1.4}, 3.0);
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  std::vector<double> rows;
+  for (std::size_t i = 0; i < scan.rows().size(); i += 3) {
+    const float* p = &scan.rows()[i];
+    const double known = p[0] < 1.5F ? 1.0 : nan;
+    rows.insert(rows.end(), {static_cast<double>(p[0]), static_cast<double>(p[1]),
+                             static_cast<double>(p[2]), 2.0 * known, 1.5 * known, 1.4 * known});
+  }
+  const std::string in =
+      writeFields(scratch.file("in.ply"), {"x", "y", "z", "vp_x", "vp_y", "vp_z"}, rows);
+  const std::string whole = scratch.file("whole.ply");
+  ASSERT_EQ(runProgram({"orient", in, whole, "-q"}).status, 0);
+  expectRuns({"orient", in, out});
+  const std::size_t points = rows.size() / 6;
+  EXPECT_GE(sameSides(whole, out), points - points / 1000);
+}
+
+TEST(PlacesSaid, WhatSomePointsSay) {
+  using program::PlacesSaid;
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  const PlacesSaid::Place here{1.0, 2.0, 3.0};
+  const PlacesSaid::Place point{0.0, 0.0, 0.0};
+  PlacesSaid said;
+  EXPECT_TRUE(said.none());
+  EXPECT_FALSE(said.partly());
+  for (int i = 0; i < 99; ++i) said.add(here, point);
+  EXPECT_EQ(said.one(), here);
+  said.add({nan, nan, nan}, point);
+  EXPECT_FALSE(said.partly()) << "a hundredth follows the surface";
+  EXPECT_FALSE(said.one());
+  said.add(point, point);  // its own place
+  EXPECT_TRUE(said.partly());
+  PlacesSaid own;
+  own.add(point, point);
+  EXPECT_TRUE(own.none());
+  EXPECT_FALSE(own.partly());
 }
 
 // Ground and fronts along a street, each point seen from the nearest of 20 poses.

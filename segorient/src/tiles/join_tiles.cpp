@@ -56,6 +56,7 @@ void tally(const std::vector<TileTie>& in_a, std::int32_t first_a, const std::ve
 PointHints hintsOf(const OrientationHints& hints, const CloudPlace& place, PreparedCloud& cloud) {
   PointHints out = resolveHints(hints, cloud);
   out.place = place;
+  out.even_sample = true;
   if (out.has_viewpoint || !out.sensors.empty()) {
     cloud.findNeighbors(kSheetNeighbors, false);
   }

@@ -195,8 +195,9 @@ class Finder {
                                       [](const KnownSensor& scan) { return !scan.used; });
     for (std::size_t s = 0; mixed_up && s < n; ++s) {
       KnownSensor& scan = out_.scans[s];
-      if (scan.used && !scan.moving)
-        scan.used = scan.density < kConfirmed || shadowsOf(s).confirm();
+      if (!scan.used || scan.moving || scan.density < kConfirmed) continue;
+      const Shadows shadows = shadowsOf(s);
+      scan.used = hints_.even_sample ? !shadows.deny() : shadows.confirm();
     }
     out_.dropUnused();
   }

@@ -38,6 +38,8 @@ struct PointHints {
   CloudPlace place;
   /// 3 floats a point: where it was seen from, NaN = unknown; empty = none
   std::vector<float> sensors;
+  /// Whether the points are an even sample of those that were seen: density tells nothing.
+  bool even_sample = false;
   /// The scan that each point is of, -1 = unknown; empty unless places are given by point.
   std::vector<std::int32_t> scans;
   /// 3 floats a point: sum of the unit vectors that its normal is said to point along; empty = none
