@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026, the segorient authors
+#include <Eigen/Core>
+#include <Eigen/LU>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -72,12 +75,9 @@ bool isIdentity(const std::array<std::array<double, 4>, 4>& m) {
 // Whether the matrix leaves no volume, or none that is a number.
 bool flattens(const std::array<std::array<double, 4>, 4>& m) {
   constexpr double kRounding = 1e-9;
-  double product = 1.0;
-  for (std::size_t r = 0; r < 3; ++r) product *= std::hypot(m[r][0], m[r][1], m[r][2]);
-  const double volume = m[0][0] * (m[1][1] * m[2][2] - m[1][2] * m[2][1]) -
-                        m[0][1] * (m[1][0] * m[2][2] - m[1][2] * m[2][0]) +
-                        m[0][2] * (m[1][0] * m[2][1] - m[1][1] * m[2][0]);
-  return !(std::fabs(volume) > kRounding * product);
+  const Eigen::Map<const Eigen::Matrix<double, 4, 4, Eigen::RowMajor>> pose(m[0].data());
+  const Eigen::Matrix3d axes = pose.topLeftCorner<3, 3>();
+  return !(std::fabs(axes.determinant()) > kRounding * axes.rowwise().norm().prod());
 }
 
 // Scanner's place and axes, then the matrix that brings the points to where they belong. Both say

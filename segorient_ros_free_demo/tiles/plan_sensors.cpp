@@ -39,7 +39,6 @@ PlanSensors::PlanSensors(const Plan& plan, const PointSample& sample, const Plac
   if (by_row_ && image_width > 0) given.grids = {{0, image_width, size / image_width}};
   choose(given, threads);
   // Whoever names a side of a sheet means it; and a thinner cloud hides the sides of a plate.
-  if (completes_given_) place_ = {};
   place_.faces_up = place_.faces_up && by_row_ && plan.seeds.empty();
   if (by_row_ || (sure_ == 0 && !seenWithin())) return;
   search::MedianHashIndex::Options search_options;
@@ -62,9 +61,11 @@ void PlanSensors::choose(const OrientationHints& given, int threads) {
   const PointView points{points_.data(), 3, points_.size() / 3};
   PreparedCloud cloud(points, nullptr, threads);
   detail::PlaceChoice choice = detail::choosePlaces(points, given, true, cloud, threads);
-  place_ = choice.place;
-  follows_given_ = !choice.hints || completes_given_;
-  if (choice.hints && !completes_given_) directions_ = std::move(choice.hints->normals);
+  if (!completes_given_) {
+    place_ = choice.place;
+    follows_given_ = !choice.hints;
+    if (choice.hints) directions_ = std::move(choice.hints->normals);
+  }
   report_ = std::move(choice.sensors);
   if (!report_.sure()) return;
   sure_ = static_cast<std::size_t>(std::count_if(report_.sensors.begin(), report_.sensors.end(),

@@ -6,12 +6,12 @@
 #include <segorient/search/median_hash_index.h>
 
 #include <array>
-#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <vector>
 
+#include "orientation/sensors/sensor_hints.h"
 #include "tiles/plan.h"
 #include "tiles/point_sample.h"
 
@@ -21,10 +21,9 @@ namespace segorient::program {
 class PlacesSaid {
  public:
   using Place = TileTree::Place;
-  /// \param point the place of the point itself says nothing
+  /// \param point that is said to have been seen from `p`
   void add(const Place& p, const Place& point) {
-    const bool known =
-        std::isfinite(p[0]) && std::isfinite(p[1]) && std::isfinite(p[2]) && p != point;
+    const bool known = detail::saysPlace(p.data(), point.data());
     if (!first_) first_ = p;
     one_ = one_ && known && p == *first_;
     ++points_;

@@ -60,16 +60,15 @@ void drawSample(const Plan& plan, const StepProgress& progress, const Begin& beg
       stream.skipTo(row);
       if (!stream.next(block, static_cast<std::size_t>(page))) break;
       const auto xyz = block.xyz();
-      const bool says_places = plan.has_viewpoints && block.hasViewpoints();
+      const bool columns = block.hasViewpoints();
+      const Place header = headerPlace(block);
       for (std::size_t i = 0; i < block.size; ++i) {
         if (!all && PointSample::scatter(in.first_row + row + i) % kOfPage != 0) continue;
         const Place place = block.triple(xyz, i);
         if (!isFinite(place)) continue;
         sample.add(in.first_row + row + i, place);
-        if (says_places) {
-          said.add(block.triple(block.viewpoints(), i), place);
-        } else if (plan.has_viewpoints) {
-          said.add(headerPlace(block), place);
+        if (plan.has_viewpoints) {
+          said.add(columns ? block.triple(block.viewpoints(), i) : header, place);
         }
       }
       if (progress) {
@@ -101,13 +100,11 @@ class Viewpoints {
   std::array<float, 3> of(const CloudTable& block, std::size_t row, std::uint64_t number,
                           const Place& place, const Place& origin) const {
     Place said = columns_ ? block.triple(block.viewpoints(), row) : header_;
-    if (said == place)
-      said.fill(std::numeric_limits<double>::quiet_NaN());  // as some files have it where nothing
-                                                            // is known
-    const std::array<float, 3> given = near(said, origin);
-    const bool follows = sensors_.found() == 0 || sensors_.completesGiven();
-    if (follows && (segorient::isFinite(given.data()) || sensors_.found() == 0)) return given;
-    return sensors_.of(number, near(place, origin));
+    const bool known = detail::saysPlace(said.data(), place.data());
+    const bool keeps = sensors_.found() == 0 || (sensors_.completesGiven() && known);
+    if (!keeps) return sensors_.of(number, near(place, origin));
+    if (!known) said.fill(std::numeric_limits<double>::quiet_NaN());
+    return near(said, origin);
   }
 
  private:

@@ -38,8 +38,7 @@ std::string sheetChoice(const AutoStages& stages) {
   return text.str();
 }
 
-// Places of no point, and those of the points themselves, as some files have them, say no more than
-// none.
+// Places that say nothing of any point are none.
 std::shared_ptr<const OrientationHints> givenHints(const PointView& points,
                                                    const PreparedCloud& cloud,
                                                    const PipelineOptions& options) {
@@ -48,8 +47,7 @@ std::shared_ptr<const OrientationHints> givenHints(const PointView& points,
   const std::size_t rows = std::min(points.size, given->viewpoints.size() / 3);
   bool known = given->viewpoints.empty();
   for (std::size_t i = 0; i < rows && !known; ++i) {
-    const float* place = &given->viewpoints[3 * i];
-    known = cloud.pointOf(i) >= 0 && isFinite(place) && !std::equal(place, place + 3, points[i]);
+    known = cloud.pointOf(i) >= 0 && saysPlace(&given->viewpoints[3 * i], points[i]);
   }
   if (known) return given;
   auto out = std::make_shared<OrientationHints>(*given);

@@ -133,8 +133,7 @@ void believeSensors(SheetSigns& sheets) {
     if (!sheets.hints.place.faces_up) sheets.found.result.point_confidences[i] = 1.F;
   }
   sheets.found.sensors = std::move(sheets.sensors.scans);
-  sheets.found.sensor_of = std::move(sheets.sensors.scan);
-  sheets.found.toward = std::move(sheets.sensors.toward);
+  static_cast<SeenPoints&>(sheets.found) = std::move(sheets.sensors);
 }
 
 }  // namespace segorient::detail

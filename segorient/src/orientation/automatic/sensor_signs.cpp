@@ -16,45 +16,6 @@ namespace {
 // Errors of a normal's angle have long tails, from edges and stray points.
 constexpr float kClear = 3.F;  // standard deviations
 
-}  // namespace
-
-bool isClear(float facing) {
-  return std::fabs(facing) >= kClear;
-}
-
-std::vector<float> facingOf(const SheetField& field, std::size_t points,
-                            const KnownSensors& sensors) {
-  // A plane over k points with a residual of r spacings is off by about r / (sqrt(k) times the
-  // neighbourhood's own rms extent); that is .45 r for eight neighbours and less for more. What
-  // curvature does beside is some degrees. Where the residual is large, the scale was chosen so
-  // that noise turns the normal by less than kMostNormalError.
-  constexpr float kPerResidual = 0.45F;
-  constexpr float kBend = 0.03F;
-  std::vector<float> out(points, 0.F);
-  for (std::size_t i = 0; i < points; ++i) {
-    const float* n = field.normals + 4 * i;
-    const float error = kBend + std::min(kPerResidual * n[3], detail::kMostNormalError);
-    const float cosine = dot(n, sensors.of(i));
-    if (std::isfinite(cosine) && std::isfinite(error)) out[i] = cosine / error;
-  }
-  return out;
-}
-
-std::vector<Ballot> facingBySegment(const std::vector<float>& facing,
-                                    const Segmentation& segmentation) {
-  std::vector<Ballot> out(segmentation.segments.size());
-  for (std::size_t i = 0; i < facing.size(); ++i) {
-    if (segmentation.labels[i] < 0) continue;
-    Ballot& ballot = out[static_cast<std::size_t>(segmentation.labels[i])];
-    const float vote = std::clamp(facing[i], -kClear, kClear);
-    ballot.balance += static_cast<float>(segmentation.signs[i]) * vote;
-    ballot.total += std::fabs(vote);
-  }
-  return out;
-}
-
-namespace {
-
 // What borders tie to segments that sensors decided, the surest of the rest first: as its borders
 // to decided ones and its own points say together, of all that these could say.
 void followDecided(const std::vector<Ballot>& ballots, const std::vector<BorderVote>& votes,
@@ -106,6 +67,41 @@ void followDecided(const std::vector<Ballot>& ballots, const std::vector<BorderV
 }
 
 }  // namespace
+
+bool isClear(float facing) {
+  return std::fabs(facing) >= kClear;
+}
+
+std::vector<float> facingOf(const SheetField& field, std::size_t points,
+                            const KnownSensors& sensors) {
+  // A plane over k points with a residual of r spacings is off by about r / (sqrt(k) times the
+  // neighbourhood's own rms extent); that is .45 r for eight neighbours and less for more. What
+  // curvature does beside is some degrees. Where the residual is large, the scale was chosen so
+  // that noise turns the normal by less than kMostNormalError.
+  constexpr float kPerResidual = 0.45F;
+  constexpr float kBend = 0.03F;
+  std::vector<float> out(points, 0.F);
+  for (std::size_t i = 0; i < points; ++i) {
+    const float* n = field.normals + 4 * i;
+    const float error = kBend + std::min(kPerResidual * n[3], detail::kMostNormalError);
+    const float cosine = dot(n, sensors.of(i));
+    if (std::isfinite(cosine) && std::isfinite(error)) out[i] = cosine / error;
+  }
+  return out;
+}
+
+std::vector<Ballot> facingBySegment(const std::vector<float>& facing,
+                                    const Segmentation& segmentation) {
+  std::vector<Ballot> out(segmentation.segments.size());
+  for (std::size_t i = 0; i < facing.size(); ++i) {
+    if (segmentation.labels[i] < 0) continue;
+    Ballot& ballot = out[static_cast<std::size_t>(segmentation.labels[i])];
+    const float vote = std::clamp(facing[i], -kClear, kClear);
+    ballot.balance += static_cast<float>(segmentation.signs[i]) * vote;
+    ballot.total += std::fabs(vote);
+  }
+  return out;
+}
 
 std::vector<bool> turnToSensors(const std::vector<Ballot>& ballots,
                                 const std::vector<BorderVote>& votes,

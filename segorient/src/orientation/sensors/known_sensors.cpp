@@ -8,6 +8,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -101,20 +102,21 @@ class Finder {
       }
       out_.scans.push_back(moving);
     }
-    out_.scan.assign(points_.size, -1);
+    out_.sensor_of.assign(points_.size, -1);
     rows_.resize(out_.scans.size());
+    shadows_.resize(out_.scans.size());
     for (std::size_t i = 0; i < points_.size; ++i) {
       if (place_of[i] < 0) continue;
       const std::int32_t n = number[at(place_of[i])];
-      out_.scan[i] = n < 0 ? together : n;
-      rows_[at(out_.scan[i])].push_back(static_cast<std::uint32_t>(i));
+      out_.sensor_of[i] = n < 0 ? together : n;
+      rows_[at(out_.sensor_of[i])].push_back(static_cast<std::uint32_t>(i));
     }
   }
 
   void point(const std::vector<float>& sensors) {
     out_.toward.assign(3 * points_.size, 0.F);
     for (std::size_t i = 0; i < points_.size; ++i) {
-      if (out_.scan[i] < 0) continue;
+      if (out_.sensor_of[i] < 0) continue;
       std::array<double, 3> v = inDouble(&sensors[3 * i]);
       for (std::size_t a = 0; a < 3; ++a) v[a] -= static_cast<double>(points_[i][a]);
       unitVector(v, &out_.toward[3 * i]);
@@ -161,7 +163,7 @@ class Finder {
   void compare() {
     const std::size_t n = out_.scans.size();
     const std::vector<ScanPairs> pairs =
-        findContraryPairs(points_, nb_, spacing_, out_.toward, out_.scan, threads_);
+        findContraryPairs(points_, nb_, spacing_, out_.toward, out_.sensor_of, threads_);
     // With scans that are used, and within each.
     std::vector<double> all(n, 0.0);
     std::vector<double> contrary(n, 0.0);
@@ -196,20 +198,22 @@ class Finder {
     for (std::size_t s = 0; mixed_up && s < n; ++s) {
       KnownSensor& scan = out_.scans[s];
       if (!scan.used || scan.moving || scan.density < kConfirmed) continue;
-      const Shadows shadows = shadowsOf(s);
+      const Shadows& shadows = shadowsOf(s);
       scan.used = hints_.even_sample ? !shadows.deny() : shadows.confirm();
     }
     out_.dropUnused();
   }
 
   // Whether what the scan saw ends where something nearer hides the rest from its place.
-  Shadows shadowsOf(std::size_t s) const {
+  const Shadows& shadowsOf(std::size_t s) {
+    if (shadows_[s]) return *shadows_[s];
     std::vector<float> own;
     for (const std::uint32_t row : rows_[s]) {
       const float* p = points_[row];
       own.insert(own.end(), p, p + 3);
     }
-    return findShadows({own.data(), 3, own.size() / 3}, out_.scans[s].position, threads_);
+    shadows_[s] = findShadows({own.data(), 3, own.size() / 3}, out_.scans[s].position, threads_);
+    return *shadows_[s];
   }
 
   const PointView& points_;
@@ -218,6 +222,7 @@ class Finder {
   const PointHints& hints_;
   int threads_;
   std::vector<std::vector<std::uint32_t>> rows_;  // of each scan
+  std::vector<std::optional<Shadows>> shadows_;   // of each scan, once they are asked for
   KnownSensors out_;
 };
 
@@ -225,15 +230,15 @@ class Finder {
 
 void KnownSensors::countSeen() {
   for (KnownSensor& s : scans) s.seen = 0;
-  for (std::size_t i = 0; i < scan.size(); ++i) {
+  for (std::size_t i = 0; i < sensor_of.size(); ++i) {
     const float* v = of(i);
-    if (v[0] != 0.F || v[1] != 0.F || v[2] != 0.F) ++scans[at(scan[i])].seen;
+    if (v[0] != 0.F || v[1] != 0.F || v[2] != 0.F) ++scans[at(sensor_of[i])].seen;
   }
 }
 
 void KnownSensors::dropUnused() {
-  for (std::size_t i = 0; i < scan.size(); ++i) {
-    if (scan[i] >= 0 && !scans[at(scan[i])].used) {
+  for (std::size_t i = 0; i < sensor_of.size(); ++i) {
+    if (sensor_of[i] >= 0 && !scans[at(sensor_of[i])].used) {
       std::fill_n(&toward[3 * i], 3, 0.F);
     }
   }

@@ -31,7 +31,8 @@ inline bool seeBothSides(const std::vector<KnownSensor>& sensors) {
                      [](const KnownSensor& s) { return !s.used && s.contrary > kMostContrary; });
 }
 
-/// Points and the sensors that saw them; both empty where no sensor is known.
+/// Points and the sensors that saw them; both empty where no sensor is known, `sensor_of` also
+/// where only directions are.
 struct SeenPoints {
   std::vector<std::int32_t> sensor_of;  ///< by point, -1 = none known
   /// 3 floats a point: unit vector to that sensor, 0 where none is known or believed
@@ -39,10 +40,8 @@ struct SeenPoints {
 };
 
 /// Where each point was seen from, as far as that is known and not contradicted.
-struct KnownSensors {
-  std::vector<float> toward;       ///< 3 a point: unit vector to its sensor; 0 = unknown
-  std::vector<std::int32_t> scan;  ///< into `scans`, -1 = none
-  std::vector<KnownSensor> scans;  ///< positions in the cloud's unit
+struct KnownSensors : SeenPoints {
+  std::vector<KnownSensor> scans;  ///< `sensor_of` is into these; positions in the cloud's unit
   /// The one place for all points, which a closed surface may contradict as a whole; else every
   /// point has been told its own.
   bool common = false;

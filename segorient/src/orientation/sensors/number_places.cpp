@@ -68,36 +68,26 @@ std::vector<std::int32_t> splitByScan(const std::vector<std::int32_t>& scan_of_p
                                       std::size_t least, std::vector<Place>& places,
                                       std::vector<std::int32_t>& of) {
   constexpr std::int32_t kNotSeen = -2;
-  std::vector<std::int32_t> scan_of(places.size(), kNotSeen);
-  if (scan_of_points.empty()) scan_of.assign(places.size(), -1);
+  std::vector<std::int32_t> scan_of(places.size(), scan_of_points.empty() ? -1 : kNotSeen);
   // Points of the scans that a place has beside its first.
   std::map<std::pair<std::int32_t, std::int32_t>, std::size_t> others;
-  std::vector<std::size_t> first(places.size(), 0);
   for (std::size_t i = 0; i < scan_of_points.size(); ++i) {
     if (of[i] < 0) continue;
-    if (scan_of[at(of[i])] == kNotSeen) scan_of[at(of[i])] = scan_of_points[i];
-    if (scan_of[at(of[i])] == scan_of_points[i]) {
-      ++first[at(of[i])];
-    } else {
-      ++others[{of[i], scan_of_points[i]}];
-    }
+    std::int32_t& first = scan_of[at(of[i])];
+    if (first == kNotSeen) first = scan_of_points[i];
+    if (first != scan_of_points[i]) ++others[{of[i], scan_of_points[i]}];
   }
   std::map<std::pair<std::int32_t, std::int32_t>, std::int32_t> split;
   const bool several = places.size() > 1;
-  std::vector<std::size_t> kept = first;
   for (const auto& [part, points] : others) {
-    const std::size_t place = at(part.first);
     if (several && points >= least) {
-      const Place same = places[place];
+      const Place same = places[at(part.first)];
       split.emplace(part, static_cast<std::int32_t>(places.size()));
       places.push_back(same);
       scan_of.push_back(part.second);
     } else {
-      kept[place] += points;
+      scan_of[at(part.first)] = -1;
     }
-  }
-  for (std::size_t p = 0; p < first.size(); ++p) {
-    if (kept[p] != first[p]) scan_of[p] = -1;
   }
   for (std::size_t i = 0; !split.empty() && i < scan_of_points.size(); ++i) {
     const auto part = split.find({of[i], scan_of_points[i]});

@@ -8,6 +8,7 @@
 
 #include "common/in_double.h"
 #include "common/unit_vector.h"
+#include "orientation/sensors/sensor_hints.h"
 #include "search/index_of.h"
 
 namespace segorient {
@@ -78,8 +79,8 @@ void addSensors(const OrientationHints& hints, const PreparedCloud& cloud,
     if (row < rowsOf(hints.viewpoints)) {
       const float* given = &hints.viewpoints[3 * row];
       const Vector own = scaled({given[0], given[1], given[2]}, cloud.unit());
-      const float* itself = cloud.points()[static_cast<std::size_t>(cloud.pointOf(row))];
-      if (isFinite(own.data()) && !std::equal(own.begin(), own.end(), itself)) {
+      if (detail::saysPlace(own.data(),
+                            cloud.points()[static_cast<std::size_t>(cloud.pointOf(row))])) {
         place = own;
         known = true;
       }

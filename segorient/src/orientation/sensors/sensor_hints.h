@@ -7,7 +7,9 @@
 #include <segorient/orientation/orientation_hints.h>
 #include <segorient/orientation/sensors.h>
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <optional>
 
@@ -20,6 +22,14 @@ namespace segorient::detail {
 /// from what was found beside them; the middle of a scan, 18 and more where it sees the surface
 /// from another side.
 constexpr double kSameWay = 0.97;
+
+/// Whether a place says where a point was seen from: it is known, and not the point itself, as some
+/// files have it where nobody knew.
+template <typename T>
+bool saysPlace(const T* place, const T* point) {
+  return std::all_of(place, place + 3, [](T v) { return std::isfinite(v); }) &&
+         !std::equal(place, place + 3, point);
+}
 
 /// Whether places are given that points were seen from.
 bool saysPlaces(const OrientationHints& hints);
