@@ -42,6 +42,7 @@ int main(int argc, char** argv) {
   segorient::SegmentOrientation<pcl::PointXYZI, pcl::Normal> orientation;
   orientation.setInputCloud(cloud);
   orientation.setInputNormals(normals);
+  orientation.setNeighborhoods(neighbors);
   orientation.setSegmentation(
       std::make_shared<const segorient::Segmentation>(segmentation.getPlanarSegmentation()));
   pcl::PointCloud<pcl::Normal> oriented;

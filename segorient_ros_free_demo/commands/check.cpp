@@ -130,6 +130,48 @@ void drawFaults(const CloudTable& table, const LocalPoints& points, const Normal
   writePng(drawViews(scene, View{}, true), file);
 }
 
+// What is written, each only if it is asked for; opened before anything is read.
+struct CheckOutputs {
+  std::optional<OutputFile> cloud;
+  std::optional<OutputFile> report;
+  std::optional<OutputFile> picture;
+
+  CheckOutputs(const std::string& cloud_path, const std::string& report_path,
+               const std::string& picture_path) {
+    if (!cloud_path.empty()) {
+      requireEnding(cloud_path, {".pcd", ".ply", ".las"});
+      cloud.emplace(cloud_path);
+    }
+    if (!picture_path.empty()) {
+      requireEnding(picture_path, {".png"});
+      picture.emplace(picture_path);
+    }
+    if (!report_path.empty()) report.emplace(report_path);
+  }
+
+  void write(const CloudTable& table, const LocalPoints& points, const NormalCheck& check,
+             int threads) {
+    if (report) report->write(reportText(check, points.origin()));
+    if (cloud) writeMarked(table, check, *cloud);
+    if (picture) drawFaults(table, points, check, threads, *picture);
+    for (std::optional<OutputFile>* file : {&report, &cloud, &picture}) {
+      if (*file) (*file)->commit();
+    }
+  }
+};
+
+// By what the cloud's own orientation and its sensors say.
+NormalCheck checkCloud(const CloudTable& table, const LocalPoints& points,
+                       const PipelineOptions& options, bool quiet) {
+  ProgressBar bar(!quiet, table.size);
+  const OrientedCloud ours =
+      orientCloud(points.view(), nullptr, options,
+                  [&](const char* stage, double fraction) { bar.update(stage, 0.9 * fraction); });
+  bar.update("check", 0.9);
+  return checkNormals(points.view(), ownNormals(table), ours, *options.orientation.hints,
+                      options.threads);
+}
+
 }  // namespace
 
 int runCheck(const std::vector<std::string>& words) {
@@ -147,7 +189,7 @@ int runCheck(const std::vector<std::string>& words) {
   std::string report_path;
   std::string picture_path;
   line.arguments({"IN", "OUT"}, 1);
-  hints.add(line);
+  hints.add(line, false);
   line.options()("report", po::value(&report_path), "what was found, as JSON")(
       "picture", po::value(&picture_path), "PNG: from two sides, what is at fault in red");
   takeSharedOptions(line);
@@ -160,19 +202,7 @@ int runCheck(const std::vector<std::string>& words) {
   PipelineOptions options;
   options.threads = common.threads;
   hints.check(line, common, options);
-  const std::string out_path = line.argument("OUT");
-  std::optional<OutputFile> out;
-  std::optional<OutputFile> report;
-  std::optional<OutputFile> picture;
-  if (!out_path.empty()) {
-    requireEnding(out_path, {".pcd", ".ply", ".las"});
-    out.emplace(out_path);
-  }
-  if (!picture_path.empty()) {
-    requireEnding(picture_path, {".png"});
-    picture.emplace(picture_path);
-  }
-  if (!report_path.empty()) report.emplace(report_path);
+  CheckOutputs outputs(line.argument("OUT"), report_path, picture_path);
 
   const std::string path = line.argument("IN");
   const CloudTable table = hints.read({path}, common.quiet);
@@ -180,26 +210,12 @@ int runCheck(const std::vector<std::string>& words) {
   requireMemory(path, expectedMemory(table.size, options), availableMemory());
   const LocalPoints points(table);
   hints.apply(table, path, points, options);
-  NormalCheck check;
-  {
-    ProgressBar bar(!common.quiet, table.size);
-    const OrientedCloud ours =
-        orientCloud(points.view(), nullptr, options,
-                    [&](const char* stage, double fraction) { bar.update(stage, 0.9 * fraction); });
-    bar.update("check", 0.9);
-    check = checkNormals(points.view(), ownNormals(table), ours, *options.orientation.hints,
-                         common.threads);
-  }
+  const NormalCheck check = checkCloud(table, points, options, common.quiet);
   // "None contradicts" would be said of nothing.
   if (!check.faults.empty() && check.without_normal == check.faults.size()) {
     throw FileError(path, "has no normals to check: all are zero or not finite");
   }
-  if (report) report->write(reportText(check, points.origin()));
-  if (out) writeMarked(table, check, *out);
-  if (picture) drawFaults(table, points, check, common.threads, *picture);
-  for (std::optional<OutputFile>* file : {&report, &out, &picture}) {
-    if (*file) (*file)->commit();
-  }
+  outputs.write(table, points, check, common.threads);
   if (!common.quiet) printSummary(check, points.origin(), common.verbose);
   return check.places.empty() ? 0 : kFaultsFound;
 }

@@ -126,6 +126,51 @@ Picture pictureOf(const CloudTable& table, const LocalPoints& points, const Norm
   return picture;
 }
 
+// PCL's viewpoint is 0, 0, 0 unless it is told otherwise.
+std::array<float, 3> viewpointOf(const LocalPoints& points, const OrientationHints& hints) {
+  std::array<float, 3> viewpoint = hints.viewpoint;
+  for (std::size_t a = 0; a < 3 && !knowsViewpoint(hints); ++a) {
+    viewpoint[a] = static_cast<float>(-points.origin()[a]);
+  }
+  return viewpoint;
+}
+
+// What pcl::Poisson makes of both.
+struct PoissonOptions {
+  std::string prefix;  // of the files; empty: it is left out
+  int depth = 0;
+  std::string truth_path;  // empty: the cloud itself
+};
+
+struct Both {
+  OrientedCloud ours;
+  PclResult pcl;
+  std::string poisson_text;
+};
+
+Both runBoth(const CloudTable& table, const LocalPoints& points, const PipelineOptions& options,
+             const PoissonOptions& poisson, const CommonOptions& common) {
+  Both both;
+  ProgressBar bar(!common.quiet, table.size);
+  const double share = poisson.prefix.empty() ? 0.5 : 0.3;
+  both.ours = orientCloud(points.view(), nullptr, options, [&](const char* stage, double fraction) {
+    bar.update(stage, share * fraction);
+  });
+  bar.update("PCL", share);
+  const OrientationHints& hints = *options.orientation.hints;
+  // PCL counts the point itself.
+  both.pcl = runPcl(points.view(), viewpointOf(points, hints), both.ours.report.k + 1,
+                    resolveThreads(common.threads));
+  turnToOwnSensors(points.view(), hints, both.pcl.normals);
+  if (poisson.prefix.empty()) return both;
+  bar.update("poisson", 2.0 * share);
+  const TrueSurface truth(poisson.truth_path.empty() ? table : readUsableCloud(poisson.truth_path),
+                          points.origin(), common.threads);
+  both.poisson_text = comparePoisson(points, {both.pcl.normals, both.ours.normals}, poisson.depth,
+                                     poisson.prefix, truth, bar);
+  return both;
+}
+
 }  // namespace
 
 int runCompare(const std::vector<std::string>& words) {
@@ -142,25 +187,23 @@ int runCompare(const std::vector<std::string>& words) {
   HintOptions hints;
   std::string picture_path;
   View view;
-  std::string truth_path;
-  std::string poisson_prefix;
-  int depth = 0;
+  PoissonOptions poisson;
   line.arguments({"IN"});
   stages.add(line, LastStage::ORIENTATION);
   hints.add(line);
   line.options()("picture", po::value(&picture_path), "PNG: PCL left, ours right")(
       "azimuth", po::value(&view.azimuth)->default_value(view.azimuth), "of the picture, degrees")(
       "elevation", po::value(&view.elevation)->default_value(view.elevation), "above the horizon")(
-      "poisson", po::value(&poisson_prefix),
+      "poisson", po::value(&poisson.prefix),
       "surfaces of pcl::Poisson from both: writes NAME_pcl.ply, NAME_ours.ply, NAME.png")(
-      "depth", po::value(&depth)->default_value(8), "of pcl::Poisson's octree")(
-      "truth", po::value(&truth_path),
+      "depth", po::value(&poisson.depth)->default_value(8), "of pcl::Poisson's octree")(
+      "truth", po::value(&poisson.truth_path),
       "the true surface, to measure those of pcl::Poisson by: a mesh, or a cloud with normals; "
       "left out: IN, if it has normals");
   common.add(line);
   if (!line.parse(words)) return 0;
   common.check();
-  require(depth >= 2 && depth <= 14, "--depth must be 2 to 14");
+  require(poisson.depth >= 2 && poisson.depth <= 14, "--depth must be 2 to 14");
   PipelineOptions options;
   stages.apply(line, common, options);
   hints.check(line, common, options);
@@ -175,48 +218,22 @@ int runCompare(const std::vector<std::string>& words) {
   const LocalPoints points(table);
   requirePclRange(points, line.argument("IN"));
   hints.apply(table, line.argument("IN"), points, options);
-  // PCL's viewpoint is 0, 0, 0 unless it is told otherwise.
-  std::array<float, 3> viewpoint = options.orientation.hints->viewpoint;
-  for (std::size_t a = 0; a < 3 && !knowsViewpoint(*options.orientation.hints); ++a) {
-    viewpoint[a] = static_cast<float>(-points.origin()[a]);
-  }
-  OrientedCloud ours;
-  PclResult pcl_result;
-  std::string poisson_text;
-  {
-    ProgressBar bar(!common.quiet, table.size);
-    const double share = poisson_prefix.empty() ? 0.5 : 0.3;
-    ours = orientCloud(points.view(), nullptr, options, [&](const char* stage, double fraction) {
-      bar.update(stage, share * fraction);
-    });
-    bar.update("PCL", share);
-    // PCL counts the point itself.
-    pcl_result =
-        runPcl(points.view(), viewpoint, ours.report.k + 1, resolveThreads(common.threads));
-    turnToOwnSensors(points.view(), *options.orientation.hints, pcl_result.normals);
-    if (!poisson_prefix.empty()) {
-      bar.update("poisson", 2.0 * share);
-      const TrueSurface truth(truth_path.empty() ? table : readUsableCloud(truth_path),
-                              points.origin(), common.threads);
-      poisson_text = comparePoisson(points, {pcl_result.normals, ours.normals}, depth,
-                                    poisson_prefix, truth, bar);
-    }
-  }
+  const Both both = runBoth(table, points, options, poisson, common);
   if (!common.quiet) {
-    print(table, ours.report, pcl_result, ours.normals);
-    printSensors(points.view(), *options.orientation.hints, pcl_result.normals, ours.normals);
+    print(table, both.ours.report, both.pcl, both.ours.normals);
+    printSensors(points.view(), *options.orientation.hints, both.pcl.normals, both.ours.normals);
     constexpr int kColumn = 14;  // the line's name is longer than others
-    printNotFollowed(ours.report.known_sensors, points.origin(), kColumn);
+    printNotFollowed(both.ours.report.known_sensors, points.origin(), kColumn);
   }
   if (picture) {
     view.threads = common.threads;
-    writePng(beside({pictureOf(table, points, pcl_result.normals, view, "PCL"),
-                     pictureOf(table, points, ours.normals, view, "segorient")}),
+    writePng(beside({pictureOf(table, points, both.pcl.normals, view, "PCL"),
+                     pictureOf(table, points, both.ours.normals, view, "segorient")}),
              *picture);
     picture->commit();
     if (!common.quiet) std::printf("written     %s\n", picture_path.c_str());
   }
-  if (!common.quiet) std::fputs(poisson_text.c_str(), stdout);
+  if (!common.quiet) std::fputs(both.poisson_text.c_str(), stdout);
   return 0;
 }
 

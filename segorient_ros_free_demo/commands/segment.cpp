@@ -92,9 +92,9 @@ int runSegment(const std::vector<std::string>& words) {
       "segment IN OUT [options]",
       "Cuts IN into segments of similar normals: those that orient and triangulate have\n"
       "with the same options, --method among them. With --normals or --recompute, and\n"
-      "method auto: the paper's segments by those normals. OUT (.pcd, .ply, .las) has the points "
-      "of\n"
-      "IN in the same order, with normals that agree within each segment, curvature,\n"
+      "method auto: faces by those normals, with points at edges given to the face that\n"
+      "passes nearest. OUT (.pcd, .ply, .las) has the points of IN in the same order,\n"
+      "with normals that agree within each segment, curvature,\n"
       "colours, labels (largest segment first; 4294967295: in none) and segment_kind\n"
       "(0 regular, 1 connected, 2 isolated), and all other fields of IN but its rgb.",
       "segorient segment scan.ply segments.pcd --beta 25");

@@ -11,6 +11,7 @@
 #include "support/stage_options.h"
 #include "support/tile_flags.h"
 #include "tiles/input_state.h"
+#include "tiles/plan_inputs.h"
 #include "tiles/steps.h"
 
 namespace segorient::program {
@@ -57,6 +58,8 @@ int runPlan(const std::vector<std::string>& words) {
   require(request.inputs.size() >= 2, "IN is missing: segorient tiles plan DIR IN... OUT");
   const std::string folder = request.inputs[0];
   request.inputs.erase(request.inputs.begin());
+  Plan names;
+  planFiles(request, names);  // what is wrong with the names is known before there is a folder
   const WorkFolder work(folder, true);
   work.removeUnfinished();
   const Plan plan = planStep(request, folder);
@@ -109,6 +112,7 @@ int runTiles(const std::vector<std::string>& words) {
   require(!draws || !number.empty(), "OUT.ply is missing: segorient tiles draw DIR OUT.ply");
   if (draws) requireEnding(number, {".ply", ".pcd"});
   if (step == "clean") {
+    if (!std::filesystem::exists(folder)) return 0;  // it was cleaned already
     requireFolder(folder);
     WorkFolder(folder, true).remove();
     return 0;

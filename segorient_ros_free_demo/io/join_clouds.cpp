@@ -143,20 +143,21 @@ std::uint32_t copyScans(const CloudTable& cloud, std::uint32_t base, std::size_t
   return count;
 }
 
-std::shared_ptr<const LasOrigin> commonOrigin(const std::vector<CloudTable>& clouds) {
+}  // namespace
+
+std::shared_ptr<const LasOrigin> commonOrigin(
+    const std::vector<std::shared_ptr<const LasOrigin>>& origins) {
   std::shared_ptr<const LasOrigin> first;
   bool same = true;
-  for (const CloudTable& c : clouds) {
-    if (c.las && !first) first = c.las;
-    same = same && c.las && c.las->scale == first->scale && c.las->offset == first->offset;
+  for (const std::shared_ptr<const LasOrigin>& las : origins) {
+    if (las && !first) first = las;
+    same = same && las && las->scale == first->scale && las->offset == first->offset;
   }
   if (!first || same) return first;
   auto changed = std::make_shared<LasOrigin>(*first);
   changed->scale = {0.0, 0.0, 0.0};
   return changed;
 }
-
-}  // namespace
 
 CloudTable joinClouds(std::vector<CloudTable> clouds, const std::vector<std::string>& names,
                       bool headers) {
@@ -176,7 +177,9 @@ CloudTable joinClouds(std::vector<CloudTable> clouds, const std::vector<std::str
   for (const CloudTable& c : clouds) out.size += c.size;
   out.width = out.size;
   out.rows.resize(out.size * out.row_bytes);
-  out.las = commonOrigin(clouds);
+  std::vector<std::shared_ptr<const LasOrigin>> origins;
+  for (const CloudTable& c : clouds) origins.push_back(c.las);
+  out.las = commonOrigin(origins);
   std::size_t first = 0;
   std::uint32_t scan = 0;
   for (CloudTable& cloud : clouds) {

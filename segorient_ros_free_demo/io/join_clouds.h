@@ -2,6 +2,7 @@
 // Copyright (c) 2026, the segorient authors
 #pragma once
 
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -26,5 +27,10 @@ namespace segorient::program {
 ///        known
 CloudTable joinClouds(std::vector<CloudTable> clouds, const std::vector<std::string>& names,
                       bool headers);
+
+/// What the LAS file of all clouds says beyond their points; null if none is LAS.
+/// \param origins of each cloud, null where it is not LAS
+std::shared_ptr<const LasOrigin> commonOrigin(
+    const std::vector<std::shared_ptr<const LasOrigin>>& origins);
 
 }  // namespace segorient::program

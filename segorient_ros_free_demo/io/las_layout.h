@@ -27,7 +27,6 @@ class LasLayout {
   LasLayout(const OutputCloud& block, const LasSummary& summary);
 
   bool extended() const { return lasIsExtended(format_); }
-  int minorVersion() const { return minor_version_; }
   std::size_t recordBytes() const { return record_bytes_; }
   /// All up to the first point.
   std::vector<std::uint8_t> head() const;

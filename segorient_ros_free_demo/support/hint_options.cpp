@@ -10,6 +10,7 @@
 
 #include "io/join_clouds.h"
 #include "io/readers.h"
+#include "support/stage_options.h"
 
 namespace segorient::program {
 namespace po = boost::program_options;
@@ -72,14 +73,16 @@ void addTrajectory(const Trajectory& trajectory, const std::string& path, bool q
   const TrajectoryJoin join = addViewpoints(trajectory, path, table);
   if (join.joined == 0) throw FileError(path, explainNoOverlap(trajectory, join));
   const std::size_t without = join.outside + join.without_time;
-  if (without > 0) {
-    warn(path + ": " + std::to_string(without) +
-         " points were not measured within the trajectory's time; it says no sensor for them");
-  }
+  if (without > 0) warn(path + ": " + withoutPlaceText(without));
   if (!quiet) std::printf("trajectory      %zu points have a place of the sensor\n", join.joined);
 }
 
 }  // namespace
+
+std::string withoutPlaceText(std::size_t points) {
+  return std::to_string(points) +
+         " points were not measured within the trajectory's time; it says no sensor for them";
+}
 
 TrajectoryJoin addViewpoints(const Trajectory& trajectory, const std::string& path,
                              CloudTable& table) {
@@ -125,7 +128,7 @@ std::size_t imageWidth(const CloudTable& table) {
   return table.height > 1 && table.width * table.height == table.size ? table.width : 0;
 }
 
-void HintOptions::add(CommandLine& line) {
+void HintOptions::add(CommandLine& line, bool keeps) {
   line.options()("viewpoint", po::value(&viewpoint_text_),
                  "=X,Y,Z: where all was seen from, else as the file says; what could be seen from "
                  "there faces it")(
@@ -136,10 +139,11 @@ void HintOptions::add(CommandLine& line) {
       "closed", po::bool_switch(&closed_), "each part has an inside, whatever one viewpoint says")(
       "open", po::bool_switch(&open_), "one viewpoint decides, whatever looks like an inside")(
       "seeds", po::value(&seeds_), "a cloud of points whose normals are known")(
-      "keep-orientation", po::bool_switch(&keep_),
-      "take the signs of the normals that IN has as evidence")(
       "no-sensors", po::bool_switch(&no_sensors_),
       "do not look for where the sensors stood; see segorient sensors");
+  auto options = keeps ? line.options() : line.unlisted();
+  options("keep-orientation", po::bool_switch(&keep_),
+          "take the signs of the normals that IN has as evidence");
 }
 
 void HintOptions::check(const CommandLine& line, const CommonOptions& common,
@@ -156,6 +160,7 @@ void HintOptions::check(const CommandLine& line, const CommonOptions& common,
   if (options.orientation.method == OrientationMethod::AUTO || common.quiet) return;
   for (const char* name : {"viewpoint", "trajectory", "up", "closed", "open", "seeds",
                            "keep-orientation", "no-sensors"}) {
+    if (name == std::string("no-sensors") && choosesNormals(options)) continue;
     if (line.given(name)) warn("--" + std::string(name) + " changes nothing without method auto");
   }
 }

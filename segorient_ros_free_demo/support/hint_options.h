@@ -17,6 +17,9 @@ namespace segorient::program {
 /// The origin of the file's coordinates, as `points` have it: where many sensors put themselves.
 std::array<float, 3> localOrigin(const LocalPoints& points);
 
+/// Says how many points a trajectory has no place for.
+std::string withoutPlaceText(std::size_t points);
+
 /// Gives each point its place at the point's time as vp_x, vp_y, vp_z; where the trajectory says
 /// none, those that it had. \param path names `table` in messages
 TrajectoryJoin addViewpoints(const Trajectory& trajectory, const std::string& path,
@@ -30,7 +33,8 @@ std::size_t imageWidth(const CloudTable& table);
 /// grids.
 class HintOptions {
  public:
-  void add(CommandLine& line);
+  /// \param keeps whether --keep-orientation makes sense: otherwise it is taken, but not listed
+  void add(CommandLine& line, bool keeps = true);
 
   /// Before anything is read: throws UsageError where values make no sense.
   void check(const CommandLine& line, const CommonOptions& common, const PipelineOptions& options);

@@ -45,8 +45,7 @@ void StageOptions::addMethod(CommandLine& line, bool orients) {
           "of orientation: auto (the best known), propagation, boundary, combined or extremal\n"
           "(the paper's), hoppe (the classical tree over points)")(
       "gamma", po::value(&gamma_),
-      "degrees: angles between segments up to this decide; 35 (methods propagation, combined, "
-      "extremal)");
+      "degrees: angles between segments up to this decide; 35 (the paper's methods)");
 }
 
 void StageOptions::add(CommandLine& line, LastStage last, const std::string& usual_k) {
@@ -107,6 +106,10 @@ void StageOptions::apply(const CommandLine& line, const CommonOptions& common,
           "--method is one of auto propagation boundary combined extremal hoppe");
 }
 
+bool choosesNormals(const PipelineOptions& options) {
+  return options.normals.estimator == NormalEstimator::AUTO && options.k <= 0;
+}
+
 void StageOptions::warnOfUnused(const CommandLine& line, const CommonOptions& common,
                                 const PipelineOptions& options) const {
   if (common.quiet) return;
@@ -128,9 +131,10 @@ void StageOptions::warnOfUnused(const CommandLine& line, const CommonOptions& co
       if (automatic) name({"gamma"}, "with method auto; the others (--method combined) look at it");
       if (!recomputes) name({"delta"}, "without --recompute");
       if (own) {
-        name({"viewpoint", "trajectory", "up", "closed", "open", "seeds", "keep-orientation",
-              "no-sensors"},
-             "of segments that are made by --normals or --recompute alone");
+        const char* reason = "of segments that are made by --normals or --recompute alone";
+        name({"viewpoint", "trajectory", "up", "closed", "open", "seeds", "keep-orientation"},
+             reason);
+        if (!choosesNormals(options)) name({"no-sensors"}, reason);
       }
       if (!automatic) name({"faces"}, "without method auto: the others' segments are not united");
       return;
@@ -141,6 +145,9 @@ void StageOptions::warnOfUnused(const CommandLine& line, const CommonOptions& co
              "with method auto; the others (--method combined) look at it");
       } else if (!recomputes) {
         name({"delta"}, "without --recompute");
+      }
+      if (options.orientation.method == OrientationMethod::HOPPE) {
+        name({"gamma"}, "with method hoppe, which has no segments");
       }
   }
 }

@@ -11,6 +11,10 @@
 
 namespace segorient::program {
 
+/// Whether normals are chosen from the cloud, scans among others: sensors are looked for then by
+/// all methods.
+bool choosesNormals(const PipelineOptions& options);
+
 /// How far a command goes.
 enum class LastStage { NORMALS, SEGMENTS, ORIENTATION };
 

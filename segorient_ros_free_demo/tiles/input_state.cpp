@@ -34,15 +34,19 @@ bool isOurs(const std::string& name, bool unfinished_only) {
          (!unfinished_only && std::regex_match(name, kFinished));
 }
 
+constexpr const char* kPlan = "plan";
+constexpr const char* kLock = "lock";
+
+// The lock stays.
 void removeFiles(const std::string& folder, bool unfinished_only) {
+  std::error_code ignored;
+  if (!unfinished_only) fs::remove(fs::path(folder) / kPlan, ignored);
   std::vector<fs::path> gone;
   for (const auto& entry : fs::directory_iterator(folder)) {
-    if (isOurs(entry.path().filename().string(), unfinished_only)) gone.push_back(entry.path());
+    const std::string name = entry.path().filename().string();
+    if (name != kLock && isOurs(name, unfinished_only)) gone.push_back(entry.path());
   }
-  for (const fs::path& path : gone) {
-    std::error_code ignored;
-    fs::remove(path, ignored);
-  }
+  for (const fs::path& path : gone) fs::remove(path, ignored);
 }
 
 }  // namespace
@@ -67,7 +71,7 @@ WorkFolder::WorkFolder(std::string path, bool alone) : path_(std::move(path)) {
   std::error_code error;
   fs::create_directories(path_, error);
   if (error) throw FileError(path_, "cannot be made: " + error.message());
-  const std::string name = path_ + "/lock";
+  const std::string name = path_ + "/" + kLock;
   lock_ = open(name.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
   if (lock_ < 0) throw FileError(name, std::strerror(errno));
   if (flock(lock_, (alone ? LOCK_EX : LOCK_SH) | LOCK_NB) != 0) {
@@ -88,7 +92,12 @@ void WorkFolder::removeUnfinished() const {
 void WorkFolder::remove() {
   removeFiles(path_, false);
   std::error_code not_empty;
+  fs::remove(fs::path(path_) / kLock, not_empty);
   fs::remove(path_, not_empty);
+}
+
+void removeFilesWithoutPlan(const std::string& folder) {
+  removeFiles(folder, false);
 }
 
 }  // namespace segorient::program

@@ -30,12 +30,16 @@ class WorkFolder {
   const std::string& path() const { return path_; }
   /// Removes what steps that were killed left unfinished; only where it is held alone.
   void removeUnfinished() const;
-  /// Removes all files that steps write, and the folder if nothing else is in it.
+  /// Removes all files that steps write, and the folder if nothing else is in it. The plan goes
+  /// first and the lock last: what is interrupted leaves a folder that a run begins anew in.
   void remove();
 
  private:
   std::string path_;
   int lock_ = -1;
 };
+
+/// Removes what a folder without a plan has of a run that was removed; the lock stays.
+void removeFilesWithoutPlan(const std::string& folder);
 
 }  // namespace segorient::program

@@ -74,6 +74,10 @@ JoinSummary readSummary(const Plan& plan, const std::string& folder) {
 
 JoinSummary joinStep(const Plan& plan, const std::string& folder, int threads) {
   if (std::filesystem::exists(joinPath(folder))) return readSummary(plan, folder);
+  for (std::size_t t = 0; t < plan.tiles(); ++t) {
+    if (std::filesystem::exists(tilePath(folder, t, "share"))) continue;
+    throw FileError(folder, "cannot be joined before tile " + std::to_string(t) + " is done");
+  }
   JoinOptions options;
   options.traits = plan.traits;
   options.patch_points = plan.patch_points;

@@ -20,14 +20,41 @@ namespace fs = std::filesystem;
 namespace {
 
 bool isCloud(const std::string& name) {
-  static const std::set<std::string> kEndings{".pcd", ".ply", ".las", ".laz", ".obj", ".ptx",
-                                              ".pts", ".xyz", ".txt", ".asc", ".csv"};
+  static const std::set<std::string> kEndings{".pcd", ".ply", ".las", ".laz",
+                                              ".obj", ".ptx", ".pts"};
   return kEndings.count(fileEnding(name)) > 0;
+}
+
+bool isText(const std::string& name) {
+  static const std::set<std::string> kEndings{".xyz", ".txt", ".asc", ".csv"};
+  return kEndings.count(fileEnding(name)) > 0;
+}
+
+// Files of a folder that have such a name; hidden ones are nobody's clouds.
+std::vector<std::string> cloudsIn(const std::string& folder, bool (*is_cloud)(const std::string&)) {
+  std::vector<std::string> out;
+  for (const auto& entry : fs::directory_iterator(folder)) {
+    const bool hidden = entry.path().filename().string().front() == '.';
+    if (!hidden && entry.is_regular_file() && is_cloud(entry.path().string())) {
+      out.push_back(entry.path().string());
+    }
+  }
+  return out;
 }
 
 bool isWritable(const std::string& name) {
   const std::string ending = fileEnding(name);
   return ending == ".ply" || ending == ".pcd" || ending == ".las";
+}
+
+// What is written would take the place of what is still to be read.
+void requireNoInput(const fs::path& output, const Plan& plan) {
+  for (const PlanInput& in : plan.inputs) {
+    std::error_code missing;
+    if (plan.inputs.size() > 1 && fs::equivalent(output, in.path, missing)) {
+      throw FileError(in.path, "is an input and would be an output: name another folder for these");
+    }
+  }
 }
 
 void addOutputs(const std::string& output, Plan& plan) {
@@ -49,6 +76,7 @@ void addOutputs(const std::string& output, Plan& plan) {
                       "place in the folder of outputs");
     }
     const fs::path to = fs::absolute(fs::path(output) / name).lexically_normal();
+    requireNoInput(to, plan);
     plan.outputs.push_back({to.string(), static_cast<std::uint32_t>(i), 1});
   }
 }
@@ -121,12 +149,8 @@ std::vector<std::string> listClouds(const std::vector<std::string>& names) {
       out.push_back(name);
       continue;
     }
-    std::vector<std::string> inside;
-    for (const auto& entry : fs::directory_iterator(name)) {
-      if (entry.is_regular_file() && isCloud(entry.path().string())) {
-        inside.push_back(entry.path().string());
-      }
-    }
+    std::vector<std::string> inside = cloudsIn(name, isCloud);
+    if (inside.empty()) inside = cloudsIn(name, isText);
     if (inside.empty()) throw FileError(name, "has no clouds in it");
     std::sort(inside.begin(), inside.end());
     out.insert(out.end(), inside.begin(), inside.end());
@@ -169,6 +193,7 @@ void openInputs(const std::string& folder, Plan& plan) {
     }
     const CloudStream stream(in.streamed);
     const CloudTable& layout = stream.layout();
+    for (const std::string& note : layout.notes) warn(in.path + ": " + note);
     if (i == 0) first = layout;
     if (plan.outputs.size() == 1) requireSameFields(first, layout, in.path);
     in.first_row = plan.rows;

@@ -9,7 +9,8 @@
 
 namespace segorient::program {
 
-/// The clouds that the names stand for: files as they are, of folders all clouds in them, by name.
+/// The clouds that the names stand for: files as they are, of folders all clouds in them, by name:
+/// but for hidden ones, and for text unless there is nothing else.
 std::vector<std::string> listClouds(const std::vector<std::string>& names);
 
 /// Fills inputs, outputs and run of a plan. Throws FileError and, where outputs make no sense,

@@ -2,8 +2,11 @@
 // Copyright (c) 2026, the segorient authors
 #include "tiles/plan_sensors.h"
 
+#include <segorient/orientation/pipeline.h>
+
 #include <algorithm>
 #include <limits>
+#include <memory>
 #include <utility>
 
 #include "orientation/sensors/place_choice.h"
@@ -24,11 +27,15 @@ PlanSensors::PlanSensors(const Plan& plan, const PointSample& sample, const Plac
   // Each point knows its own, or what is known is not a place.
   completes_given_ = columns && said.partly() && !plan.has_viewpoint;
   if ((columns && !of_points && !completes_given_) || !plan.trajectory.empty()) return;
-  if (plan.up || plan.keep_orientation) return;
-  if (!plan.find_sensors || plan.closed) return;
+  if (plan.keep_orientation || !plan.find_sensors || plan.closed) return;
   takeSample(plan, sample);
   const std::size_t size = points_.size() / 3;
   OrientationHints given = hintsOf(plan, plan.origin);
+  if (plan.up) {
+    if (heeds(given, threads)) return;
+    given.has_direction = false;
+    refuses_up_ = true;
+  }
   if (columns && !completes_given_) {
     const std::array<float, 3> place = near(*of_points, plan.origin);
     for (std::size_t i = 0; i < size; ++i) {
@@ -55,6 +62,25 @@ void PlanSensors::takeSample(const Plan& plan, const PointSample& sample) {
     const std::array<float, 3> p = near(sample.places()[i], plan.origin);
     std::copy(p.begin(), p.end(), points_.begin() + static_cast<std::ptrdiff_t>(3 * to));
   }
+}
+
+// Whether the surface does: of an even part of the sample, as segments are few.
+bool PlanSensors::heeds(const OrientationHints& given, int threads) const {
+  constexpr std::size_t kMost = 100000;
+  const std::size_t size = points_.size() / 3;
+  const std::size_t one_of = (size + kMost - 1) / kMost;
+  std::vector<float> part;
+  for (std::size_t i = 0; i < size; ++i) {
+    if (PointSample::scatter(i) % one_of != 0) continue;
+    part.insert(part.end(), &points_[3 * i], &points_[3 * i] + 3);
+  }
+  PipelineOptions options;
+  options.threads = threads;
+  options.orientation.hints = std::make_shared<OrientationHints>(given);
+  options.orientation.automatic.find_sensors = false;
+  const std::vector<KnownSensor> known =
+      orientCloud({part.data(), 3, part.size() / 3}, nullptr, options).report.known_sensors;
+  return known.empty() || known.front().used;
 }
 
 void PlanSensors::choose(const OrientationHints& given, int threads) {

@@ -55,6 +55,8 @@ class PlanSensors {
 
   /// Whether the places that are given are followed.
   bool followsGiven() const { return follows_given_; }
+  /// Whether what is far above did not see the surface.
+  bool refusesUp() const { return refuses_up_; }
   /// What is known of the one that is followed.
   const CloudPlace& place() const { return place_; }
   std::size_t found() const { return sure_; }
@@ -68,6 +70,7 @@ class PlanSensors {
 
  private:
   void takeSample(const Plan& plan, const PointSample& sample);
+  bool heeds(const OrientationHints& given, int threads) const;
   void choose(const OrientationHints& given, int threads);
   std::size_t sampleOf(std::uint64_t row, const std::array<float, 3>& place) const;
 
@@ -75,6 +78,7 @@ class PlanSensors {
   std::vector<float> directions_;  // 3 a point of the sample, or empty
   CloudPlace place_;
   bool follows_given_ = true;
+  bool refuses_up_ = false;
   bool completes_given_ = false;
   std::size_t sure_ = 0;
   bool by_row_ = false;        // the sample is all there is

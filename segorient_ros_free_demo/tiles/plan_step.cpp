@@ -4,12 +4,15 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <iterator>
 #include <limits>
 
 #include "common/bulk_bounds.h"
 #include "common/parts.h"
 #include "io/cloud_stream.h"
 #include "support/command_line.h"
+#include "support/hint_options.h"
+#include "tiles/input_state.h"
 #include "tiles/plan_inputs.h"
 #include "tiles/plan_probe.h"
 #include "tiles/plan_sensors.h"
@@ -89,6 +92,28 @@ Place tileOrigin(const Bounds& bounds) {
   return origin;
 }
 
+// Space is not to be cut for the sake of a few points that are far from all others, at 0,0,0 say:
+// any tile has room for a thousandth more.
+std::vector<Place> withoutStrays(const std::vector<Place>& sample, const Bounds& bulk) {
+  std::vector<Place> out;
+  std::copy_if(sample.begin(), sample.end(), std::back_inserter(out),
+               [&](const Place& p) { return bulk.contains(p); });
+  return 1000 * (sample.size() - out.size()) <= sample.size() ? out : sample;
+}
+
+// Of all tiles: such points do not count.
+std::vector<Place> tileOrigins(const TileTree& tree, const std::vector<Place>& sample) {
+  std::vector<std::vector<Place>> of_tiles(tree.tiles());
+  double reach = 0.0;
+  for (const Place& p : sample) of_tiles[tree.owner(p, reach)].push_back(p);
+  std::vector<Place> origins;
+  for (const std::vector<Place>& places : of_tiles) {
+    origins.push_back(
+        tileOrigin(bulkBounds(places.size(), [&](std::size_t i) { return places[i]; })));
+  }
+  return origins;
+}
+
 // Where points are said to have been seen from, or where that was found.
 class Viewpoints {
  public:
@@ -138,6 +163,14 @@ void findWanted(const Probe& probe, const StoredPoint* points, std::size_t size,
   });
 }
 
+// A trajectory of another time base says nothing, and one that ends early only of some.
+void requireJoined(const Trajectory& trajectory, const TrajectoryJoin& joined,
+                   const std::string& path) {
+  if (joined.joined == 0) throw FileError(path, explainNoOverlap(trajectory, joined));
+  const std::size_t without = joined.outside + joined.without_time;
+  if (without > 0) warn(path + ": " + withoutPlaceText(without));
+}
+
 // The second pass: each point to its tile.
 void distribute(const std::string& folder, const StepProgress& progress, const PlanSensors& sensors,
                 int threads, Probe& probe, Plan& plan) {
@@ -147,6 +180,7 @@ void distribute(const std::string& folder, const StepProgress& progress, const P
   const Trajectory trajectory = trajectoryOf(plan);
   std::vector<std::uint8_t> wanted;  // by row of a block
   std::uint64_t row = 0;
+  TrajectoryJoin joined;
   for (std::uint32_t o = 0; o < plan.outputs.size(); ++o) {
     const auto visit = [&](CloudTable& block) {
       viewpoints.begin(block);
@@ -175,8 +209,10 @@ void distribute(const std::string& folder, const StepProgress& progress, const P
         progress(0.4 + 0.55 * static_cast<double>(row) / static_cast<double>(plan.rows));
       }
     };
-    forEachBlock(plan, plan.outputs[o], trajectory, visit, [&] { files.endChunk(o); });
+    forEachBlock(
+        plan, plan.outputs[o], trajectory, visit, [&] { files.endChunk(o); }, &joined);
   }
+  if (trajectory.size() > 0) requireJoined(trajectory, joined, plan.trajectory);
   if (plan.finite == 0) {
     throw FileError(plan.inputs[0].path, "has no point with finite coordinates");
   }
@@ -209,6 +245,10 @@ void followSensors(const PlanSensors& sensors, Plan& plan) {
     plan.place_refused = plan.has_viewpoint || plan.has_viewpoints;
     plan.has_viewpoint = plan.has_viewpoints = false;
   }
+  if (sensors.refusesUp()) {
+    plan.place_refused = true;
+    plan.up = false;
+  }
   plan.place = sensors.place();
   plan.found_sensors = sensors.completesGiven() ? 0 : static_cast<std::uint32_t>(sensors.found());
   plan.seen_within = sensors.seenWithin();
@@ -227,6 +267,7 @@ Plan planStep(const TileRequest& request, const std::string& folder, const StepP
                     "has files of other inputs, outputs or options, or of an input that was "
                     "changed: remove it, or name another folder");
   }
+  removeFilesWithoutPlan(folder);
   plan.k = request.k;
   plan.has_viewpoint = request.has_viewpoint;
   plan.viewpoint = request.viewpoint;
@@ -261,12 +302,9 @@ Plan planStep(const TileRequest& request, const std::string& folder, const StepP
       static_cast<double>(plan.rows) / std::max(1.0, static_cast<double>(sample.places().size()));
   plan.bulk = bulkBounds(places.size(), [&](std::size_t i) { return places[i]; });
   if (plan.bulk.isFar()) plan.origin = plan.bulk.middle();
-  plan.tree = TileTree(places, points_each, mostPoints(request, points_each));
-  const TileTree& tree = plan.tree;
-  std::vector<Bounds> bounds(tree.tiles());
-  double reach = 0.0;
-  for (const Place& p : places) bounds[tree.owner(p, reach)].add(p);
-  for (const Bounds& b : bounds) plan.tile_origins.push_back(tileOrigin(b));
+  plan.tree =
+      TileTree(withoutStrays(places, plan.bulk), points_each, mostPoints(request, points_each));
+  plan.tile_origins = tileOrigins(plan.tree, places);
   plan.chunk_rows = chunkRows(request, row_bytes);
   plan.patch_points = static_cast<std::uint32_t>((plan.rows + kSamplePoints - 1) / kSamplePoints);
   Probe probe(places, points_each, plan.origin);

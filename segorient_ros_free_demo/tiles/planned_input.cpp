@@ -7,10 +7,13 @@
 #include <cmath>
 #include <cstring>
 #include <limits>
+#include <memory>
+#include <utility>
 #include <vector>
 
 #include "common/parts.h"
 #include "io/cloud_stream.h"
+#include "io/join_clouds.h"
 #include "io/readers.h"
 #include "support/hint_options.h"
 
@@ -23,20 +26,26 @@ constexpr double kMostScan = 2147483647.0;
 class InputBlocks {
  public:
   // \param first_scan its number among those of all inputs of one output
+  // \param las of the output, null where it is what the input says
   InputBlocks(const Plan& plan, const PlanInput& input, const Trajectory& trajectory,
-              std::uint64_t first_scan)
+              std::uint64_t first_scan, std::shared_ptr<const LasOrigin> las)
       : plan_(plan),
         input_(input),
         trajectory_(trajectory),
         first_scan_(first_scan),
+        las_(std::move(las)),
         stream_(input.streamed) {}
 
-  bool next(CloudTable& block, std::uint64_t most) {
+  bool next(CloudTable& block, std::uint64_t most, TrajectoryJoin* joined) {
     constexpr std::uint64_t kBlock = std::uint64_t{1} << 16;
     if (!stream_.next(read_, static_cast<std::size_t>(std::min(kBlock, most)))) return false;
     block = read_;
     if (plan_.adds_scans) addScan(block);
-    if (trajectory_.size() > 0) addViewpoints(trajectory_, input_.path, block);
+    if (las_) block.las = las_;
+    if (trajectory_.size() > 0) {
+      const TrajectoryJoin join = addViewpoints(trajectory_, input_.path, block);
+      if (joined != nullptr) addUp(join, *joined);
+    }
     return true;
   }
   // How many scans the blocks so far are of.
@@ -44,11 +53,22 @@ class InputBlocks {
 
  private:
   void addScan(CloudTable& block);
+  static void addUp(const TrajectoryJoin& join, TrajectoryJoin& sum) {
+    const bool first = sum.joined + sum.outside == 0;
+    if (join.joined + join.outside > 0) {
+      sum.first_time = first ? join.first_time : std::min(sum.first_time, join.first_time);
+      sum.last_time = first ? join.last_time : std::max(sum.last_time, join.last_time);
+    }
+    sum.joined += join.joined;
+    sum.outside += join.outside;
+    sum.without_time += join.without_time;
+  }
 
   const Plan& plan_;
   const PlanInput& input_;
   const Trajectory& trajectory_;
   std::uint64_t first_scan_;
+  std::shared_ptr<const LasOrigin> las_;
   CloudStream stream_;
   CloudTable read_;
   std::uint64_t scans_ = 1;
@@ -83,16 +103,28 @@ void InputBlocks::addScan(CloudTable& block) {
   }
 }
 
+// What the LAS file of several inputs says, as that of joinClouds(); null if there is only one.
+std::shared_ptr<const LasOrigin> lasOf(const Plan& plan, const PlanOutput& output) {
+  if (output.inputs < 2) return nullptr;
+  std::vector<std::shared_ptr<const LasOrigin>> origins;
+  for (std::size_t i = output.first_input; i < output.first_input + output.inputs; ++i) {
+    origins.push_back(CloudStream(plan.inputs[i].streamed).layout().las);
+  }
+  return commonOrigin(origins);
+}
+
 }  // namespace
 
 void forEachBlock(const Plan& plan, const PlanOutput& output, const Trajectory& trajectory,
-                  const std::function<void(CloudTable&)>& visit, const std::function<void()>& end) {
+                  const std::function<void(CloudTable&)>& visit, const std::function<void()>& end,
+                  TrajectoryJoin* joined) {
+  const std::shared_ptr<const LasOrigin> las = lasOf(plan, output);
   std::uint64_t in_chunk = 0;
   std::uint64_t scans = 0;
   for (std::size_t i = output.first_input; i < output.first_input + output.inputs; ++i) {
-    InputBlocks blocks(plan, plan.inputs[i], trajectory, scans);
+    InputBlocks blocks(plan, plan.inputs[i], trajectory, scans, las);
     CloudTable block;
-    while (blocks.next(block, plan.chunk_rows - in_chunk)) {
+    while (blocks.next(block, plan.chunk_rows - in_chunk, joined)) {
       in_chunk += block.size;
       visit(block);
       if (in_chunk < plan.chunk_rows) continue;
@@ -122,7 +154,8 @@ void storePoints(const Plan& plan, const CloudTable& block, int threads, StoredP
         const TileTree::Place& p = places[j];
         const bool finite = std::isfinite(p[0]) && std::isfinite(p[1]) && std::isfinite(p[2]);
         out[first + j].place = p;
-        out[first + j].cell = finite ? cells[j] : kNoCell;
+        // A stray where floats end is nobody's neighbour, as in memory.
+        out[first + j].cell = finite && !plan.bulk.isBeyondFloats(p) ? cells[j] : kNoCell;
       }
     }
   });

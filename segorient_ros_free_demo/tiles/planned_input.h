@@ -19,10 +19,12 @@ namespace segorient::program {
 /// are read.
 ///
 /// \param trajectory see trajectoryOf()
+/// \param joined if not null, its numbers of points and its times get those of all blocks
 /// \param visit may take the block over
 /// \param end called behind each chunk, and behind the last block
 void forEachBlock(const Plan& plan, const PlanOutput& output, const Trajectory& trajectory,
-                  const std::function<void(CloudTable&)>& visit, const std::function<void()>& end);
+                  const std::function<void(CloudTable&)>& visit, const std::function<void()>& end,
+                  TrajectoryJoin* joined = nullptr);
 
 /// Places and cells of a block's points as tiles have them. \param out room for all of them
 void storePoints(const Plan& plan, const CloudTable& block, int threads, StoredPoint* out);

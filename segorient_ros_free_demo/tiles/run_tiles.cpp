@@ -14,6 +14,7 @@
 #include "support/json.h"
 #include "support/progress_bar.h"
 #include "support/report_lists.h"
+#include "support/stage_options.h"
 #include "tiles/input_state.h"
 #include "tiles/plan_inputs.h"
 
@@ -35,15 +36,48 @@ bool leavesPlaceAside(const Plan& plan, const JoinSummary& joined) {
   return plan.place_refused || (plan.found_sensors == 0 && joined.sensors_dropped);
 }
 
-std::string reportText(const Plan& plan, const JoinSummary& joined, std::uint64_t segments,
-                       double seconds) {
+// What all steps did.
+struct TilesRun {
+  Plan plan;
+  JoinSummary joined;
+  std::uint64_t segments = 0;
+  std::vector<StageTime> seconds;  // of each step
+
+  double total() const {
+    double sum = 0.0;
+    for (const StageTime& step : seconds) sum += step.seconds;
+    return sum;
+  }
+};
+
+// Times steps one after the other.
+class StepClock {
+ public:
+  explicit StepClock(std::vector<StageTime>& times) : times_(times) {}
+
+  void ended(const char* step) {
+    const auto now = Clock::now();
+    times_.push_back({step, std::chrono::duration<double>(now - begin_).count()});
+    begin_ = now;
+  }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+
+  std::vector<StageTime>& times_;
+  Clock::time_point begin_ = Clock::now();
+};
+
+std::string reportText(const TilesRun& run) {
+  const Plan& plan = run.plan;
+  const JoinSummary& joined = run.joined;
   JsonWriter json;
   json.field("points", plan.rows);
   json.field("non_finite", plan.rows - plan.finite);
   json.field("tiles", plan.tiles());
   json.field("tiles_finished_again", joined.again);
   json.field("pieces", joined.pieces);
-  json.field("segments", segments);
+  json.field("segments", run.segments);
   json.field("sensors_found", joined.sensors_dropped ? 0U : plan.found_sensors);
   json.field("seen_within", plan.seen_within);
   json.field("faces_up", plan.place.faces_up);
@@ -51,11 +85,80 @@ std::string reportText(const Plan& plan, const JoinSummary& joined, std::uint64_
   json.field("noise_in_spacings", plan.traits.noise);
   json.field("denoised", plan.traits.denoise != 0);
   json.beginObject("seconds");
-  json.field("total", seconds);
+  for (const StageTime& step : run.seconds) json.field(step.stage.c_str(), step.seconds);
+  json.field("total", run.total());
   json.endObject();
   json.field("peak_memory_bytes", peakMemory());
   addList(json, "components", joined.components);
   return json.finish();
+}
+
+TilesRun runSteps(const TileRequest& request, const std::string& folder, WorkFolder& work,
+                  ProgressBar& bar) {
+  TilesRun run;
+  StepClock clock(run.seconds);
+  const auto report = [&](const std::string& stage, double from, double to) {
+    return [&bar, stage, from, to](double share) { bar.update(stage, from + (to - from) * share); };
+  };
+  try {
+    run.plan = planStep(request, folder, report("plan", 0.0, kPlanned));
+  } catch (...) {
+    // There is nothing to go on with, unless the folder is that of another run.
+    if (!std::filesystem::exists(planPath(folder))) work.remove();
+    throw;
+  }
+  clock.ended("plan");
+  const Plan& plan = run.plan;
+  bar.setItems(plan.rows);
+  const auto all_tiles = [&](const char* stage, double from, double to, auto step) {
+    double done = 0.0;
+    for (std::size_t t = 0; t < plan.tiles(); ++t) {
+      bar.update(stageName(stage, t, plan.tiles()), from + (to - from) * done);
+      step(plan, folder, t, request.threads);
+      done += static_cast<double>(plan.tile_points[t]) / static_cast<double>(plan.finite);
+    }
+    clock.ended(stage);
+  };
+  all_tiles("tile", kPlanned, kTiled, tileStep);
+  bar.update("join", kTiled);
+  run.joined = joinStep(plan, folder, request.threads);
+  clock.ended("join");
+  all_tiles("finish", kJoined, kFinished, finishStep);
+  run.segments = labelStep(plan, folder);
+  const auto outputs = static_cast<double>(plan.outputs.size());
+  for (std::size_t o = 0; o < plan.outputs.size(); ++o) {
+    const double from = kFinished + (1.0 - kFinished) * static_cast<double>(o) / outputs;
+    writeStep(plan, folder, o, request.threads,
+              report("write", from, from + (1.0 - kFinished) / outputs));
+  }
+  clock.ended("write");
+  return run;
+}
+
+void printSummary(const TilesRun& run) {
+  const Plan& plan = run.plan;
+  const JoinSummary& joined = run.joined;
+  std::printf("points          %llu, %llu not finite\n", static_cast<unsigned long long>(plan.rows),
+              static_cast<unsigned long long>(plan.rows - plan.finite));
+  std::printf("tiles           %zu, of which %llu were worked on again with the whole's signs\n",
+              plan.tiles(), static_cast<unsigned long long>(joined.again));
+  std::printf("segments        %llu, of %llu pieces in %llu components\n",
+              static_cast<unsigned long long>(run.segments),
+              static_cast<unsigned long long>(joined.pieces),
+              static_cast<unsigned long long>(joined.components.size()));
+  if (plan.found_sensors > 0) {
+    std::printf("sensors found   %u%s\n", plan.found_sensors,
+                joined.sensors_dropped ? ", but see surfaces from both sides" : "");
+  }
+  if (plan.seen_within) std::printf("sensors found   none, but it was seen from within\n");
+  if (plan.place.faces_up) {
+    std::printf("sensors found   none, but it is one surface, which faces up\n");
+  }
+  if (leavesPlaceAside(plan, joined)) {
+    std::printf("viewpoint       left aside: the surface contradicts it, or knows better\n");
+  }
+  std::printf("seconds         %.2f: %s\n", run.total(), timesText(run.seconds).c_str());
+  for (const PlanOutput& out : plan.outputs) std::printf("written         %s\n", out.path.c_str());
 }
 
 }  // namespace
@@ -86,76 +189,22 @@ std::string workFolderOf(std::string output, const std::string& folder) {
 void runAllSteps(const TileRequest& request, const std::string& folder_asked_for,
                  const std::string& report_path, bool quiet) {
   const std::string folder = workFolderOf(request.output, folder_asked_for);
-  const auto begin = std::chrono::steady_clock::now();
-  Plan plan;
-  planFiles(request, plan);  // what is wrong with the names is known before there is a folder
+  Plan names;
+  planFiles(request, names);  // what is wrong with the names is known before there is a folder
   WorkFolder work(folder, true);
   work.removeUnfinished();
-  JoinSummary joined;
-  std::uint64_t segments = 0;
+  TilesRun run;
   {
     ProgressBar bar(!quiet, 0);
-    const auto report = [&](const std::string& stage, double from, double to) {
-      return
-          [&bar, stage, from, to](double share) { bar.update(stage, from + (to - from) * share); };
-    };
-    try {
-      plan = planStep(request, folder, report("plan", 0.0, kPlanned));
-    } catch (...) {
-      // There is nothing to go on with, unless the folder is that of another run.
-      if (!std::filesystem::exists(planPath(folder))) work.remove();
-      throw;
-    }
-    bar.setItems(plan.rows);
-    const auto all_tiles = [&](const char* stage, double from, double to, auto step) {
-      double done = 0.0;
-      for (std::size_t t = 0; t < plan.tiles(); ++t) {
-        bar.update(stageName(stage, t, plan.tiles()), from + (to - from) * done);
-        step(plan, folder, t, request.threads);
-        done += static_cast<double>(plan.tile_points[t]) / static_cast<double>(plan.finite);
-      }
-    };
-    all_tiles("tile", kPlanned, kTiled, tileStep);
-    bar.update("join", kTiled);
-    joined = joinStep(plan, folder, request.threads);
-    all_tiles("finish", kJoined, kFinished, finishStep);
-    segments = labelStep(plan, folder);
-    const auto outputs = static_cast<double>(plan.outputs.size());
-    for (std::size_t o = 0; o < plan.outputs.size(); ++o) {
-      const double from = kFinished + (1.0 - kFinished) * static_cast<double>(o) / outputs;
-      writeStep(plan, folder, o, request.threads,
-                report("write", from, from + (1.0 - kFinished) / outputs));
-    }
+    run = runSteps(request, folder, work, bar);
   }
-  const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - begin;
   if (!report_path.empty()) {
     OutputFile file(report_path);
-    file.write(reportText(plan, joined, segments, seconds.count()));
+    file.write(reportText(run));
     file.commit();
   }
   work.remove();
-  if (quiet) return;
-  std::printf("points          %llu, %llu not finite\n", static_cast<unsigned long long>(plan.rows),
-              static_cast<unsigned long long>(plan.rows - plan.finite));
-  std::printf("tiles           %zu, of which %llu were worked on again with the whole's signs\n",
-              plan.tiles(), static_cast<unsigned long long>(joined.again));
-  std::printf("segments        %llu, of %llu pieces in %llu components\n",
-              static_cast<unsigned long long>(segments),
-              static_cast<unsigned long long>(joined.pieces),
-              static_cast<unsigned long long>(joined.components.size()));
-  if (plan.found_sensors > 0) {
-    std::printf("sensors found   %u%s\n", plan.found_sensors,
-                joined.sensors_dropped ? ", but see surfaces from both sides" : "");
-  }
-  if (plan.seen_within) std::printf("sensors found   none, but it was seen from within\n");
-  if (plan.place.faces_up) {
-    std::printf("sensors found   none, but it is one surface, which faces up\n");
-  }
-  if (leavesPlaceAside(plan, joined)) {
-    std::printf("viewpoint       left aside: the surface contradicts it, or knows better\n");
-  }
-  std::printf("seconds         %.2f\n", seconds.count());
-  for (const PlanOutput& out : plan.outputs) std::printf("written         %s\n", out.path.c_str());
+  if (!quiet) printSummary(run);
 }
 
 }  // namespace segorient::program

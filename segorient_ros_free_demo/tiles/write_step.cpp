@@ -3,15 +3,18 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <filesystem>
 #include <limits>
 #include <memory>
 #include <optional>
 #include <utility>
 
 #include "common/parts.h"
+#include "io/cloud_stream.h"
 #include "io/cloud_writer.h"
 #include "io/file_endings.h"
 #include "support/colors.h"
+#include "support/hint_options.h"
 #include "tiles/chunk_order.h"
 #include "tiles/planned_input.h"
 #include "tiles/row_file.h"
@@ -114,8 +117,8 @@ class Results {
 void addBlock(const CloudTable& block, const Results& results, std::size_t first, bool colors,
               std::uint64_t size, int threads, CloudWriter& writer) {
   OutputCloud out(block);
-  const float* n = &results.normals[4 * first];
-  const std::uint32_t* labels = &results.labels[first];
+  const float* n = results.normals.data() + 4 * first;
+  const std::uint32_t* labels = results.labels.data() + first;
   out.add("normal_x", n, 4);
   out.add("normal_y", n + 1, 4);
   out.add("normal_z", n + 2, 4);
@@ -143,6 +146,9 @@ void addBlock(const CloudTable& block, const Results& results, std::size_t first
 void writeStep(const Plan& plan, const std::string& folder, std::size_t output, int threads,
                const StepProgress& progress) {
   requireUnchanged(plan);
+  if (!std::filesystem::exists(joinPath(folder))) {
+    throw FileError(folder, "cannot be written from before it is joined");
+  }
   for (std::size_t t = 0; t < plan.tiles(); ++t) finishStep(plan, folder, t, threads);
   labelStep(plan, folder);
   const PlanOutput& to = plan.outputs[output];
@@ -187,6 +193,12 @@ void writeStep(const Plan& plan, const std::string& folder, std::size_t output, 
         chunk.clear();
         rows = 0;
       });
+  if (size == 0) {  // a cloud without points has its fields all the same
+    CloudTable none = CloudStream(plan.inputs[to.first_input].streamed).layout();
+    none.size = none.width = 0;
+    if (trajectory.size() > 0) addViewpoints(trajectory, to.path, none);
+    addBlock(none, results, 0, colors, 0, threads, writer);
+  }
   writer.end();
   file.commit();
 }

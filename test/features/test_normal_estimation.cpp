@@ -11,6 +11,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <tuple>
 #include <utility>
 
@@ -247,6 +248,13 @@ TEST(PlaneNormalEstimation, ReadyTable) {
   const auto indices = pcl::make_shared<pcl::Indices>(pcl::Indices{5, 4, 2000, 5});
   by_search.setIndices(indices);
   by_table.setIndices(indices);
+  expectEqual(computed(by_search), computed(by_table));
+
+  // A table of all points is read by point also where the indices are all points in another order.
+  const auto reversed = pcl::make_shared<pcl::Indices>(cloud->size());
+  std::iota(reversed->rbegin(), reversed->rend(), 0);
+  by_search.setIndices(reversed);
+  by_table.setIndices(reversed);
   expectEqual(computed(by_search), computed(by_table));
 
   by_table.setInputCloud(Cloud(sphere(77, 1).points).makeShared());

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026, the segorient authors
 #include <gtest/gtest.h>
+#include <pcl/common/io.h>
 #include <segorient/features/normal_recomputation.h>
 
 #include <algorithm>
@@ -247,8 +248,7 @@ TEST(NormalRecomputation, IsTheCoreInRounds) {
   Normals with_table;
   recomputation.compute(with_table);
   recomputation.setNeighborhoods({});
-  recomputation.setLabels(s.labels, s.regular);
-  Normals searched;
+  Normals searched;  // from the labels that were set, not from those that were moved
   recomputation.compute(searched);
   EXPECT_GT(recomputation.getReport().recomputed, 0U);
   s.recompute({}, recomputation.getNumberOfRounds());
@@ -289,6 +289,58 @@ TEST(NormalRecomputation, NanDuplicatesAndIndices) {
   EXPECT_TRUE(std::isnan(out[1].normal_x) && std::isnan(out[2].normal_x));
   EXPECT_EQ(out[0].normal_x, out[3].normal_x);
   EXPECT_FALSE(out.is_dense);
+}
+
+TEST(NormalRecomputation, TheOutputMayBeTheInput) {
+  const Segmented s = segmentedCube(3000, 11, 0.F);
+  const auto normals = cloudOf(s.normals).makeShared();
+  Recomputation recomputation;
+  recomputation.setInputCloud(s.sample.points.makeShared());
+  recomputation.setInputNormals(normals);
+  recomputation.setLabels(s.labels, s.regular);
+  Normals elsewhere;
+  recomputation.compute(elsewhere);
+  recomputation.compute(*normals);
+  ASSERT_EQ(normals->size(), 3000U);
+  for (std::size_t i = 0; i < 3000; ++i) {
+    ASSERT_EQ((*normals)[i].getNormalVector3fMap(), elsewhere[i].getNormalVector3fMap());
+  }
+}
+
+// With a ready table as without one, points that are not asked for keep label and normal.
+TEST(NormalRecomputation, IndicesHoldForAReadyTable) {
+  const Segmented s = segmentedCube(3000, 12, 0.F);
+  const auto half = pcl::make_shared<pcl::Indices>(1500);
+  std::iota(half->begin(), half->end(), 0);
+  Recomputation recomputation;
+  recomputation.setInputCloud(s.sample.points.makeShared());
+  recomputation.setInputNormals(cloudOf(s.normals).makeShared());
+  recomputation.setLabels(s.labels, s.regular);
+  recomputation.setNeighborhoods(pcl::make_shared<Neighborhoods>(s.table));
+  Normals out;
+  recomputation.setIndices(half);
+  recomputation.compute(out);
+  EXPECT_EQ(out.size(), 1500U);
+  EXPECT_GT(recomputation.getReport().recomputed, 0U);
+  EXPECT_LE(recomputation.getReport().examined, 1500U * 2) << "in two rounds";
+  EXPECT_TRUE(std::equal(s.labels.begin() + 1500, s.labels.end(),
+                         recomputation.getLabels().begin() + 1500));
+}
+
+TEST(NormalRecomputation, PointNormalOutputCarriesThePoint) {
+  const Segmented s = segmentedCube(600, 13, 0.F);
+  pcl::PointCloud<pcl::PointNormal> normals;
+  pcl::copyPointCloud(cloudOf(s.normals), normals);
+  NormalRecomputation<pcl::PointXYZ, pcl::PointNormal> recomputation;
+  recomputation.setInputCloud(s.sample.points.makeShared());
+  recomputation.setInputNormals(normals.makeShared());
+  recomputation.setLabels(s.labels, s.regular);
+  pcl::PointCloud<pcl::PointNormal> out;
+  recomputation.compute(out);
+  ASSERT_EQ(out.size(), 600U);
+  for (std::size_t i = 0; i < 600; ++i) {
+    ASSERT_EQ(out[i].getVector3fMap(), s.sample.points[i].getVector3fMap());
+  }
 }
 
 }  // namespace

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <stdexcept>
 
 #include "class_clouds.h"
 
@@ -179,6 +180,26 @@ TEST_F(OrientedNormalEstimationTest, CanBeUsedAgain) {
     for (std::size_t i = 0; i < cloud.size(); ++i) wrong += !test::agrees(normals[i], cloud, i);
     EXPECT_LE(wrong, cloud.size() / 200);
     EXPECT_EQ(estimation.getReport().points, cloud.size());
+  }
+}
+
+TEST_F(OrientedNormalEstimationTest, CanBeUsedAfterAnException) {
+  Estimation estimation;
+  estimation.setInputCloud(test::toPcl(sphere()));
+  estimation.setProgress([](const char*, double) { throw std::runtime_error("no more"); });
+  pcl::PointCloud<pcl::Normal> normals;
+  EXPECT_THROW(estimation.compute(normals), std::runtime_error);
+  const LabelledCloud other = test::sample("cube", test::cube(), 500, 3);
+  pcl::PointCloud<pcl::Normal> fresh;
+  Estimation of_other;
+  for (Estimation* e : {&estimation, &of_other}) {
+    e->setProgress({});
+    e->setInputCloud(test::toPcl(other));
+    e->compute(e == &estimation ? normals : fresh);
+  }
+  ASSERT_EQ(normals.size(), other.size());
+  for (std::size_t i = 0; i < other.size(); ++i) {
+    EXPECT_EQ(normals[i].getNormalVector3fMap(), fresh[i].getNormalVector3fMap());
   }
 }
 

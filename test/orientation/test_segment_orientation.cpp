@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026, the segorient authors
 #include <gtest/gtest.h>
+#include <pcl/common/io.h>
 #include <pcl/console/print.h>
 #include <pcl/search/kdtree.h>
 #include <segorient/orientation/segment_orientation.h>
+#include <segorient/search/median_hash.h>
 
 #include <algorithm>
 #include <cmath>
@@ -40,6 +42,44 @@ class SegmentOrientationTest : public testing::Test {
   const pcl::PointCloud<pcl::PointXYZ>::Ptr points = test::toPcl(cloud);
   const std::vector<float> scrambled = test::scrambledNormals(cloud, 72);
 };
+
+TEST_F(SegmentOrientationTest, PointNormalOutputCarriesThePoint) {
+  const auto normals = pcl::make_shared<pcl::PointCloud<pcl::PointNormal>>();
+  pcl::copyPointCloud(*test::toPclNormals(scrambled), *normals);
+  SegmentOrientation<pcl::PointXYZ, pcl::PointNormal> with_places;
+  with_places.setInputCloud(points);
+  with_places.setInputNormals(normals);
+  pcl::PointCloud<pcl::PointNormal> out;
+  with_places.compute(out);
+  ASSERT_EQ(out.size(), points->size());
+  for (std::size_t i = 0; i < out.size(); ++i) {
+    ASSERT_EQ(out[i].getVector3fMap(), (*points)[i].getVector3fMap());
+  }
+}
+
+// Neighbours are found once for all stages.
+TEST_F(SegmentOrientationTest, AReadyTableIsAsGoodAsASearch) {
+  search::MedianHash<pcl::PointXYZ> search;
+  search.setInputCloud(points);
+  const auto table = std::make_shared<Neighborhoods>();
+  search.nearestKSearchAll(20, *table);
+  for (const auto method : {Orientation::AUTO, Orientation::COMBINED}) {
+    orientation.setNeighborhoods({});
+    orientation.setKSearch(20);
+    const Normals searched = orient(test::toPclNormals(scrambled), method);
+    orientation.setNeighborhoods(table);
+    for (const int k : {0, 20}) {
+      orientation.setKSearch(k);
+      const Normals ready = orient(test::toPclNormals(scrambled), method);
+      ASSERT_EQ(ready.size(), searched.size());
+      for (std::size_t i = 0; i < ready.size(); ++i) {
+        ASSERT_EQ(ready[i].getNormalVector3fMap(), searched[i].getNormalVector3fMap()) << i;
+      }
+    }
+  }
+  orientation.setNeighborhoods(std::make_shared<Neighborhoods>());
+  EXPECT_TRUE(orient(test::toPclNormals(scrambled), Orientation::COMBINED).empty());
+}
 
 TEST_F(SegmentOrientationTest, EachMethodTurnsTrueNormalsOutward) {
   for (const auto method :

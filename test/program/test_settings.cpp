@@ -9,6 +9,7 @@
 
 #include <cmath>
 #include <cstring>
+#include <memory>
 #include <string>
 #include <type_traits>
 #include <vector>
@@ -48,6 +49,7 @@ TEST(Settings, ThePaperToTheLetterHasAllItsEffect) {
   EXPECT_FALSE(paper.orientation.triangulation.fill_gaps);
   EXPECT_FALSE(paper.orientation.check_borders);
   EXPECT_FALSE(paper.orientation.turn_outward);
+  EXPECT_FALSE(paper.segmentation.settle_edges);
 }
 
 TEST(Settings, OfOtherMethodsAreNamed) {
@@ -63,6 +65,25 @@ TEST(Settings, OfOtherMethodsAreNamed) {
   options.orientation.triangulation.kappa1 = 0.2F;
   EXPECT_EQ(settingsWithoutEffect(options),
             (Names{"orientation.triangulation.kappa1", "orientation.automatic.denoise"}));
+}
+
+TEST(Settings, OfTheDefaultMethodAreNamedByTheOthers) {
+  PipelineOptions options;
+  options.orientation.method = OrientationMethod::PROPAGATION;
+  options.orientation.check_borders = false;
+  options.orientation.automatic.beta = 0.4F;
+  auto hints = std::make_shared<OrientationHints>();
+  hints->scans = {0, 1};
+  options.orientation.hints = hints;
+  EXPECT_EQ(settingsWithoutEffect(options), (Names{"orientation.check_borders", "orientation.hints",
+                                                   "orientation.automatic.beta"}));
+  // Chosen normals look for sensors by any method.
+  options = PipelineOptions();
+  options.orientation.method = OrientationMethod::COMBINED;
+  options.orientation.automatic.find_sensors = false;
+  EXPECT_EQ(settingsWithoutEffect(options), Names{});
+  options.k = 12;
+  EXPECT_EQ(settingsWithoutEffect(options), Names{"orientation.automatic.find_sensors"});
 }
 
 SEGORIENT_DEPRECATED_BEGIN
@@ -217,6 +238,33 @@ TEST(Settings, TheClassesWarn) {
   orientation.compute(output);
   EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
   EXPECT_EQ(output.size(), 100U);
+  SegmentationSettings segments;
+  segments.unite_smooth = true;
+  segments.max_gap = 1.F;
+  orientation.setSegmentationOptions(segments);
+  testing::internal::CaptureStderr();
+  orientation.compute(output);
+  std::string said = testing::internal::GetCapturedStderr();
+  EXPECT_NE(said.find("segmentation.unite_smooth"), std::string::npos);
+  EXPECT_EQ(said.find("segmentation.max_gap"), std::string::npos);
+  orientation.setSegmentation(std::make_shared<Segmentation>(orientation.getUsedSegmentation()));
+  testing::internal::CaptureStderr();
+  orientation.compute(output);
+  EXPECT_NE(testing::internal::GetCapturedStderr().find("segmentation.max_gap"), std::string::npos);
+
+  // Nobody set the sensor origin of a cloud.
+  auto from_a_sensor = pcl::make_shared<pcl::PointCloud<pcl::PointXYZ>>(*cloud);
+  from_a_sensor->sensor_origin_ = {4.F, 4.F, 9.F, 0.F};
+  OrientedNormalEstimation<pcl::PointXYZ, pcl::Normal> combined;
+  combined.setMethod(OrientationMethod::COMBINED);
+  combined.setInputCloud(from_a_sensor);
+  testing::internal::CaptureStderr();
+  combined.compute(output);
+  EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
+  combined.setViewPoint(4.F, 4.F, 9.F);
+  testing::internal::CaptureStderr();
+  combined.compute(output);
+  EXPECT_NE(testing::internal::GetCapturedStderr().find("hints"), std::string::npos);
 }
 
 TEST(Settings, KSearchCountsThePointEverywhere) {

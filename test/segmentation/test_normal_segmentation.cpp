@@ -175,6 +175,30 @@ TEST(NormalSegmentation, IndicesAndBadPoints) {
   }
 }
 
+// A search that holds the points of the last call is put on those of this one.
+TEST(NormalSegmentation, OneSearchServesOneSetOfIndicesAfterTheOther) {
+  const PclInput in(Prepared(sample("cube", cube(), 6000, 4)));
+  const auto search = pcl::make_shared<pcl::search::KdTree<pcl::PointXYZ>>();
+  pcl::Indices all(in.cloud->size());
+  std::iota(all.begin(), all.end(), 0);
+  const auto half = static_cast<std::ptrdiff_t>(all.size() / 2);
+  const std::vector<pcl::Indices> subsets{pcl::Indices(all.begin(), all.begin() + half),
+                                          pcl::Indices(all.begin() + half, all.end()), all};
+  Segmenter used;
+  used.setSearchMethod(search);
+  for (const pcl::Indices& subset : subsets) {
+    Segmenter fresh;
+    std::vector<pcl::PointIndices> clusters;
+    for (Segmenter* segmentation : {&used, &fresh}) {
+      segmentation->setInputCloud(in.cloud);
+      segmentation->setInputNormals(in.normals);
+      segmentation->setIndices(pcl::make_shared<pcl::Indices>(subset));
+      segmentation->extract(clusters);
+    }
+    EXPECT_EQ(used.getLabels(), fresh.getLabels());
+  }
+}
+
 TEST(NormalSegmentation, DuplicatesShareTheirLabel) {
   const Prepared prepared(sample("cube", cube(), 3000, 5));
   PclInput in(prepared);

@@ -101,6 +101,21 @@ TEST(SegmentTriangulation, GivenSegmentationAndSingleMeshes) {
   for (std::size_t i = 0; i < again.size(); ++i) ASSERT_EQ(again[i].vertices, polygons[i].vertices);
 }
 
+// What was triangulated stays what it was when another cloud is set.
+TEST(SegmentTriangulation, MeshesAreOfTheCloudThatWasTriangulated) {
+  Triangulation triangulation;
+  triangulation.setInputCloud(toPcl(sample("cube", cube(), 6000, 2)));
+  pcl::PolygonMesh all;
+  pcl::PolygonMesh before;
+  triangulation.reconstruct(all);
+  ASSERT_TRUE(triangulation.getSegmentMesh(0, before));
+  triangulation.setInputCloud(toPcl(sample("cube", cube(), 20, 3)));
+  pcl::PolygonMesh after;
+  ASSERT_TRUE(triangulation.getSegmentMesh(0, after));
+  EXPECT_EQ(after.cloud.data, before.cloud.data);
+  EXPECT_EQ(after.polygons.size(), before.polygons.size());
+}
+
 TEST(SegmentTriangulation, IndicesLimitTheMesh) {
   const LabelledCloud in = sample("cube", cube(), 6000, 3);
   for (const bool given : {false, true}) {

@@ -137,8 +137,51 @@ TEST_F(Faults, FilesOfAnotherVersionAreRefused) {
   expectRefused(step("tile"), "was written by segorient");
 }
 
-TEST_F(Faults, StepsWithoutAPlanSayWhatIsMissing) {
+TEST_F(Faults, StepsThatComeTooEarlySayWhatIsMissing) {
   expectRefused(step("join"), "work/plan");
+  ASSERT_EQ(plan().status, 0);
+  expectRefused(step("join"), "before tile 0 is done");
+  ASSERT_EQ(step("tile").status, 0);
+  expectRefused(step("write"), "before it is joined");
+}
+
+// The plan goes first: whatever else is left of a folder that was being removed, a run begins anew.
+TEST_F(Faults, AFolderThatIsHalfRemovedIsBegunAnew) {
+  ASSERT_EQ(plan().status, 0);
+  ASSERT_EQ(step("tile").status, 0);
+  ASSERT_EQ(step("join").status, 0);
+  ASSERT_EQ(step("write").status, 0);
+  const std::string undisturbed = readFile(out);
+  fs::remove(out);
+  fs::remove(folder + "/plan");
+  fs::remove(folder + "/tile-000001.points");
+  const Outcome again = runProgram(
+      {"orient", in, out, "-q", "--work", folder, "--memory", "1G", "--tile-points", "3000"});
+  ASSERT_EQ(again.status, 0) << again.err;
+  EXPECT_TRUE(readFile(out) == undisturbed);
+  EXPECT_FALSE(fs::exists(folder));
+}
+
+TEST_F(Faults, CleaningCanBeRepeated) {
+  ASSERT_EQ(plan().status, 0);
+  EXPECT_EQ(step("clean").status, 0);
+  EXPECT_FALSE(fs::exists(folder));
+  EXPECT_EQ(step("clean").status, 0);
+}
+
+TEST_F(Faults, APlanOfFilesThatAreNotThereLeavesNoFolder) {
+  fs::remove(in);
+  expectRefused(plan(), "in.ply");
+  EXPECT_FALSE(fs::exists(folder));
+}
+
+TEST_F(Faults, InputsAreNotWrittenOver) {
+  const std::string inputs = scratch.file("inputs");
+  fs::create_directory(inputs);
+  writeDoubles(inputs + "/a.ply", hollowSphere(2000, 0.0, 0.0, 0.0));
+  const std::string before = readFile(writeDoubles(inputs + "/b.ply", hollowSphere(2000, 3, 0, 0)));
+  expectRefused(runProgram({"orient", inputs, inputs, "-q", "--memory", "1G"}), "is an input");
+  EXPECT_TRUE(readFile(inputs + "/b.ply") == before);
 }
 
 }  // namespace

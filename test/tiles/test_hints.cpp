@@ -101,6 +101,20 @@ TEST_F(Hints, ATrajectoryTurnsASheetAndIsWritten) {
   EXPECT_DOUBLE_EQ(cloud.triple(cloud.viewpoints(), 17)[0], 12.5);
 }
 
+TEST_F(Hints, ATrajectoryOfAnotherTimeIsRefusedAsInMemory) {
+  const std::string in =
+      writeFields(scratch.file("in.ply"), {"x", "y", "z", "time"}, sheet({12.5}));
+  const std::string path = scratch.write("path.txt", "100010 0 25 -30\n100020 50 25 -30\n");
+  for (const bool by_tiles : {false, true}) {
+    std::vector<std::string> words{"orient", in, out, "-q", "--trajectory", path};
+    if (by_tiles) words.insert(words.end(), {"--memory", "1G", "--tile-points", "700"});
+    const Outcome run = runProgram(words);
+    EXPECT_EQ(run.status, 1);
+    EXPECT_NE(run.err.find("no point was measured within the trajectory's time"),
+              std::string::npos);
+  }
+}
+
 TEST_F(Hints, OneOutputOfSeveralInputsSaysWhichPointIsWhose) {
   std::vector<double> moved = sheet({});
   for (std::size_t i = 0; i < moved.size(); i += 3) moved[i] += 50.0;
@@ -177,6 +191,12 @@ TEST_F(Hints, ARoomFacesWhoWasCarriedAboutInItAsInMemory) {
   const std::string other = scratch.file("other.ply");
   ASSERT_EQ(tiles("3", other), 0);
   EXPECT_EQ(readFile(other), readFile(out));
+  // Who is said to have been far above a room did not see its floor: as if nothing had been said.
+  ASSERT_EQ(
+      runProgram({"orient", in, other, "-q", "--memory", "1G", "--tile-points", "20000", "--up"})
+          .status,
+      0);
+  EXPECT_GE(sameSides(out, other) + points.size / 10000, points.size);
   std::size_t facing = 0;
   const program::CloudTable cloud = program::readCloud(out);
   for (std::size_t i = 0; i < points.size; ++i) {

@@ -68,6 +68,31 @@ TEST(TilesOfLas, GiveTheFileThatMemoryGives) {
   }
 }
 
+// Files of several grids get one that holds the points of all, as in memory.
+TEST(TilesOfLas, SeveralGridsAreNotRoundedToOne) {
+  const ScratchDirectory scratch;
+  const LasSample all = sphere(1, 3000);
+  LasSample coarse = all;
+  coarse.points.assign(all.points.begin(), all.points.begin() + 1500);
+  coarse.scale *= 100.0;
+  LasSample fine = all;
+  fine.points.assign(all.points.begin() + 1500, all.points.end());
+  const std::string first = scratch.write("a.las", coarse.bytes());
+  const std::string second = scratch.write("b.las", fine.bytes());
+  const std::string out = scratch.file("out.las");
+  const Outcome run =
+      runProgram({"orient", first, second, out, "-q", "--memory", "1G", "--tile-points", "1500"});
+  ASSERT_EQ(run.status, 0) << run.err;
+  const program::CloudTable joint = program::readCloud(out);
+  const program::CloudTable one = program::readCloud(second);
+  ASSERT_EQ(joint.size, 3000U);
+  for (std::size_t i = 0; i < one.size; ++i) {
+    for (std::size_t a = 0; a < 3; ++a) {
+      ASSERT_NEAR(joint.position(1500 + i)[a], one.position(i)[a], 0.01 * all.scale) << i;
+    }
+  }
+}
+
 TEST(TilesOfLas, EachFileOfAFolderStaysOne) {
   const ScratchDirectory scratch;
   fs::create_directory(scratch.file("in"));

@@ -138,6 +138,40 @@ TEST(Tiles, OddCloudsAreOrientedOrGetNaN) {
   }
 }
 
+// A survey with one return at 0,0,0: neither tiles nor their coordinates are laid out for that.
+TEST(Tiles, AFewStraysChangeNothing) {
+  const ScratchDirectory scratch;
+  const std::string whole = scratch.file("whole.ply");
+  const std::string tiled = scratch.file("tiled.ply");
+  for (const double stray : {0.0, 1e7, 1e20}) {
+    std::vector<double> body = hollowSphere(6000, 456123.0, 5412345.0, 312.0);
+    std::fill_n(&body[15], 3, stray);
+    const std::string in = writeDoubles(scratch.file("in.ply"), body);
+    expectRuns({"orient", in, whole, "-q"});
+    for (const char* points : {"20000", "2000"}) {
+      expectRuns({"orient", in, tiled, "-q", "--memory", "1G", "--tile-points", points});
+      EXPECT_GE(sameSides(whole, tiled), 5998U) << stray << ", " << points;
+    }
+  }
+}
+
+// A cloud without points is one all the same; hidden files and notes are none.
+TEST(Tiles, AFolderMayHoldEmptyCloudsAndOtherFiles) {
+  const ScratchDirectory scratch;
+  fs::create_directory(scratch.file("in"));
+  fs::create_directory(scratch.file("out"));
+  writeDoubles(scratch.file("in/a.ply"), hollowSphere(3000, 0.0, 0.0, 0.0));
+  writeDoubles(scratch.file("in/b.ply"), {});
+  scratch.write("in/readme.txt", "These are clouds.\n");
+  scratch.write("in/.c.ply", "no cloud");
+  expectRuns({"orient", scratch.file("in"), scratch.file("out"), "-q", "--memory", "1G"});
+  EXPECT_EQ(program::readCloud(scratch.file("out/a.ply")).size, 3000U);
+  const std::string none = readFile(scratch.file("out/b.ply"));
+  EXPECT_NE(none.find("element vertex 0\n"), std::string::npos) << none;
+  EXPECT_NE(none.find("property float nx\n"), std::string::npos) << none;
+  EXPECT_FALSE(fs::exists(scratch.file("out/readme.txt")));
+}
+
 // What borders say of bodies in contact leads astray; the winding number of all points does not.
 TEST(Tiles, BodiesInContactHaveTheSidesOfTheWhole) {
   const ScratchDirectory scratch;

@@ -511,10 +511,13 @@ def orient(
             trajectory=trajectory is not None,
             up=bool(up),
             scans=scans is not None,
+            organized=organized is not None,
             closed=closed is not None,
             keep=keep is not None,
             seeds=seeds is not None,
+            find_sensors=not find_sensors and (normals != "auto" or k is not None),
         )
+        _warn_of_unused("with method 'hoppe'", gamma=gamma is not None and method == "hoppe")
     array, origin = _local(points)
     if not isinstance(find_sensors, (bool, np.bool_)):
         raise TypeError(f"find_sensors must be True or False, not {find_sensors!r}")

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026, the segorient authors
 //
-// The one file of the library that asks the system for something; it can do without an answer.
+// Asks the system, and can do without an answer.
 #include "common/peak_memory.h"
 
 #if defined(_WIN32)

@@ -26,6 +26,29 @@ RecomputationReport repeat(const PointView& points, const Neighborhoods& neighbo
   return sum;
 }
 
+// The same for some points of a cloud only: the others have no label meanwhile.
+RecomputationReport repeatAmong(const PointView& points, const std::vector<pcl::index_t>& indices,
+                                const Neighborhoods& neighborhoods,
+                                const std::vector<std::uint8_t>& regular,
+                                const RecomputationOptions& options, int rounds,
+                                std::vector<std::int32_t>& labels, std::vector<float>& normals) {
+  std::vector<std::uint8_t> used(points.size, 0);
+  for (const pcl::index_t index : indices) {
+    const auto i = static_cast<std::size_t>(index);
+    if (index >= 0 && i < points.size) used[i] = 1;
+  }
+  std::vector<std::int32_t> of_used = labels;
+  for (std::size_t i = 0; i < points.size; ++i) {
+    if (used[i] == 0) of_used[i] = -1;
+  }
+  const RecomputationReport report =
+      repeat(points, neighborhoods, regular, options, rounds, of_used, normals);
+  for (std::size_t i = 0; i < points.size; ++i) {
+    if (used[i] != 0) labels[i] = of_used[i];
+  }
+  return report;
+}
+
 }  // namespace
 
 RecomputationReport recomputeCloudNormals(const PointView& points,
@@ -38,7 +61,7 @@ RecomputationReport recomputeCloudNormals(const PointView& points,
   if (labels.size() != points.size || normals.size() != 4 * points.size) return {};
   if (neighborhoods) {
     if (neighborhoods->size() != points.size || !refersTo(*neighborhoods, points.size)) return {};
-    return repeat(points, *neighborhoods, regular, options, rounds, labels, normals);
+    return repeatAmong(points, indices, *neighborhoods, regular, options, rounds, labels, normals);
   }
   PreparedCloud cloud(points, &indices, options.threads);
   cloud.findNeighbors(std::max(options.k, 1), false);

@@ -178,7 +178,7 @@ bool estimateNormalsFromTable(const PointView& input, const pcl::Indices& indice
   const std::size_t rows = neighborhoods.size();
   if (rows != indices.size() && rows != input.size) return false;
   if (!refersTo(neighborhoods, surface.size)) return false;
-  const bool by_index = rows == indices.size();
+  const bool by_index = rows != input.size;
   const detail::FourFloats xyz(surface);
   const PointView points{xyz.data(), 4, surface.size};
   bool identity = indices.size() == input.size;

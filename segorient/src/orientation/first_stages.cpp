@@ -40,6 +40,7 @@ void FirstStages::findNormals() {
 }
 
 void FirstStages::findSegments() {
+  if (impl_->stages.normals.empty()) findNormals();
   impl_->clock.begin("segmentation", 0.8);
   SegmentationOptions options{impl_->options.segmentation};
   options.threads = impl_->options.threads;

@@ -12,7 +12,7 @@ OrientationOptions paperOptions(OrientationMethod method) {
   options.boundary = BoundaryTest::TRIANGULATED;
   options.triangulation.critical_factor = 1.F;
   options.triangulation.fill_gaps = false;
-  options.check_borders = false;
+  options.check_borders = method == OrientationMethod::PROPAGATION;  // which has no such check
   options.turn_outward = false;
   return options;
 }
@@ -22,6 +22,7 @@ PipelineOptions paperPipelineOptions(OrientationMethod method) {
   options.normals.estimator = NormalEstimator::PLANE;
   options.segmentation.max_gap = 0.F;
   options.segmentation.max_offset = 0.F;
+  options.segmentation.settle_edges = false;
   options.recomputations = 1;
   options.recomputation.rule = RecomputationRule::MODIFIED_NEIGHBORHOODS;
   options.recomputation.delta_between_references = true;

@@ -2,6 +2,9 @@
 // Copyright (c) 2026, the segorient authors
 #include <segorient/common/export.h>
 #include <segorient/orientation/pipeline.h>
+#include <segorient/orientation/impl/oriented_segmentation.hpp>
+
+#include "orientation/pipeline_stages.h"
 
 namespace segorient {
 namespace {
@@ -36,8 +39,9 @@ std::vector<std::string> changed(const TriangulationSettings& s) {
   return out.names();
 }
 
-// But for angles of segments, which go hand in hand with those of the segments that are returned.
-std::vector<std::string> changed(const AutomaticOptions& s) {
+// But for angles of segments, see changedAngles().
+// \param finds_sensors normals ask for them, too
+std::vector<std::string> changed(const AutomaticOptions& s, bool finds_sensors) {
   const AutomaticOptions standard;
   Changed out("automatic.");
   out.add("denoise", s.denoise, standard.denoise);
@@ -49,11 +53,24 @@ std::vector<std::string> changed(const AutomaticOptions& s) {
   out.add("wind_components", s.wind_components, standard.wind_components);
   out.add("turn_loose_parts", s.turn_loose_parts, standard.turn_loose_parts);
   out.add("coarse_levels", s.coarse_levels, standard.coarse_levels);
-  out.add("find_sensors", s.find_sensors, standard.find_sensors);
+  if (!finds_sensors) out.add("find_sensors", s.find_sensors, standard.find_sensors);
   out.add("filter_rounds", s.filter_rounds, standard.filter_rounds);
   out.add("filter_wedges", s.filter_wedges, standard.filter_wedges);
   out.add("winding_normals", s.winding_normals, standard.winding_normals);
   out.add("fit_normals", s.fit_normals, standard.fit_normals);
+  return out.names();
+}
+
+// Angles go hand in hand with those of the segments that are returned: they are named where they
+// were changed by themselves.
+std::vector<std::string> changedAngles(const AutomaticOptions& s,
+                                       const SegmentationSettings& segments) {
+  const AutomaticOptions standard;
+  const SegmentationSettings usual;
+  Changed out("automatic.");
+  if (segments.alpha == usual.alpha) out.add("alpha", s.alpha, standard.alpha);
+  if (segments.beta == usual.beta) out.add("beta", s.beta, standard.beta);
+  if (segments.epsilon == usual.epsilon) out.add("epsilon", s.epsilon, standard.epsilon);
   return out.names();
 }
 
@@ -86,13 +103,35 @@ std::vector<std::string> changedOfGrowing(const SegmentationSettings& s) {
   return out.names();
 }
 
+std::vector<std::string> changed(const SegmentationSettings& s) {
+  const SegmentationSettings standard;
+  Changed out("segmentation.");
+  out.add("alpha", s.alpha, standard.alpha);
+  out.add("beta", s.beta, standard.beta);
+  out.add("epsilon", s.epsilon, standard.epsilon);
+  out.add("small_size", s.small_size, standard.small_size);
+  out.add("neighbor_share", s.neighbor_share, standard.neighbor_share);
+  out.add("max_gap", s.max_gap, standard.max_gap);
+  out.add("max_offset", s.max_offset, standard.max_offset);
+  out.add("max_curvature", s.max_curvature, standard.max_curvature);
+  out.add("max_residual", s.max_residual, standard.max_residual);
+  out.add("compare_with_seed", s.compare_with_seed, standard.compare_with_seed);
+  out.add("absorb_small", s.absorb_small, standard.absorb_small);
+  out.add("extract_edges", s.extract_edges, standard.extract_edges);
+  out.add("settle_edges", s.settle_edges, standard.settle_edges);
+  out.add("unite_smooth", s.unite_smooth, standard.unite_smooth);
+  out.add("connect_small", s.connect_small, standard.connect_small);
+  return out.names();
+}
+
 // What is known beforehand and was said on purpose: fields of points say some of it unasked.
 bool saysSomething(const OrientationHints& hints) {
   return hints.surface != SurfaceKind::UNKNOWN || hints.has_viewpoint || hints.has_direction ||
-         !hints.seeds.empty() || !hints.normals.empty();
+         !hints.seeds.empty() || !hints.normals.empty() || !hints.scans.empty();
 }
 
-std::vector<std::string> unusedByMethod(const OrientationSettings& settings) {
+// \param finds_sensors as above
+std::vector<std::string> unusedByMethod(const OrientationSettings& settings, bool finds_sensors) {
   using Method = OrientationMethod;
   const OrientationSettings standard;
   const Method method = settings.method;
@@ -102,6 +141,8 @@ std::vector<std::string> unusedByMethod(const OrientationSettings& settings) {
     out.add("gamma", settings.gamma, standard.gamma);
     out.add("boundary", settings.boundary, standard.boundary);
     out.add("max_box_points", settings.max_box_points, standard.max_box_points);
+  }
+  if (!by_segments || method == Method::PROPAGATION) {
     out.add("check_borders", settings.check_borders, standard.check_borders);
   }
   if (!by_segments || method == Method::BOUNDARY) {
@@ -117,7 +158,7 @@ std::vector<std::string> unusedByMethod(const OrientationSettings& settings) {
     out.add("turn_outward", settings.turn_outward, standard.turn_outward);
   }
   if (method != Method::AUTO) {
-    out.addAll("", changed(settings.automatic));
+    out.addAll("", changed(settings.automatic, finds_sensors));
     out.add("hints", settings.hints && saysSomething(*settings.hints), false);
   }
   return out.names();
@@ -137,7 +178,7 @@ SEGORIENT_DEPRECATED_END
 
 std::vector<std::string> settingsWithoutEffect(const OrientationSettings& settings) {
   Changed out("");
-  out.addAll("", unusedByMethod(settings));
+  out.addAll("", unusedByMethod(settings, false));
   if (settings.method == OrientationMethod::AUTO) {  // sensors are looked for by orientCloud()
     out.add("automatic.find_sensors", settings.automatic.find_sensors,
             AutomaticOptions().find_sensors);
@@ -145,12 +186,33 @@ std::vector<std::string> settingsWithoutEffect(const OrientationSettings& settin
   return out.names();
 }
 
-std::vector<std::string> settingsWithoutEffect(const PipelineOptions& options) {
-  const PipelineOptions standard;
+std::vector<std::string> settingsWithoutEffect(const SegmentationSettings& segmentation,
+                                               const OrientationSettings& orientation,
+                                               bool segments_are_given) {
   Changed out("");
-  out.addAll("", formerSettings(options));
-  out.addAll("orientation.", unusedByMethod(options.orientation));
+  if (segments_are_given) {
+    out.addAll("", changed(segmentation));
+  } else if (orientation.method == OrientationMethod::AUTO) {
+    out.addAll("", changedOfGrowing(segmentation));
+  } else {
+    out.add("segmentation.unite_smooth", segmentation.unite_smooth, false);
+  }
+  out.addAll("", settingsWithoutEffect(orientation));
+  return out.names();
+}
+
+std::vector<std::string> settingsWithoutEffect(const PipelineOptions& given) {
+  const PipelineOptions standard;
+  const PipelineOptions options = detail::withFormerSettings(given);
+  Changed out("");
+  out.addAll("", formerSettings(given));
+  // The paper's methods look for sensors where normals and their neighbours are chosen for them.
+  const bool chooses = options.normals.estimator == NormalEstimator::AUTO && options.k <= 0;
+  out.addAll("orientation.", unusedByMethod(options.orientation, chooses));
   const bool automatic = options.orientation.method == OrientationMethod::AUTO;
+  if (!automatic) {
+    out.addAll("orientation.", changedAngles(options.orientation.automatic, options.segmentation));
+  }
   if (automatic) {
     out.add("orientation.turn_outward", options.orientation.turn_outward,
             standard.orientation.turn_outward);

@@ -11,7 +11,7 @@ namespace segorient {
 /// consecutive floats at `data + i * stride`.
 ///
 /// This is what every stage computes on. A PCL cloud whose point type has x, y, z in a row is
-/// viewed without a copy (see CloudPoints in common/cloud_access.h).
+/// viewed without a copy (see CloudPoints in common/impl/cloud_access.hpp).
 struct PointView {
   const float* data = nullptr;  ///< first row
   std::size_t stride = 4;       ///< floats from one row to the next
@@ -31,7 +31,7 @@ struct NormalView : PointView {
   NormalView(const float* first, std::size_t floats, std::size_t rows)
       : PointView{first, floats, rows} {}
   /// \param curvature_offset floats from normal_x to the curvature: in PCL's types 4 or more, see
-  ///        CloudNormals in common/cloud_access.h
+  ///        CloudNormals in common/impl/cloud_access.hpp
   NormalView(const PointView& normals, std::size_t curvature_offset)
       : PointView(normals), curvature(curvature_offset) {}
 };

@@ -40,9 +40,10 @@ class LocalNormalEstimation : public pcl::NormalEstimation<PointInT, PointOutT> 
   }
   unsigned int getNumberOfThreads() const { return static_cast<unsigned int>(options_.threads); }
 
-  /// Uses this table instead of searching. Its rows belong to the indices of setIndices() or to all
-  /// points of the input cloud, its entries to the search surface. setKSearch() then says how many
-  /// entries of each row to use (0 = all). Null (default): search.
+  /// Uses this table instead of searching. Its rows belong to the points of the input cloud, if
+  /// there are as many, and else to the indices of setIndices(); its entries to the search surface.
+  /// setKSearch() then says how many entries of each row to use (0 = all); a radius is not looked
+  /// at. Null (default): search.
   void setNeighborhoods(const NeighborhoodsConstPtr& neighborhoods) {
     neighborhoods_ = neighborhoods;
   }

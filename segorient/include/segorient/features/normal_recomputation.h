@@ -45,11 +45,11 @@ class NormalRecomputation : public pcl::PCLBase<PointT> {
   /// \param regular one a label: 1 for the regular segments
   void setLabels(const std::vector<std::int32_t>& labels,
                  const std::vector<std::uint8_t>& regular) {
-    labels_ = labels;
+    labels_ = moved_labels_ = labels;
     regular_ = regular;
   }
-  /// As set, and after compute() as moved.
-  const std::vector<std::int32_t>& getLabels() const { return labels_; }
+  /// As set, and after compute() as moved; the next compute() starts from those that were set.
+  const std::vector<std::int32_t>& getLabels() const { return moved_labels_; }
   const std::vector<std::uint8_t>& getRegular() const { return regular_; }
 
   /// Uses this table, one row a point of the input cloud, instead of searching. Null: search.
@@ -97,7 +97,8 @@ class NormalRecomputation : public pcl::PCLBase<PointT> {
   }
   unsigned int getNumberOfThreads() const { return static_cast<unsigned int>(options_.threads); }
 
-  /// \param output the input normals, one an index, those near edges replaced
+  /// \param output the input normals, one an index, those near edges replaced, with the points'
+  ///        coordinates where the type has some; may be the cloud of the input normals
   void compute(Normals& output);
 
   /// What the last compute() did, in all rounds together.
@@ -105,12 +106,14 @@ class NormalRecomputation : public pcl::PCLBase<PointT> {
 
  private:
   bool checkInput() const;
+  void recompute(Normals& output);
 
   using pcl::PCLBase<PointT>::indices_;
   using pcl::PCLBase<PointT>::input_;
 
   NormalsConstPtr normals_;
-  std::vector<std::int32_t> labels_;
+  std::vector<std::int32_t> labels_;  ///< as set
+  std::vector<std::int32_t> moved_labels_;
   std::vector<std::uint8_t> regular_;
   NeighborhoodsConstPtr neighborhoods_;
   RecomputationOptions options_;

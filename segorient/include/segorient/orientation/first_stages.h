@@ -22,8 +22,11 @@ class SEGORIENT_ORIENTATION_EXPORT FirstStages {
   /// Neighbours of a point where PipelineOptions::k leaves the choice open.
   static constexpr int kDefaultNeighbors = 12;
 
-  /// Finds the neighbours. \param options must outlive this object; its `orientation` and what
-  /// belongs to OrientationMethod::AUTO are not used \param progress may be empty
+  /// Finds the neighbours.
+  /// \param options must outlive this object. Of its `orientation`, normals that are chosen
+  ///        (NormalEstimator::AUTO and k = 0) heed `automatic.find_sensors` and what `hints`
+  ///        suggest, nothing else is used
+  /// \param progress may be empty
   FirstStages(const PointView& points, const PipelineOptions& options,
               PipelineProgress progress = {});
   ~FirstStages();
@@ -33,7 +36,7 @@ class SEGORIENT_ORIENTATION_EXPORT FirstStages {
   /// Unoriented ones, by `options.normals`; those near sharp edges anew, `options.recomputations`
   /// times.
   void findNormals();
-  /// After findNormals(), by `options.segmentation`.
+  /// By `options.segmentation`, after findNormals(), which is called if it was not.
   void findSegments();
 
   // By input row. Rows that repeat a point have that point's result.

@@ -44,7 +44,8 @@ enum class BoundaryTest : std::uint8_t {
   TRIANGULATED  ///< from triangulations of the segments: the paper's
 };
 
-/// Settings of the default method, OrientationMethod::AUTO; the other methods use none of these.
+/// Settings of the default method, OrientationMethod::AUTO; the other methods use none of these but
+/// find_sensors.
 /// Each step can be switched off to see what it is worth. Angles in radians.
 struct AutomaticOptions {
   // Normals of single sheets.
@@ -71,7 +72,9 @@ struct AutomaticOptions {
   bool coarse_levels = true;
 
   /// Where no sensor is known, look for some, see findSensors(): those that are sure count as if
-  /// they were given. orientCloud() does it; what takes segments from elsewhere does not.
+  /// they were given. orientCloud() does it; what takes segments from elsewhere does not. By the
+  /// other methods they change normals only: those that are chosen (NormalEstimator::AUTO and k =
+  /// 0) are of planes of more neighbours in scans.
   bool find_sensors = true;
 
   // The normals that are returned.
@@ -115,7 +118,8 @@ struct OrientationSettings {
   /// its own rule: the highest point's normal points up (paper, 3.1). orientCloud() by
   /// AUTO always turns them.
   bool turn_outward = true;
-  /// What is known beforehand, by input row; null = nothing. Only AUTO uses it.
+  /// What is known beforehand, by input row; null = nothing. Only AUTO uses it, but for
+  /// OrientationHints::suggested, which goes with find_sensors.
   std::shared_ptr<const OrientationHints> hints;
 };
 

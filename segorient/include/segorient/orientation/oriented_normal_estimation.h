@@ -34,7 +34,8 @@ namespace segorient {
 /// A point without a normal (NaN coordinates, a stray farther away than 2^24 times the extent of
 /// the others, or fewer than three distinct points around) gets NaN, and is_dense is cleared. No
 /// cloud, an empty one, a negative k or radius, or both: PCL_ERROR and an empty output. Settings
-/// that the method does not look at, see settingsWithoutEffect(), are named by a PCL_WARN.
+/// that the method does not look at, see settingsWithoutEffect(), are named by a PCL_WARN. What
+/// setProgress()'s function throws leaves compute(); the object can be used again.
 template <typename PointInT, typename PointOutT>
 class OrientedNormalEstimation : public pcl::NormalEstimation<PointInT, PointOutT> {
  public:
@@ -183,6 +184,8 @@ class OrientedNormalEstimation : public pcl::NormalEstimation<PointInT, PointOut
   void computeFeature(PointCloudOut& output) override;
 
  private:
+  void estimate(PointCloudOut& output);
+  void warnOfUnused(PipelineOptions options) const;
   void write(PointCloudOut& output) const;
   OrientationHints gatherHints(const pcl::PointCloud<PointInT>& cloud) const;
 

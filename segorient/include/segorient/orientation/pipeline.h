@@ -48,7 +48,8 @@ struct SEGORIENT_ORIENTATION_EXPORT PipelineOptions {
   /// How normals are estimated, by default as the cloud asks for. Not for OrientationMethod::AUTO.
   NormalSettings normals{NormalEstimator::AUTO};
   /// OrientationMethod::AUTO grows by AutomaticOptions and takes from here what is about the
-  /// clean-up; the paper's methods do not settle edges or unite segments.
+  /// clean-up; of the paper's methods the segments that are oriented are of all neighbours, are not
+  /// united and have no edges settled, those of recomputation may.
   SegmentationSettings segmentation;
   /// How often normals near sharp edges are found anew (paper, 2.3.1), each time by the segments
   /// that the normals then make. Not for OrientationMethod::AUTO.
@@ -76,9 +77,9 @@ struct SEGORIENT_ORIENTATION_EXPORT PipelineOptions {
 };
 
 /// The paper to the letter, all stages: planes through the neighbours, segments that gaps and thin
-/// walls do not keep apart, one round of recomputation by the paper's rule with delta between
-/// reference normals, and paperOptions(). The paper leaves the number of neighbours open; so does
-/// this.
+/// walls do not keep apart and whose edges are not settled, one round of recomputation by the
+/// paper's rule with delta between reference normals, and paperOptions(). The paper leaves the
+/// number of neighbours open; so does this.
 SEGORIENT_ORIENTATION_EXPORT PipelineOptions
 paperPipelineOptions(OrientationMethod method = OrientationMethod::COMBINED);
 
@@ -114,8 +115,10 @@ struct PipelineReport {
   NormalEstimator estimator = NormalEstimator::AUTO;  ///< as asked for
   std::string normals_chosen;  ///< how normals were found and, where nothing was asked for, why so
   OrientationMethod method = OrientationMethod::AUTO;
-  float spacing = 0.F;    ///< h: median over points of the mean distance to the 6 nearest
-  float noise = 0.F;      ///< rms distance of a neighbourhood from its plane, in spacings, median
+  float spacing = 0.F;  ///< h: median over points of the mean distance to the 6 nearest
+  /// In spacings: of AUTO the standard deviation of positions across the surface, of the other
+  /// methods the median rms distance of 18 neighbours from their plane.
+  float noise = 0.F;
   bool denoised = false;  ///< whether neighbours were sought after smoothing the positions
   /// Borders where sure evidence had to be overruled, in input coordinates; a surface without two
   /// sides has some.

@@ -6,6 +6,7 @@
 #include <pcl/point_cloud.h>
 #include <pcl/point_types.h>
 #include <pcl/search/search.h>
+#include <segorient/common/neighborhoods.h>
 #include <segorient/orientation/impl/oriented_segmentation.hpp>
 
 #include <limits>
@@ -37,7 +38,7 @@ namespace segorient {
 /// coordinates or farther from the bulk of the points than 2^24 times its extent, gets NaN whatever
 /// normal it had; is_dense is cleared then. With indices, output i belongs to
 /// index i; the whole cloud is oriented all the same. No cloud, normals of another size, segments
-/// of another cloud or a negative k: PCL_ERROR and an empty output.
+/// of another cloud, neighbourhoods of another size or a negative k: PCL_ERROR and an empty output.
 template <typename PointT, typename NormalT>
 class SegmentOrientation : public pcl::PCLBase<PointT> {
  public:
@@ -48,6 +49,7 @@ class SegmentOrientation : public pcl::PCLBase<PointT> {
   using PointCloudNConstPtr = typename PointCloudN::ConstPtr;
   using SearcherPtr = typename pcl::search::Search<PointT>::Ptr;
   using SegmentationConstPtr = std::shared_ptr<const Segmentation>;
+  using NeighborhoodsConstPtr = std::shared_ptr<const Neighborhoods>;
   using Method = OrientationMethod;
 
   static constexpr Method AUTO = Method::AUTO;
@@ -65,7 +67,7 @@ class SegmentOrientation : public pcl::PCLBase<PointT> {
   void setSegmentation(const SegmentationConstPtr& segmentation) { segmentation_ = segmentation; }
   SegmentationConstPtr getSegmentation() const { return segmentation_; }
 
-  /// How the segments made anew are made.
+  /// How the segments made anew are made: of at most 10 neighbours.
   void setSegmentationOptions(const SegmentationSettings& options) {
     segmentation_options_ = options;
   }
@@ -75,6 +77,14 @@ class SegmentOrientation : public pcl::PCLBase<PointT> {
   /// on the whole input cloud.
   void setSearchMethod(const SearcherPtr& search) { search_ = search; }
   SearcherPtr getSearchMethod() const { return search_; }
+
+  /// Ready neighbourhoods of the whole input cloud (row = point), so that neighbours are found
+  /// once; null (default) to search. They go before a search method; setKSearch() then says how
+  /// many entries of each row to use (0 = all).
+  void setNeighborhoods(const NeighborhoodsConstPtr& neighborhoods) {
+    neighborhoods_ = neighborhoods;
+  }
+  NeighborhoodsConstPtr getNeighborhoods() const { return neighborhoods_; }
 
   /// Neighbours of a point and the point itself, as in PCL; 0 (default) = 33 for AUTO and 13 for
   /// the others. More than 129 are not used.
@@ -164,7 +174,8 @@ class SegmentOrientation : public pcl::PCLBase<PointT> {
   }
   unsigned int getNumberOfThreads() const { return static_cast<unsigned int>(options_.threads); }
 
-  /// \param output the input normals, oriented
+  /// \param output the input normals, oriented, with the points' coordinates where the type has
+  ///        some; may be the cloud of the input normals
   void compute(PointCloudN& output);
 
   // Of the last compute(), empty before; by point of the input cloud.
@@ -186,9 +197,11 @@ class SegmentOrientation : public pcl::PCLBase<PointT> {
  private:
   bool orient();
   PointSearch searchFunction();
+  int otherNeighbors() const;
 
   PointCloudNConstPtr normals_;
   SearcherPtr search_;
+  NeighborhoodsConstPtr neighborhoods_;
   SegmentationConstPtr segmentation_;
   SegmentationSettings segmentation_options_;
   OrientationOptions options_;

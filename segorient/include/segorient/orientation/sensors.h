@@ -98,7 +98,7 @@ struct SensorOptions {
   bool search = true;  ///< otherwise only suggestions, and images
   /// Pixels in a row of an organised cloud, row by row from the first; 0 = not organised.
   std::size_t image_width = 0;
-  int threads = 0;  ///< see resolveThreads()
+  int threads = 0;  ///< 0 = all cores; the result does not depend on it
 };
 
 struct SensorReport {

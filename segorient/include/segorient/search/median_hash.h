@@ -29,8 +29,9 @@ namespace segorient::search {
 /// Distances are, to the last bit, those of PCL's own kd-tree; equal distances are ordered by
 /// index. Where PCL asserts or crashes (no cloud, NaN query, index out of range, k <= 0), the
 /// result here is empty and the count 0. Points with NaN or infinite coordinates are never found. k
-/// larger than the cloud is cut to it. With indices, results are indices into the cloud, a query by
-/// index is a position in the indices, and an index that is given twice is found twice.
+/// larger than the cloud is cut to it, but nearestKSearchAll() makes room for k. With indices,
+/// results are indices into the cloud, a query by index is a position in the indices, and an index
+/// that is given twice is found twice.
 ///
 /// After setEpsilon(e), distances are at most 1 + e times the true ones of the same rank, and the
 /// same for the same cloud and query. Single queries make use of that only where the cloud's points

@@ -109,9 +109,9 @@ struct SegmentationSettings {
   /// point there goes to the segment whose flat part, continued, passes nearest to it. So do the
   /// points of strips: segments without an inside, such as the row of points on an edge of a grid.
   bool settle_edges = true;
-  /// Beyond the paper, at the end: segments whose common border is smooth are one face, see
-  /// segmentByNormals(), which gives both and does not look at this. Faces that bend by more than
-  /// beta cannot be triangulated or oriented as one.
+  /// Beyond the paper, at the end: segments whose common border is smooth are one face.
+  /// NormalSegmentation has a setter of its own and gives both. Faces that bend by more than beta
+  /// cannot be triangulated or oriented as one.
   bool unite_smooth = false;
   bool connect_small = true;  ///< clean-up pass 3: small segments that touch become connected ones
 };
@@ -124,7 +124,7 @@ struct SegmentationOptions : SegmentationSettings {
   int threads = 0;  ///< 0 = all cores; no result depends on it
 };
 
-/// What the stages of segmentByNormals() did.
+/// What the stages of segmentation did.
 struct SegmentationReport {
   std::size_t grown = 0;      ///< segments after growing
   std::size_t small = 0;      ///< small ones among them

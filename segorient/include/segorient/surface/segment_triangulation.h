@@ -79,7 +79,8 @@ class SegmentTriangulation : public pcl::MeshConstruction<PointNT> {
   /// By segment, after reconstruct(): triangles, boundary loops, duplicates.
   const std::vector<SegmentMesh>& getMeshes() const { return meshes_; }
 
-  /// One segment of the last reconstruct() as a mesh of its own points only.
+  /// One segment of the last reconstruct() as a mesh of its own points only, which are those of the
+  /// cloud that was triangulated.
   /// \return false if there is no such segment or it has no triangles; the mesh is empty then
   bool getSegmentMesh(std::size_t segment, pcl::PolygonMesh& output) const;
 
@@ -98,6 +99,7 @@ class SegmentTriangulation : public pcl::MeshConstruction<PointNT> {
   TriangulationOptions options_;
   bool all_ = false;
   std::vector<SegmentMesh> meshes_;
+  typename pcl::PointCloud<PointNT>::ConstPtr triangulated_;  ///< that meshes_ are of
 };
 
 }  // namespace segorient

@@ -63,6 +63,69 @@ std::vector<std::uint8_t> lookAround(const SheetNormals& sheets, int threads) {
   return out;
 }
 
+// Segments of single sheets and the sign of each.
+AutoOrientation orientSegments(const PointView& points, const Neighborhoods& neighborhoods,
+                               const SheetNormals& sheets, const AutomaticOptions& settings,
+                               const PointHints& hints, int threads,
+                               const std::function<void(const char*, double)>& begin,
+                               SheetRecord* record, FinishedSegments* finished) {
+  const SheetField field = fieldOf(sheets);
+  SheetSegmentationOptions cuts;
+  cuts.alpha = settings.alpha;
+  cuts.beta = settings.beta;
+  cuts.epsilon = settings.epsilon;
+  cuts.require_support = settings.require_support;
+  cuts.clean_up = settings.clean_up;
+  cuts.threads = threads;
+  Segmentation segments = segmentSheets(points, neighborhoods, field, cuts, finished);
+  if (begin) begin("orientation", 0.62);
+  AutoOrientation out =
+      record != nullptr && record->known
+          ? record->known(segments)
+          : orientSheets(points, neighborhoods, field, segments,
+                         borderVotes(points, neighborhoods, field, segments, threads), points.size,
+                         settings, hints, threads);
+  if (record != nullptr) {
+    if (!record->known) {
+      record->votes = borderVotes(points, neighborhoods, field, segments, threads, record->voters);
+    }
+    record->segments = std::move(segments);
+    record->sheets = sheets;
+  }
+  return out;
+}
+
+// The normals that are returned: turned, and bettered by what is around each point.
+FilteredNormals finishNormals(MoreNeighbors& more, const Neighborhoods& neighborhoods,
+                              const AutomaticOptions& settings, const AutoOrientation& orientation,
+                              int threads, SheetNormals& sheets) {
+  const PointView& points = more.points();
+  parallelFor(points.size, threads, 5.0, [&](std::size_t i) {
+    const auto sign = static_cast<float>(orientation.result.point_signs[i]);
+    for (std::size_t a = 0; a < 3; ++a) sheets.normals[4 * i + a] *= sign;
+  });
+  std::vector<float> own;
+  if (sheets.traits.onlyManyShowNoise()) own = sheets.normals;
+  FilteredNormals filtered = filterOrientedNormals(
+      points, neighborhoods, std::move(sheets.normals), sheets.spacing, sheets.residual,
+      settings.filter_rounds, settings.filter_wedges, threads);
+  if (!own.empty()) keepLines(own, orientation.toward, threads, filtered.normals);
+  if (settings.winding_normals && settings.filter_rounds > 0) {
+    refineByWinding(points, sheets.spacing, sheets.residual, !own.empty(), threads, filtered);
+  }
+  if (!orientation.toward.empty() && sheets.traits.scan_scales) {
+    replaceGrazingNormals(more, orientation.toward, threads, filtered);
+  }
+  parallelFor(points.size, threads, 5.0, [&](std::size_t i) {
+    float* n = &filtered.normals[4 * i];
+    const bool has_normal = std::isfinite(n[0]);
+    const float curvature =
+        has_normal && !std::isfinite(sheets.curvature[i]) ? 0.F : sheets.curvature[i];
+    n[3] = has_normal ? curvature : n[0];
+  });
+  return filtered;
+}
+
 AutoNormals orientAtOneScale(MoreNeighbors& more, const Neighborhoods& neighborhoods,
                              const AutomaticOptions& settings, const PointHints& hints, int threads,
                              const std::function<void(const char*, double)>& begin,
@@ -82,67 +145,23 @@ AutoNormals orientAtOneScale(MoreNeighbors& more, const Neighborhoods& neighborh
   out.spacing = median(sheets.spacing);
   if (record != nullptr) dropCutOff(points, neighborhoods, *record->whole, sheets);
   if (begin) begin("segmentation", 0.48);
-  {
-    const SheetField field = fieldOf(sheets);
-    SheetSegmentationOptions cuts;
-    cuts.alpha = settings.alpha;
-    cuts.beta = settings.beta;
-    cuts.epsilon = settings.epsilon;
-    cuts.require_support = settings.require_support;
-    cuts.clean_up = settings.clean_up;
-    cuts.threads = threads;
-    Segmentation segments = segmentSheets(points, neighborhoods, field, cuts, finished);
-    if (begin) begin("orientation", 0.62);
-    out.orientation =
-        record != nullptr && record->known
-            ? record->known(segments)
-            : orientSheets(points, neighborhoods, field, segments,
-                           borderVotes(points, neighborhoods, field, segments, threads),
-                           points.size, settings, hints, threads);
-    if (record != nullptr) {
-      if (!record->known) {
-        record->votes =
-            borderVotes(points, neighborhoods, field, segments, threads, record->voters);
-      }
-      record->segments = std::move(segments);
-      record->sheets = sheets;
-    }
-  }
+  out.orientation = orientSegments(points, neighborhoods, sheets, settings, hints, threads, begin,
+                                   record, finished);
   if (begin) begin("recomputation", 0.7);
   OrientationResult& result = out.orientation.result;
-  parallelFor(points.size, threads, 5.0, [&](std::size_t i) {
-    const auto sign = static_cast<float>(result.point_signs[i]);
-    for (std::size_t a = 0; a < 3; ++a) sheets.normals[4 * i + a] *= sign;
-  });
   out.around = lookAround(sheets, threads);
-  std::vector<float> own;
-  if (sheets.traits.onlyManyShowNoise()) own = sheets.normals;
-  FilteredNormals filtered = filterOrientedNormals(
-      points, neighborhoods, std::move(sheets.normals), sheets.spacing, sheets.residual,
-      settings.filter_rounds, settings.filter_wedges, threads);
-  if (!own.empty()) keepLines(own, out.orientation.toward, threads, filtered.normals);
-  if (settings.winding_normals && settings.filter_rounds > 0) {
-    refineByWinding(points, sheets.spacing, sheets.residual, !own.empty(), threads, filtered);
-  }
-  if (!out.orientation.toward.empty() && sheets.traits.scan_scales) {
-    replaceGrazingNormals(more, out.orientation.toward, threads, filtered);
-  }
+  FilteredNormals filtered =
+      finishNormals(more, neighborhoods, settings, out.orientation, threads, sheets);
   out.normals = std::move(filtered.normals);
-  parallelFor(points.size, threads, 5.0, [&](std::size_t i) {
-    const bool has_normal = std::isfinite(out.normals[4 * i]);
-    const float curvature =
-        has_normal && !std::isfinite(sheets.curvature[i]) ? 0.F : sheets.curvature[i];
-    out.normals[4 * i + 3] = has_normal ? curvature : out.normals[4 * i];
-    const bool plane_around = filtered.confidences[i] > kAllAgree;
-    if (!plane_around) out.around[i] = static_cast<std::uint8_t>(out.around[i] & ~ONE_PLANE);
-  });
   out.confidences = std::move(filtered.confidences);
   out.sheets = sheets.traits;
   out.components = std::move(result.point_components);
-  // The less of both: do the normals around agree, and is their segment sure? Of a part of a cloud
-  // only the first is known yet.
-  parallelFor(record == nullptr ? points.size : 0, threads, 5.0, [&](std::size_t i) {
-    if (out.components[i] >= 0) {
+  parallelFor(points.size, threads, 5.0, [&](std::size_t i) {
+    const bool plane_around = out.confidences[i] > kAllAgree;
+    if (!plane_around) out.around[i] = static_cast<std::uint8_t>(out.around[i] & ~ONE_PLANE);
+    // The less of both: do the normals around agree, and is their segment sure? Of a part of a
+    // cloud only the first is known yet.
+    if (record == nullptr && out.components[i] >= 0) {
       out.confidences[i] = std::min(out.confidences[i], result.point_confidences[i]);
     }
   });

@@ -35,6 +35,7 @@ void LocalNormalEstimation<PointInT, PointOutT>::setInputCloud(const PointCloudC
 
 template <typename PointInT, typename PointOutT>
 bool LocalNormalEstimation<PointInT, PointOutT>::initCompute() {
+  curvatures_.clear();
   if (!input_ || input_->empty()) {
     PCL_ERROR("[segorient::%s::compute] There is no input cloud, or it is empty.\n",
               getClassName().c_str());
@@ -114,12 +115,7 @@ void LocalNormalEstimation<PointInT, PointOutT>::write(const std::vector<float>&
     PointOutT& out = output[i];
     const auto index = static_cast<std::size_t>((*indices_)[i]);
     const bool in_range = (*indices_)[i] >= 0 && index < input_->size();
-    if constexpr (pcl::traits::has_xyz<PointOutT>::value) {
-      constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
-      out.x = in_range ? static_cast<float>((*input_)[index].x) : kNaN;
-      out.y = in_range ? static_cast<float>((*input_)[index].y) : kNaN;
-      out.z = in_range ? static_cast<float>((*input_)[index].z) : kNaN;
-    }
+    copyPlace(*input_, (*indices_)[i], out);
     out.normal_x = n[0];
     out.normal_y = n[1];
     out.normal_z = n[2];
@@ -143,6 +139,10 @@ void LocalNormalEstimation<PointInT, PointOutT>::computeFeature(PointCloudOut& o
   output.is_dense = true;
   std::vector<float> normals(4 * indices_->size());
   curvatures_.resize(keep_curvatures_ ? indices_->size() : 0);
+  if (neighborhoods_ && search_radius_ != 0.0) {
+    PCL_WARN("[segorient::%s::compute] The radius changes nothing with ready neighbourhoods.\n",
+             getClassName().c_str());
+  }
   if (!estimate(normals)) {
     PCL_ERROR("[segorient::%s::compute] The neighbourhoods are not those of this cloud.\n",
               getClassName().c_str());

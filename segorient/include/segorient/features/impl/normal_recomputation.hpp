@@ -40,9 +40,14 @@ bool NormalRecomputation<PointT, NormalT>::checkInput() const {
 template <typename PointT, typename NormalT>
 void NormalRecomputation<PointT, NormalT>::compute(Normals& output) {
   report_ = {};
-  output.clear();
-  if (!checkInput() || !this->initCompute()) return;
+  moved_labels_ = labels_;
+  Normals sharper;  // the output may be the input
+  if (checkInput() && this->initCompute()) recompute(sharper);
+  output = sharper;
+}
 
+template <typename PointT, typename NormalT>
+void NormalRecomputation<PointT, NormalT>::recompute(Normals& output) {
   const CloudPoints<PointT> points(*input_);
   std::vector<float> normals(4 * input_->size());
   for (std::size_t i = 0; i < input_->size(); ++i) {
@@ -53,7 +58,7 @@ void NormalRecomputation<PointT, NormalT>::compute(Normals& output) {
     normals[4 * i + 3] = n.curvature;
   }
   report_ = recomputeCloudNormals(points.view(), *indices_, neighborhoods_.get(), regular_,
-                                  options_, rounds_, labels_, normals);
+                                  options_, rounds_, moved_labels_, normals);
 
   output.header = input_->header;
   output.resize(indices_->size());
@@ -64,6 +69,7 @@ void NormalRecomputation<PointT, NormalT>::compute(Normals& output) {
     const bool in_range = index >= 0 && static_cast<std::size_t>(index) < input_->size();
     const auto from = static_cast<std::size_t>(index);
     if (in_range) output[i] = (*normals_)[from];
+    copyPlace(*input_, index, output[i]);
     output[i].normal_x = in_range ? normals[4 * from] : kNaN;
     output[i].normal_y = in_range ? normals[4 * from + 1] : kNaN;
     output[i].normal_z = in_range ? normals[4 * from + 2] : kNaN;

@@ -46,8 +46,8 @@ SEGORIENT_FEATURES_EXPORT void searchAndEstimateNormals(const PointView& input,
                                                         const LocalNormalOptions& options,
                                                         float* normals, LocalCurvature* curvatures);
 
-/// The same with a ready table of neighbours, whose rows belong to the indices or, if there are not
-/// as many, to the points of the input. \return false if the table has neither as many rows as
+/// The same with a ready table of neighbours, whose rows belong to the points of the input or, if
+/// there are not as many, to the indices. \return false if the table has neither as many rows as
 /// there are indices nor as there are points,
 ///         or refers to points that the surface does not have
 SEGORIENT_FEATURES_EXPORT bool estimateNormalsFromTable(const PointView& input,

@@ -12,7 +12,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <limits>
 #include <memory>
 #include <string>
 
@@ -75,6 +74,30 @@ OrientationHints OrientedNormalEstimation<PointInT, PointOutT>::gatherHints(
 
 template <typename PointInT, typename PointOutT>
 void OrientedNormalEstimation<PointInT, PointOutT>::computeFeature(PointCloudOut& output) {
+  try {
+    estimate(output);
+  } catch (...) {  // of setProgress(), or out of memory: the next cloud has a surface of its own
+    this->deinitCompute();
+    throw;
+  }
+}
+
+template <typename PointInT, typename PointOutT>
+void OrientedNormalEstimation<PointInT, PointOutT>::warnOfUnused(PipelineOptions options) const {
+  // The sensor origin of a cloud was not set by anybody.
+  if (!options_.orientation.hints && use_sensor_origin_) {
+    auto set = std::make_shared<OrientationHints>(*options.orientation.hints);
+    set->has_viewpoint = false;
+    options.orientation.hints = set;
+  }
+  for (const std::string& name : settingsWithoutEffect(options)) {
+    PCL_WARN("[segorient::%s::compute] %s changes nothing with method %s.\n",
+             getClassName().c_str(), name.c_str(), toString(options.orientation.method));
+  }
+}
+
+template <typename PointInT, typename PointOutT>
+void OrientedNormalEstimation<PointInT, PointOutT>::estimate(PointCloudOut& output) {
   PipelineOptions options = options_;
   if (k_ > 0) options.k = k_ > 1 ? k_ - 1 : 1;
   pcl::Indices rows = *indices_;
@@ -92,10 +115,7 @@ void OrientedNormalEstimation<PointInT, PointOutT>::computeFeature(PointCloudOut
   if (!options.orientation.hints) {
     options.orientation.hints = std::make_shared<OrientationHints>(gatherHints(cloud));
   }
-  for (const std::string& name : settingsWithoutEffect(options)) {
-    PCL_WARN("[segorient::%s::compute] %s changes nothing with method %s.\n",
-             getClassName().c_str(), name.c_str(), toString(options.orientation.method));
-  }
+  warnOfUnused(options);
   const CloudPoints<PointInT> points(cloud);
   if (search_radius_ > 0.0) {
     options.k =
@@ -113,14 +133,7 @@ void OrientedNormalEstimation<PointInT, PointOutT>::write(PointCloudOut& output)
   for (std::size_t i = 0; i < indices_->size(); ++i) {
     PointOutT& out = output[i];
     const float* n = &result_.normals[4 * i];
-    if constexpr (pcl::traits::has_xyz<PointOutT>::value) {
-      constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
-      const auto index = static_cast<std::size_t>((*indices_)[i]);
-      const bool in_range = (*indices_)[i] >= 0 && index < input_->size();
-      out.x = in_range ? static_cast<float>((*input_)[index].x) : kNaN;
-      out.y = in_range ? static_cast<float>((*input_)[index].y) : kNaN;
-      out.z = in_range ? static_cast<float>((*input_)[index].z) : kNaN;
-    }
+    copyPlace(*input_, (*indices_)[i], out);
     out.normal_x = n[0];
     out.normal_y = n[1];
     out.normal_z = n[2];

@@ -9,6 +9,9 @@
 #include <segorient/segmentation/segmentation.h>
 #include <segorient/common/impl/point_search.hpp>
 
+#include <string>
+#include <vector>
+
 namespace segorient {
 
 /// A cloud with normals and segments, whoever made them, and the orientation of both.
@@ -21,7 +24,7 @@ struct OrientedSegmentation {
 /// Orients a cloud that has normals: the stage after segmentation, on any rows (NaN and repeated
 /// points included). A row that repeats a point follows that point.
 /// \param normals one a row, signs arbitrary; NaN = the point has none. Curvatures are looked at
-///        where segments are made, see segmentByNormals(); constant ones will do
+///        where segments are made; constant ones will do
 /// \param segmentation of these rows, or null to make one by `segmentation_options`
 /// \param k neighbours of a point, itself not counted; <= 0 = 32 for AUTO and 12 for the others
 /// \param search finds neighbours among the rows; empty = a search of our own
@@ -30,5 +33,11 @@ SEGORIENT_ORIENTATION_EXPORT OrientedSegmentation orientSegmentation(
     const PointView& points, const NormalView& normals, const Segmentation* segmentation, int k,
     const SegmentationOptions& segmentation_options, const OrientationOptions& options,
     const PointSearch& search = {});
+
+/// Names of those settings of both that were changed from their defaults and that
+/// orientSegmentation() does not look at.
+SEGORIENT_ORIENTATION_EXPORT std::vector<std::string> settingsWithoutEffect(
+    const SegmentationSettings& segmentation, const OrientationSettings& orientation,
+    bool segments_are_given);
 
 }  // namespace segorient

@@ -19,6 +19,14 @@ namespace segorient {
 
 template <typename PointT, typename NormalT>
 PointSearch SegmentOrientation<PointT, NormalT>::searchFunction() {
+  if (neighborhoods_) {
+    return [this](pcl::index_t point, int k, pcl::Indices& indices, std::vector<float>&) {
+      const auto row = static_cast<std::size_t>(point);
+      const int count = std::min(k, neighborhoods_->count(row));
+      std::copy_n(neighborhoods_->indices(row), count, indices.begin());
+      return count;
+    };
+  }
   if (!search_) return {};
   if (search_->getInputCloud() != input_ || search_->getIndices()) search_->setInputCloud(input_);
   return
@@ -26,6 +34,13 @@ PointSearch SegmentOrientation<PointT, NormalT>::searchFunction() {
         return search_->nearestKSearch((*input_)[static_cast<std::size_t>(point)], k, indices,
                                        sqr_distances);
       };
+}
+
+// The point itself not counted; 0 = as many as the method asks for.
+template <typename PointT, typename NormalT>
+int SegmentOrientation<PointT, NormalT>::otherNeighbors() const {
+  if (k_ > 0) return std::max(1, k_ - 1);
+  return neighborhoods_ ? std::max(1, neighborhoods_->k() - 1) : 0;
 }
 
 template <typename PointT, typename NormalT>
@@ -43,6 +58,13 @@ bool SegmentOrientation<PointT, NormalT>::orient() {
     PCL_ERROR("[segorient::SegmentOrientation::compute] k (%d) must not be negative.\n", k_);
     return false;
   }
+  if (neighborhoods_ && neighborhoods_->size() != input_->size()) {
+    PCL_ERROR(
+        "[segorient::SegmentOrientation::compute] The neighbourhoods are those of %zu points, not "
+        "of %zu.\n",
+        neighborhoods_->size(), input_->size());
+    return false;
+  }
   const CloudPoints<PointT> points(*input_);
   const CloudNormals<NormalT> normals(*normals_);
   auto hints = std::make_shared<OrientationHints>(hints_);
@@ -53,13 +75,13 @@ bool SegmentOrientation<PointT, NormalT>::orient() {
   if (!options.hints) options.hints = hints;
   SegmentationOptions segmentation_options{segmentation_options_};
   segmentation_options.threads = options.threads;
-  for (const std::string& name : settingsWithoutEffect(options)) {
+  for (const std::string& name :
+       settingsWithoutEffect(segmentation_options_, options, segmentation_ != nullptr)) {
     PCL_WARN("[segorient::SegmentOrientation::compute] %s changes nothing with method %s.\n",
              name.c_str(), toString(options.method));
   }
-  result_ = orientSegmentation(points.view(), normals.view(), segmentation_.get(),
-                               k_ > 0 ? std::max(1, k_ - 1) : 0, segmentation_options, options,
-                               searchFunction());
+  result_ = orientSegmentation(points.view(), normals.view(), segmentation_.get(), otherNeighbors(),
+                               segmentation_options, options, searchFunction());
   if (result_.orientation.point_signs.empty()) {
     PCL_ERROR(
         "[segorient::SegmentOrientation::compute] The segments are not those of this cloud.\n");
@@ -85,6 +107,7 @@ void SegmentOrientation<PointT, NormalT>::compute(PointCloudN& output) {
       normal.normal_x *= factor;
       normal.normal_y *= factor;
       normal.normal_z *= factor;
+      copyPlace(*input_, index, normal);
       if (sign == 0) oriented.is_dense = false;
       oriented.push_back(normal);
     }

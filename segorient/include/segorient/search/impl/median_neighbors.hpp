@@ -12,7 +12,7 @@ namespace segorient::search {
 /// NaN or infinite coordinates not at all; at most kMostNeighborsWithin. Does not depend on the
 /// order of the points.
 /// \param radius above 0
-/// \param threads see resolveThreads()
+/// \param threads 0 = all cores
 /// \return 0 where most points have no other one so near
 SEGORIENT_SEARCH_EXPORT int medianNeighborsWithin(const PointView& points, double radius,
                                                   int threads);

@@ -42,8 +42,7 @@ class SEGORIENT_SEGMENTATION_EXPORT CloudSegmentation {
   /// Of the whole cloud: points that were not to be segmented have label -1. Exact duplicates share
   /// their label.
   const Segmentation& segmentation() const { return result_; }
-  /// With `unite_smooth` the segments united over smooth borders, see segmentByNormals(); else the
-  /// segments as they are.
+  /// With `unite_smooth` the segments united over smooth borders; else the segments as they are.
   const Segmentation& faces() const { return united_ ? faces_ : result_; }
   /// By point: share of its neighbours that are in the same face; 0 without one.
   std::vector<float> confidences() const;

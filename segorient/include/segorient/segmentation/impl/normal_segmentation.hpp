@@ -63,8 +63,10 @@ void NormalSegmentation<PointT, NormalT>::setNumberOfNeighbours(unsigned int nei
 template <typename PointT, typename NormalT>
 CloudSegmentation::Search NormalSegmentation<PointT, NormalT>::searchFunction() {
   if (!search_) return {};
-  // Unless it is on this cloud already, possibly on more of it than our indices.
-  if (search_->getInputCloud() != input_) {
+  // Unless it is on this cloud already, on all of it or on our indices.
+  const pcl::IndicesConstPtr& held = search_->getIndices();
+  const bool fits = !held || held->empty() || (!fake_indices_ && *held == *indices_);
+  if (search_->getInputCloud() != input_ || !fits) {
     search_->setInputCloud(input_, fake_indices_ ? pcl::IndicesConstPtr() : indices_);
   }
   return [this](pcl::index_t point, int k, pcl::Indices& indices, std::vector<float>& distances) {

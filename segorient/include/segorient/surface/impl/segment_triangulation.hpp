@@ -44,6 +44,7 @@ void SegmentTriangulation<PointNT>::performReconstruction(pcl::PolygonMesh& outp
 template <typename PointNT>
 void SegmentTriangulation<PointNT>::performReconstruction(std::vector<pcl::Vertices>& polygons) {
   polygons.clear();
+  triangulated_ = input_;
   const CloudPoints<PointNT> points(*input_);
   CloudNormals<PointNT> normals;
   if (segmentation_.labels.empty()) normals.assign(*input_);
@@ -65,20 +66,20 @@ template <typename PointNT>
 bool SegmentTriangulation<PointNT>::getSegmentMesh(std::size_t segment,
                                                    pcl::PolygonMesh& output) const {
   output = pcl::PolygonMesh();
-  if (!input_ || segment >= meshes_.size() || meshes_[segment].triangles.empty()) return false;
+  if (segment >= meshes_.size() || meshes_[segment].triangles.empty()) return false;
   pcl::PointCloud<PointNT> cloud;
-  cloud.header = input_->header;
+  cloud.header = triangulated_->header;
   std::unordered_map<pcl::index_t, pcl::index_t> row;
   for (const auto& triangle : meshes_[segment].triangles) {
     output.polygons.emplace_back();
     for (const pcl::index_t p : triangle) {
       const auto [it, is_new] = row.try_emplace(p, static_cast<pcl::index_t>(cloud.size()));
-      if (is_new) cloud.push_back((*input_)[static_cast<std::size_t>(p)]);
+      if (is_new) cloud.push_back(triangulated_->at(static_cast<std::size_t>(p)));
       output.polygons.back().vertices.push_back(static_cast<pcl::index_t>(it->second));
     }
   }
   pcl::toPCLPointCloud2(cloud, output.cloud);
-  output.header = input_->header;
+  output.header = triangulated_->header;
   return true;
 }
 
