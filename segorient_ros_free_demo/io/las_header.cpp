@@ -128,10 +128,19 @@ LasHeader readLasHeader(InputFile& file) {
 }
 
 void readLasRecordsBehind(InputFile& file, LasHeader& header, std::uint64_t position) {
-  if (header.extended_records == 0 || header.extended_begin < position ||
-      header.extended_begin - position > file.remaining()) {
-    return;
+  const std::uint64_t end = position + file.remaining();
+  const bool inside = header.extended_records > 0 && header.extended_begin >= position &&
+                      header.extended_begin <= end;
+  if (header.extended_records > 0 && !inside) {
+    header.notes.emplace_back("the records behind its points are left out: they are not there");
   }
+  const std::uint64_t more =
+      ((inside ? header.extended_begin : end) - position) / header.record_bytes;
+  if (more > 0 && !lasHasWaveform(header.origin.point_format)) {
+    header.notes.push_back("there is room for " + std::to_string(more) +
+                           " more points than its header counts: they are not read");
+  }
+  if (!inside) return;
   file.skip(header.extended_begin - position);
   for (std::uint32_t r = 0; r < header.extended_records; ++r) {
     if (file.remaining() < kLasExtendedRecordHeader) return;

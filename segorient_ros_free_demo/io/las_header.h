@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <cstring>
+#include <string>
 #include <vector>
 
 #include "io/input_file.h"
@@ -29,13 +30,14 @@ struct LasHeader {
   std::uint32_t records = 0;
   std::uint32_t extended_records = 0;
   std::vector<std::uint8_t> extra;  ///< contents of the record about extra bytes
+  std::vector<std::string> notes;   ///< what is left out of the file
 };
 
 /// Header and records, up to the first point.
 LasHeader readLasHeader(InputFile& file);
 
 /// The records behind the points. Nothing of the cloud depends on them: what is not whole is left
-/// out.
+/// out, and so are points that the header does not count, with a note.
 void readLasRecordsBehind(InputFile& file, LasHeader& header, std::uint64_t position);
 
 }  // namespace segorient::program

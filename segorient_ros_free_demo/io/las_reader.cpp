@@ -194,6 +194,7 @@ CloudTable readLas(InputFile& file) {
     }
   }
   readLasRecordsBehind(file, header, header.points_begin + header.points * header.record_bytes);
+  table.notes.insert(table.notes.end(), header.notes.begin(), header.notes.end());
   if (lasHasColor(format)) packColors(table);
   table.las = std::make_shared<LasOrigin>(std::move(header.origin));
   return table;
@@ -202,12 +203,13 @@ CloudTable readLas(InputFile& file) {
 std::optional<RowFormat> lasRows(InputFile& file) {
   LasHeader header = readLasHeader(file);
   const std::uint64_t points_end = header.points_begin + header.points * header.record_bytes;
-  if (header.extended_records > 0 && points_end - header.points_begin <= file.remaining()) {
+  if (points_end - header.points_begin <= file.remaining()) {
     file.seek(points_end);
     readLasRecordsBehind(file, header, points_end);
     file.seek(header.points_begin);
   }
   RowFormat rows;
+  rows.layout.notes = header.notes;
   const std::vector<LasItem> items = lasItems(header.origin.point_format);
   std::vector<Extra> extras = readExtras(file, header, rows.layout);
   addFields(items, false, extras, rows.layout);

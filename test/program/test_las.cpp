@@ -325,6 +325,26 @@ TEST(BadLas, CompressedFilesNameTheToolThatUnpacks) {
   }
 }
 
+// What a header does not count is not read, which is said: other programs may have written less
+// than they meant to.
+TEST(BadLas, WhatTheHeaderDoesNotCountIsNamed) {
+  const ScratchDirectory directory;
+  std::string bytes = lasSample(0, 7).bytes();
+  EXPECT_TRUE(readCloud(directory.write("a.las", bytes)).notes.empty());
+  putAt(bytes, 107, std::uint32_t{4});
+  const CloudTable few = readCloud(directory.write("a.las", bytes));
+  EXPECT_EQ(few.size, 4U);
+  ASSERT_EQ(few.notes.size(), 1U);
+  EXPECT_NE(few.notes[0].find("3 more points"), std::string::npos) << few.notes[0];
+  std::string beyond = lasSample(6, 2).bytes();
+  putAt(beyond, 235, std::uint64_t{1} << 40);
+  putAt(beyond, 243, std::uint32_t{1});
+  const CloudTable whole = readCloud(directory.write("b.las", beyond));
+  EXPECT_EQ(whole.size, 2U);
+  ASSERT_EQ(whole.notes.size(), 1U);
+  EXPECT_NE(whole.notes[0].find("not there"), std::string::npos) << whole.notes[0];
+}
+
 TEST(BadLas, HeadersThatLie) {
   const ScratchDirectory directory;
   const std::string good = lasSample(0, 2).bytes();
