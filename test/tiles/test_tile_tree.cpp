@@ -96,6 +96,22 @@ TEST(TileTree, WithinTheWholeRadiusNoPointIsMissing) {
   EXPECT_GT(looked_at, 10000U);
 }
 
+// Floats near one origin would not resolve both of two bodies that are far apart.
+TEST(TileTree, BodiesThatAreFarApartAreTilesOfTheirOwn) {
+  std::vector<TileTree::Place> places;
+  std::mt19937 random(3);
+  std::uniform_real_distribution<double> uniform(0.0, 1.0);
+  for (int i = 0; i < 900; ++i) {
+    places.push_back({uniform(random) + (i % 9 == 0 ? 1e6 : 0.0), uniform(random), 0.0});
+  }
+  const TileTree tree(places, 1.0, 10000.0);
+  EXPECT_EQ(tree.tiles(), 2U);
+  double reach = 0.0;
+  EXPECT_NE(tree.owner({0.5, 0.5, 0.0}, reach), tree.owner({1e6 + 0.5, 0.5, 0.0}, reach));
+  for (TileTree::Place& p : places) p[0] = std::fmod(p[0], 1e6);
+  EXPECT_EQ(TileTree(places, 1.0, 10000.0).tiles(), 1U);
+}
+
 TEST(TileTree, AllInOnePlaceIsOneTileAndSoIsNothing) {
   const TileTree same(std::vector<Place>(1000, Place{1.0, 2.0, 3.0}), 1.0, 10.0);
   EXPECT_EQ(same.tiles(), 1U);

@@ -494,6 +494,8 @@ def orient(
     options["method"] = _word("method", method)
     if gamma is not None:
         options["gamma"] = _angle("gamma", gamma)
+    if not isinstance(find_sensors, (bool, np.bool_)):
+        raise TypeError(f"find_sensors must be True or False, not {find_sensors!r}")
     if method == "auto":
         _warn_of_unused(
             "with method 'auto'",
@@ -519,8 +521,6 @@ def orient(
         )
         _warn_of_unused("with method 'hoppe'", gamma=gamma is not None and method == "hoppe")
     array, origin = _local(points)
-    if not isinstance(find_sensors, (bool, np.bool_)):
-        raise TypeError(f"find_sensors must be True or False, not {find_sensors!r}")
     options["find_sensors"] = bool(find_sensors)
     options["suggested"] = _moved(np.zeros(3), origin)
     options.update(

@@ -14,6 +14,11 @@ namespace {
 // these on theirs, twice by the filter and once by the plane, and wide votes look 8 spacings far.
 // That is 14; the spacing of a place is known to a third only.
 constexpr double kHaloSpacings = 20.0;
+// A tile's coordinates are floats near its own origin: in wider ones they would be rounded by more
+// than a sixty-fourth of a spacing.
+constexpr double kWidestInSpacings = 262144.0;  // 2^18
+// Two bodies that far apart are not to be in one tile: it is cut between them, where nothing is.
+constexpr double kGap = 0.25;  // of the width
 // Sampled places in a cell that its spacing is told from.
 constexpr std::size_t kCellSample = 32;
 
@@ -97,6 +102,34 @@ struct TileTree::Builder {
     return true;
   }
 
+  bool isTooWide(const Range& r) const {
+    const std::array<double, 3> s = sides(r);
+    const double spacing = reachOf(r) / kHaloSpacings;
+    return spacing > 0.0 && *std::max_element(s.begin(), s.end()) > kWidestInSpacings * spacing;
+  }
+
+  // At the widest gap along the longest side. \return false if there is none worth it
+  bool cutAtGap(const Range& r, std::size_t& axis, double& split, std::size_t& middle) {
+    const std::array<double, 3> s = sides(r);
+    axis = static_cast<std::size_t>(std::max_element(s.begin(), s.end()) - s.begin());
+    std::vector<double> along;
+    for (std::size_t i = r.first; i < r.last; ++i) along.push_back(sample[i][axis]);
+    std::sort(along.begin(), along.end());
+    double widest = 0.0;
+    for (std::size_t i = 1; i < along.size(); ++i) {
+      const double gap = along[i] - along[i - 1];
+      if (!(gap > widest)) continue;
+      widest = gap;
+      split = along[i - 1] + 0.5 * gap;
+    }
+    if (!(widest > kGap * s[axis])) return false;
+    const auto begin = sample.begin() + static_cast<std::ptrdiff_t>(r.first);
+    const auto end = sample.begin() + static_cast<std::ptrdiff_t>(r.last);
+    const auto below = [&](const Place& p) { return p[axis] < split; };
+    middle = r.first + static_cast<std::size_t>(std::partition(begin, end, below) - begin);
+    return middle > r.first && middle < r.last;
+  }
+
   void build(const Range& r, bool in_tile) {
     const std::size_t n = tree.nodes_.size();
     tree.nodes_.emplace_back();
@@ -104,9 +137,11 @@ struct TileTree::Builder {
     std::size_t axis = 0;
     double split = 0.0;
     std::size_t middle = 0;
-    const bool small = points <= most_points;
+    const bool wide = !in_tile && points <= most_points && isTooWide(r);
+    const bool small = points <= most_points && !wide;
     const bool cell = (in_tile || small) && r.size() <= kCellSample;
-    const bool halved = !cell && halve(r, axis, split, middle);
+    const bool halved =
+        !cell && ((wide && cutAtGap(r, axis, split, middle)) || halve(r, axis, split, middle));
     if (!in_tile && (small || !halved)) {
       tree.nodes_[n].tile = static_cast<std::int32_t>(tree.tiles_++);
       in_tile = true;

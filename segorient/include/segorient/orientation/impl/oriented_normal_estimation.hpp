@@ -90,6 +90,10 @@ void OrientedNormalEstimation<PointInT, PointOutT>::warnOfUnused(PipelineOptions
     set->has_viewpoint = false;
     options.orientation.hints = set;
   }
+  if (keep_orientation_ && !pcl::traits::has_normal<PointInT>::value) {
+    PCL_WARN("[segorient::%s::compute] The points have no normals whose orientation to keep.\n",
+             getClassName().c_str());
+  }
   for (const std::string& name : settingsWithoutEffect(options)) {
     PCL_WARN("[segorient::%s::compute] %s changes nothing with method %s.\n",
              getClassName().c_str(), name.c_str(), toString(options.orientation.method));
