@@ -6,6 +6,7 @@
 #include <segorient/common/export.h>
 #include <segorient/features/local_normal_estimation.h>
 #include <segorient/common/impl/cloud_access.hpp>
+#include <segorient/common/impl/copy_place.hpp>
 #include <segorient/common/impl/point_search.hpp>
 #include <segorient/features/impl/searched_normals.hpp>
 

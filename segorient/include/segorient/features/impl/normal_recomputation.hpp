@@ -6,6 +6,7 @@
 #include <segorient/common/export.h>
 #include <segorient/features/normal_recomputation.h>
 #include <segorient/common/impl/cloud_access.hpp>
+#include <segorient/common/impl/copy_place.hpp>
 #include <segorient/features/impl/cloud_recomputation.hpp>
 
 #include <cmath>

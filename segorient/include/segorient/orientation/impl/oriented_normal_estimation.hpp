@@ -6,6 +6,7 @@
 #include <segorient/common/export.h>
 #include <segorient/orientation/oriented_normal_estimation.h>
 #include <segorient/common/impl/cloud_access.hpp>
+#include <segorient/common/impl/copy_place.hpp>
 #include <segorient/orientation/impl/cloud_hints.hpp>
 #include <segorient/search/impl/median_neighbors.hpp>
 

@@ -6,6 +6,7 @@
 #include <segorient/common/export.h>
 #include <segorient/orientation/segment_orientation.h>
 #include <segorient/common/impl/cloud_access.hpp>
+#include <segorient/common/impl/copy_place.hpp>
 #include <segorient/orientation/impl/cloud_hints.hpp>
 
 #include <algorithm>
