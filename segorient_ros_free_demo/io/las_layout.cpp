@@ -67,11 +67,13 @@ void LasLayout::chooseFormat(const OutputCloud& block) {
 void LasLayout::chooseScale() {
   scale_ = origin_.scale;
   offset_ = origin_.offset;
-  bool fits = summary_.points() > 0;
+  bool fits = true;
   for (std::size_t a = 0; a < 3; ++a) {
     const ValueRange& r = summary_.range(a);
-    fits = fits && scale_[a] != 0.0 && std::abs(ticks(a, r.low())) <= kMostInt &&
-           std::abs(ticks(a, r.high())) <= kMostInt;
+    fits = fits && scale_[a] != 0.0;
+    if (summary_.points() == 0) continue;  // of nothing any grid will do
+    fits =
+        fits && std::abs(ticks(a, r.low())) <= kMostInt && std::abs(ticks(a, r.high())) <= kMostInt;
   }
   if (fits) return;
   // Halves: the whole may be more than a double holds.

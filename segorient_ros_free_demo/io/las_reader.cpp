@@ -179,7 +179,6 @@ CloudTable readLas(InputFile& file) {
   const std::vector<LasItem> items = lasItems(format);
   std::vector<Extra> extras = readExtras(file, header, table);
   addFields(items, lasHasColor(format), extras, table);
-  if (lasHasWaveform(format)) table.notes.emplace_back("the waveforms of its points are left out");
   allocateRows(file, table, header.points, header.record_bytes);
   table.width = table.size;
 

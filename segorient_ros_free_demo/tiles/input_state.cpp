@@ -37,16 +37,20 @@ bool isOurs(const std::string& name, bool unfinished_only) {
 constexpr const char* kPlan = "plan";
 constexpr const char* kLock = "lock";
 
-// The lock stays.
+// But for the lock.
+std::vector<fs::path> filesOfOurs(const std::string& folder, bool unfinished_only) {
+  std::vector<fs::path> out;
+  for (const auto& entry : fs::directory_iterator(folder)) {
+    const std::string name = entry.path().filename().string();
+    if (name != kLock && isOurs(name, unfinished_only)) out.push_back(entry.path());
+  }
+  return out;
+}
+
 void removeFiles(const std::string& folder, bool unfinished_only) {
   std::error_code ignored;
   if (!unfinished_only) fs::remove(fs::path(folder) / kPlan, ignored);
-  std::vector<fs::path> gone;
-  for (const auto& entry : fs::directory_iterator(folder)) {
-    const std::string name = entry.path().filename().string();
-    if (name != kLock && isOurs(name, unfinished_only)) gone.push_back(entry.path());
-  }
-  for (const fs::path& path : gone) fs::remove(path, ignored);
+  for (const fs::path& path : filesOfOurs(folder, unfinished_only)) fs::remove(path, ignored);
 }
 
 }  // namespace
@@ -72,6 +76,7 @@ WorkFolder::WorkFolder(std::string path, bool alone) : path_(std::move(path)) {
   fs::create_directories(path_, error);
   if (error) throw FileError(path_, "cannot be made: " + error.message());
   const std::string name = path_ + "/" + kLock;
+  was_one_ = fs::exists(name);
   lock_ = open(name.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
   if (lock_ < 0) throw FileError(name, std::strerror(errno));
   if (flock(lock_, (alone ? LOCK_EX : LOCK_SH) | LOCK_NB) != 0) {
@@ -86,7 +91,15 @@ WorkFolder::~WorkFolder() {
 }
 
 void WorkFolder::removeUnfinished() const {
-  removeFiles(path_, true);
+  if (was_one_) {
+    removeFiles(path_, fs::exists(fs::path(path_) / kPlan));
+  } else if (!filesOfOurs(path_, false).empty()) {
+    std::error_code ignored;
+    fs::remove(fs::path(path_) / kLock, ignored);
+    throw FileError(path_,
+                    "is no work folder, and has files that are named as those of one: name another "
+                    "folder");
+  }
 }
 
 void WorkFolder::remove() {
@@ -94,10 +107,6 @@ void WorkFolder::remove() {
   std::error_code not_empty;
   fs::remove(fs::path(path_) / kLock, not_empty);
   fs::remove(path_, not_empty);
-}
-
-void removeFilesWithoutPlan(const std::string& folder) {
-  removeFiles(folder, false);
 }
 
 }  // namespace segorient::program

@@ -28,7 +28,9 @@ class WorkFolder {
   WorkFolder& operator=(const WorkFolder&) = delete;
 
   const std::string& path() const { return path_; }
-  /// Removes what steps that were killed left unfinished; only where it is held alone.
+  /// Removes what steps that were killed left unfinished, and all that a run left whose removal was
+  /// interrupted, as it has no plan any more; only where it is held alone. Throws FileError if it
+  /// was no work folder before and has files of such names: they are somebody else's.
   void removeUnfinished() const;
   /// Removes all files that steps write, and the folder if nothing else is in it. The plan goes
   /// first and the lock last: what is interrupted leaves a folder that a run begins anew in.
@@ -36,10 +38,8 @@ class WorkFolder {
 
  private:
   std::string path_;
+  bool was_one_ = false;  // it had a lock before
   int lock_ = -1;
 };
-
-/// Removes what a folder without a plan has of a run that was removed; the lock stays.
-void removeFilesWithoutPlan(const std::string& folder);
 
 }  // namespace segorient::program

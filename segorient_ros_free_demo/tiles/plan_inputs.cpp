@@ -2,9 +2,12 @@
 // Copyright (c) 2026, the segorient authors
 #include "tiles/plan_inputs.h"
 
+#include <sys/stat.h>
+
 #include <algorithm>
 #include <filesystem>
 #include <set>
+#include <utility>
 
 #include "io/cloud_stream.h"
 #include "io/cloud_writer.h"
@@ -47,14 +50,19 @@ bool isWritable(const std::string& name) {
   return ending == ".ply" || ending == ".pcd" || ending == ".las";
 }
 
+// Files by what they are, whatever their names.
+using FileId = std::pair<dev_t, ino_t>;
+
+FileId idOf(const fs::path& path) {
+  struct stat info {};
+  return stat(path.c_str(), &info) == 0 ? FileId(info.st_dev, info.st_ino) : FileId();
+}
+
 // What is written would take the place of what is still to be read.
-void requireNoInput(const fs::path& output, const Plan& plan) {
-  for (const PlanInput& in : plan.inputs) {
-    std::error_code missing;
-    if (plan.inputs.size() > 1 && fs::equivalent(output, in.path, missing)) {
-      throw FileError(in.path, "is an input and would be an output: name another folder for these");
-    }
-  }
+void requireNoInput(const fs::path& output, const std::set<FileId>& inputs) {
+  if (inputs.size() < 2 || inputs.count(idOf(output)) == 0) return;
+  throw FileError(output.string(),
+                  "is an input and would be an output: name another folder for these");
 }
 
 void addOutputs(const std::string& output, Plan& plan) {
@@ -66,6 +74,8 @@ void addOutputs(const std::string& output, Plan& plan) {
                             static_cast<std::uint32_t>(plan.inputs.size())});
     return;
   }
+  std::set<FileId> inputs;
+  for (const PlanInput& in : plan.inputs) inputs.insert(idOf(in.path));
   std::set<std::string> names;
   for (std::size_t i = 0; i < plan.inputs.size(); ++i) {
     fs::path name = fs::path(plan.inputs[i].path).filename();
@@ -76,7 +86,7 @@ void addOutputs(const std::string& output, Plan& plan) {
                       "place in the folder of outputs");
     }
     const fs::path to = fs::absolute(fs::path(output) / name).lexically_normal();
-    requireNoInput(to, plan);
+    requireNoInput(to, inputs);
     plan.outputs.push_back({to.string(), static_cast<std::uint32_t>(i), 1});
   }
 }
@@ -156,6 +166,15 @@ std::vector<std::string> listClouds(const std::vector<std::string>& names) {
     out.insert(out.end(), inside.begin(), inside.end());
   }
   return out;
+}
+
+void warnOfTextLeftOut(const std::vector<std::string>& names) {
+  for (const std::string& name : names) {
+    if (!fs::is_directory(name) || cloudsIn(name, isCloud).empty()) continue;
+    const std::size_t left_out = cloudsIn(name, isText).size();
+    if (left_out == 0) continue;
+    warn(name + ": text files beside its clouds are left out: " + std::to_string(left_out));
+  }
 }
 
 void planFiles(const TileRequest& request, Plan& plan) {

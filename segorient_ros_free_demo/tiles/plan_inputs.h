@@ -13,6 +13,9 @@ namespace segorient::program {
 /// but for hidden ones, and for text unless there is nothing else.
 std::vector<std::string> listClouds(const std::vector<std::string>& names);
 
+/// Says how many text files of folders that leaves out.
+void warnOfTextLeftOut(const std::vector<std::string>& names);
+
 /// Fills inputs, outputs and run of a plan. Throws FileError and, where outputs make no sense,
 /// UsageError.
 void planFiles(const TileRequest& request, Plan& plan);

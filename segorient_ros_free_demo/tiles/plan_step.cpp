@@ -92,13 +92,16 @@ Place tileOrigin(const Bounds& bounds) {
   return origin;
 }
 
-// Space is not to be cut for the sake of a few points that are far from all others, at 0,0,0 say:
-// any tile has room for a thousandth more.
-std::vector<Place> withoutStrays(const std::vector<Place>& sample, const Bounds& bulk) {
+// Space is not to be cut for the sake of a few points that are far from all others, at 0,0,0 say.
+// \param most of the sample that any tile has room for beside its own
+std::vector<Place> withoutStrays(const std::vector<Place>& sample, const Bounds& bulk,
+                                 double most) {
   std::vector<Place> out;
   std::copy_if(sample.begin(), sample.end(), std::back_inserter(out),
                [&](const Place& p) { return bulk.contains(p); });
-  return 1000 * (sample.size() - out.size()) <= sample.size() ? out : sample;
+  const std::size_t strays = sample.size() - out.size();
+  const bool few = 1000 * strays <= sample.size() && static_cast<double>(strays) <= most;
+  return few ? out : sample;
 }
 
 // Of all tiles: such points do not count.
@@ -267,7 +270,7 @@ Plan planStep(const TileRequest& request, const std::string& folder, const StepP
                     "has files of other inputs, outputs or options, or of an input that was "
                     "changed: remove it, or name another folder");
   }
-  removeFilesWithoutPlan(folder);
+  warnOfTextLeftOut(request.inputs);
   plan.k = request.k;
   plan.has_viewpoint = request.has_viewpoint;
   plan.viewpoint = request.viewpoint;
@@ -302,8 +305,10 @@ Plan planStep(const TileRequest& request, const std::string& folder, const StepP
       static_cast<double>(plan.rows) / std::max(1.0, static_cast<double>(sample.places().size()));
   plan.bulk = bulkBounds(places.size(), [&](std::size_t i) { return places[i]; });
   if (plan.bulk.isFar()) plan.origin = plan.bulk.middle();
-  plan.tree =
-      TileTree(withoutStrays(places, plan.bulk), points_each, mostPoints(request, points_each));
+  constexpr double kRoom = 0.05;
+  const double most_points = mostPoints(request, points_each);
+  plan.tree = TileTree(withoutStrays(places, plan.bulk, kRoom * most_points / points_each),
+                       points_each, most_points);
   plan.tile_origins = tileOrigins(plan.tree, places);
   plan.chunk_rows = chunkRows(request, row_bytes);
   plan.patch_points = static_cast<std::uint32_t>((plan.rows + kSamplePoints - 1) / kSamplePoints);

@@ -189,7 +189,8 @@ void writeStep(const Plan& plan, const std::string& folder, std::size_t output, 
           first += block.size;
         }
         written += rows;
-        if (progress) progress(static_cast<double>(written) / static_cast<double>(size));
+        if (progress && size > 0)
+          progress(static_cast<double>(written) / static_cast<double>(size));
         chunk.clear();
         rows = 0;
       });

@@ -307,7 +307,7 @@ TEST(NormalRecomputation, TheOutputMayBeTheInput) {
   }
 }
 
-// With a ready table as without one, points that are not asked for keep label and normal.
+// With a ready table as without one, points that are not asked for keep their labels.
 TEST(NormalRecomputation, IndicesHoldForAReadyTable) {
   const Segmented s = segmentedCube(3000, 12, 0.F);
   const auto half = pcl::make_shared<pcl::Indices>(1500);

@@ -57,6 +57,18 @@ TEST_F(SegmentOrientationTest, PointNormalOutputCarriesThePoint) {
   }
 }
 
+// A search that nobody may ask.
+class NoSearch : public pcl::search::KdTree<pcl::PointXYZ> {
+ public:
+  using Base = pcl::search::KdTree<pcl::PointXYZ>;
+  using Base::nearestKSearch;
+  int nearestKSearch(const pcl::PointXYZ& /*point*/, int /*k*/, pcl::Indices& /*indices*/,
+                     std::vector<float>& /*distances*/) const override {
+    ADD_FAILURE() << "there is a table";
+    return 0;
+  }
+};
+
 // Neighbours are found once for all stages.
 TEST_F(SegmentOrientationTest, AReadyTableIsAsGoodAsASearch) {
   search::MedianHash<pcl::PointXYZ> search;
@@ -65,9 +77,11 @@ TEST_F(SegmentOrientationTest, AReadyTableIsAsGoodAsASearch) {
   search.nearestKSearchAll(20, *table);
   for (const auto method : {Orientation::AUTO, Orientation::COMBINED}) {
     orientation.setNeighborhoods({});
+    orientation.setSearchMethod({});
     orientation.setKSearch(20);
     const Normals searched = orient(test::toPclNormals(scrambled), method);
     orientation.setNeighborhoods(table);
+    orientation.setSearchMethod(pcl::make_shared<NoSearch>());
     for (const int k : {0, 20}) {
       orientation.setKSearch(k);
       const Normals ready = orient(test::toPclNormals(scrambled), method);
@@ -78,6 +92,10 @@ TEST_F(SegmentOrientationTest, AReadyTableIsAsGoodAsASearch) {
     }
   }
   orientation.setNeighborhoods(std::make_shared<Neighborhoods>());
+  EXPECT_TRUE(orient(test::toPclNormals(scrambled), Orientation::COMBINED).empty());
+  const auto alone = std::make_shared<Neighborhoods>();
+  search.nearestKSearchAll(1, *alone);
+  orientation.setNeighborhoods(alone);
   EXPECT_TRUE(orient(test::toPclNormals(scrambled), Orientation::COMBINED).empty());
 }
 

@@ -250,7 +250,9 @@ TEST(Settings, TheClassesWarn) {
   orientation.setSegmentation(std::make_shared<Segmentation>(orientation.getUsedSegmentation()));
   testing::internal::CaptureStderr();
   orientation.compute(output);
-  EXPECT_NE(testing::internal::GetCapturedStderr().find("segmentation.max_gap"), std::string::npos);
+  said = testing::internal::GetCapturedStderr();
+  EXPECT_NE(said.find("segmentation.max_gap"), std::string::npos);
+  EXPECT_NE(said.find("and given segments"), std::string::npos) << said;
 
   // Nobody set the sensor origin of a cloud.
   auto from_a_sensor = pcl::make_shared<pcl::PointCloud<pcl::PointXYZ>>(*cloud);

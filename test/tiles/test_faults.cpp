@@ -162,6 +162,20 @@ TEST_F(Faults, AFolderThatIsHalfRemovedIsBegunAnew) {
   EXPECT_FALSE(fs::exists(folder));
 }
 
+// A folder that was no work folder keeps what it has, whatever the names.
+TEST_F(Faults, FilesOfOthersStayInTheFolder) {
+  fs::create_directory(folder);
+  std::ofstream(folder + "/labels") << "mine";
+  fs::copy(in, folder + "/input-1.ply");
+  for (int run = 0; run < 2; ++run) {
+    expectRefused(runProgram({"orient", folder + "/input-1.ply", out, "-q", "--work", folder,
+                              "--memory", "1G", "--tile-points", "3000"}),
+                  "is no work folder");
+  }
+  EXPECT_EQ(readFile(folder + "/labels"), "mine");
+  EXPECT_EQ(readFile(folder + "/input-1.ply"), readFile(in));
+}
+
 TEST_F(Faults, CleaningCanBeRepeated) {
   ASSERT_EQ(plan().status, 0);
   EXPECT_EQ(step("clean").status, 0);

@@ -112,6 +112,19 @@ TEST(TileTree, BodiesThatAreFarApartAreTilesOfTheirOwn) {
   EXPECT_EQ(TileTree(places, 1.0, 10000.0).tiles(), 1U);
 }
 
+// Copies that floats cannot tell apart are no spacing.
+TEST(TileTree, NearCopiesDoNotCutATile) {
+  std::vector<TileTree::Place> places;
+  std::mt19937 random(3);
+  std::uniform_real_distribution<double> uniform(0.0, 1.0);
+  for (int i = 0; i < 500; ++i) {
+    const double x = uniform(random);
+    const double y = uniform(random);
+    for (int copy = 0; copy < 6; ++copy) places.push_back({x + 1e-8 * copy, y, 0.0});
+  }
+  EXPECT_EQ(TileTree(places, 1.0, 10000.0).tiles(), 1U);
+}
+
 TEST(TileTree, AllInOnePlaceIsOneTileAndSoIsNothing) {
   const TileTree same(std::vector<Place>(1000, Place{1.0, 2.0, 3.0}), 1.0, 10.0);
   EXPECT_EQ(same.tiles(), 1U);

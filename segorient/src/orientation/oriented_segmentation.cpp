@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "common/refers_to.h"
 #include "common/unit_vector.h"
 #include "features/sheet_normals.h"
 #include "orientation/automatic/stages.h"
@@ -71,6 +72,10 @@ void invertTurned(const std::vector<SegmentOrientationResult>& results,
 }
 
 }  // namespace
+
+bool isTableOf(const Neighborhoods& table, std::size_t points) {
+  return table.size() == points && table.k() > 1 && refersTo(table, points);
+}
 
 OrientedSegmentation orientSegmentation(const PointView& points, const NormalView& normals,
                                         const Segmentation* segmentation, int k,

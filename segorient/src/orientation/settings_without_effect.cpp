@@ -190,12 +190,15 @@ std::vector<std::string> settingsWithoutEffect(const SegmentationSettings& segme
                                                const OrientationSettings& orientation,
                                                bool segments_are_given) {
   Changed out("");
-  if (segments_are_given) {
-    out.addAll("", changed(segmentation));
-  } else if (orientation.method == OrientationMethod::AUTO) {
+  if (orientation.method == OrientationMethod::AUTO) {  // it has segments of its own in any case
     out.addAll("", changedOfGrowing(segmentation));
   } else {
-    out.add("segmentation.unite_smooth", segmentation.unite_smooth, false);
+    if (segments_are_given) {
+      out.addAll("", changed(segmentation));
+    } else {
+      out.add("segmentation.unite_smooth", segmentation.unite_smooth, false);
+    }
+    out.addAll("", changedAngles(orientation.automatic, segmentation));
   }
   out.addAll("", settingsWithoutEffect(orientation));
   return out.names();

@@ -18,7 +18,8 @@ constexpr double kHaloSpacings = 20.0;
 // than a sixty-fourth of a spacing.
 constexpr double kWidestInSpacings = 262144.0;  // 2^18
 // Two bodies that far apart are not to be in one tile: it is cut between them, where nothing is.
-constexpr double kGap = 0.25;  // of the width
+constexpr double kGap = 0.25;             // of the width
+constexpr std::size_t kLeastApart = 100;  // sampled places of either
 // Sampled places in a cell that its spacing is told from.
 constexpr std::size_t kCellSample = 32;
 
@@ -102,10 +103,28 @@ struct TileTree::Builder {
     return true;
   }
 
+  // By an even part of its places, and the distances of those from others that floats can tell from
+  // them there.
   bool isTooWide(const Range& r) const {
+    constexpr std::size_t kAsked = 32;
     const std::array<double, 3> s = sides(r);
-    const double spacing = reachOf(r) / kHaloSpacings;
-    return spacing > 0.0 && *std::max_element(s.begin(), s.end()) > kWidestInSpacings * spacing;
+    const double width = *std::max_element(s.begin(), s.end());
+    const double least = std::pow(std::ldexp(width, -22), 2.0);
+    std::vector<double> nearest;
+    for (std::size_t i = 0; i < kAsked && r.size() > kLeastApart; ++i) {
+      const Place& p = sample[r.first + i * r.size() / kAsked];
+      double square = std::numeric_limits<double>::max();
+      for (std::size_t j = r.first; j < r.last; ++j) {
+        double d = 0.0;
+        for (std::size_t a = 0; a < 3; ++a) d += (p[a] - sample[j][a]) * (p[a] - sample[j][a]);
+        if (d > least) square = std::min(square, d);
+      }
+      nearest.push_back(std::sqrt(square / points_each));
+    }
+    if (nearest.empty()) return false;
+    const auto middle = nearest.begin() + static_cast<std::ptrdiff_t>(nearest.size() / 2);
+    std::nth_element(nearest.begin(), middle, nearest.end());
+    return width > kWidestInSpacings * *middle;
   }
 
   // At the widest gap along the longest side. \return false if there is none worth it
@@ -127,7 +146,7 @@ struct TileTree::Builder {
     const auto end = sample.begin() + static_cast<std::ptrdiff_t>(r.last);
     const auto below = [&](const Place& p) { return p[axis] < split; };
     middle = r.first + static_cast<std::size_t>(std::partition(begin, end, below) - begin);
-    return middle > r.first && middle < r.last;
+    return middle >= r.first + kLeastApart && r.last >= middle + kLeastApart;
   }
 
   void build(const Range& r, bool in_tile) {
@@ -137,11 +156,11 @@ struct TileTree::Builder {
     std::size_t axis = 0;
     double split = 0.0;
     std::size_t middle = 0;
-    const bool wide = !in_tile && points <= most_points && isTooWide(r);
-    const bool small = points <= most_points && !wide;
+    const bool fits = points <= most_points;
+    const bool apart = !in_tile && fits && isTooWide(r) && cutAtGap(r, axis, split, middle);
+    const bool small = fits && !apart;
     const bool cell = (in_tile || small) && r.size() <= kCellSample;
-    const bool halved =
-        !cell && ((wide && cutAtGap(r, axis, split, middle)) || halve(r, axis, split, middle));
+    const bool halved = apart || (!cell && halve(r, axis, split, middle));
     if (!in_tile && (small || !halved)) {
       tree.nodes_[n].tile = static_cast<std::int32_t>(tree.tiles_++);
       in_tile = true;

@@ -36,6 +36,7 @@ class SEGORIENT_TILES_EXPORT TileTree {
   /// \param sample places, finite; none = one tile
   /// \param points_each how many points of the cloud each of them stands for
   /// \param most_points of a tile; only points that are all in one place may be more
+  ///        Bodies are tiles of their own where floats near one place would not resolve both.
   TileTree(std::vector<Place> sample, double points_each, double most_points);
   /// A tree as it was stored. \return false, and an empty tree, if it is none
   static bool restore(std::vector<Node> nodes, TileTree& tree);

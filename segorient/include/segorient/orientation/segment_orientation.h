@@ -38,7 +38,7 @@ namespace segorient {
 /// coordinates or farther from the bulk of the points than 2^24 times its extent, gets NaN whatever
 /// normal it had; is_dense is cleared then. With indices, output i belongs to
 /// index i; the whole cloud is oriented all the same. No cloud, normals of another size, segments
-/// of another cloud, neighbourhoods of another size or a negative k: PCL_ERROR and an empty output.
+/// of another cloud, neighbourhoods of another one or a negative k: PCL_ERROR and an empty output.
 template <typename PointT, typename NormalT>
 class SegmentOrientation : public pcl::PCLBase<PointT> {
  public:
@@ -87,7 +87,7 @@ class SegmentOrientation : public pcl::PCLBase<PointT> {
   NeighborhoodsConstPtr getNeighborhoods() const { return neighborhoods_; }
 
   /// Neighbours of a point and the point itself, as in PCL; 0 (default) = 33 for AUTO and 13 for
-  /// the others. More than 129 are not used.
+  /// the others, or all that a ready table has. More than 129, or than that has, are not used.
   void setKSearch(int k) { k_ = k; }
   int getKSearch() const { return k_; }
 

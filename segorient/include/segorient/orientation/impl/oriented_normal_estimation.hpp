@@ -86,7 +86,8 @@ void OrientedNormalEstimation<PointInT, PointOutT>::computeFeature(PointCloudOut
 template <typename PointInT, typename PointOutT>
 void OrientedNormalEstimation<PointInT, PointOutT>::warnOfUnused(PipelineOptions options) const {
   // The sensor origin of a cloud was not set by anybody.
-  if (!options_.orientation.hints && use_sensor_origin_) {
+  const bool heeds_hints = options.orientation.method == OrientationMethod::AUTO;
+  if (!heeds_hints && !options_.orientation.hints && use_sensor_origin_) {
     auto set = std::make_shared<OrientationHints>(*options.orientation.hints);
     set->has_viewpoint = false;
     options.orientation.hints = set;

@@ -3,12 +3,14 @@
 #pragma once
 
 #include <segorient/common/export.h>
+#include <segorient/common/neighborhoods.h>
 #include <segorient/common/point_view.h>
 #include <segorient/orientation/orientation_options.h>
 #include <segorient/orientation/orientation_result.h>
 #include <segorient/segmentation/segmentation.h>
 #include <segorient/common/impl/point_search.hpp>
 
+#include <cstddef>
 #include <string>
 #include <vector>
 
@@ -33,6 +35,10 @@ SEGORIENT_ORIENTATION_EXPORT OrientedSegmentation orientSegmentation(
     const PointView& points, const NormalView& normals, const Segmentation* segmentation, int k,
     const SegmentationOptions& segmentation_options, const OrientationOptions& options,
     const PointSearch& search = {});
+
+/// Whether a table of neighbours has a row for each of so many points, refers to no others, and has
+/// more in it than these.
+SEGORIENT_ORIENTATION_EXPORT bool isTableOf(const Neighborhoods& table, std::size_t points);
 
 /// Names of those settings of both that were changed from their defaults and that
 /// orientSegmentation() does not look at.

@@ -59,11 +59,10 @@ bool SegmentOrientation<PointT, NormalT>::orient() {
     PCL_ERROR("[segorient::SegmentOrientation::compute] k (%d) must not be negative.\n", k_);
     return false;
   }
-  if (neighborhoods_ && neighborhoods_->size() != input_->size()) {
+  if (neighborhoods_ && !isTableOf(*neighborhoods_, input_->size())) {
     PCL_ERROR(
-        "[segorient::SegmentOrientation::compute] The neighbourhoods are those of %zu points, not "
-        "of %zu.\n",
-        neighborhoods_->size(), input_->size());
+        "[segorient::SegmentOrientation::compute] The neighbourhoods are not those of this "
+        "cloud.\n");
     return false;
   }
   const CloudPoints<PointT> points(*input_);
@@ -78,8 +77,8 @@ bool SegmentOrientation<PointT, NormalT>::orient() {
   segmentation_options.threads = options.threads;
   for (const std::string& name :
        settingsWithoutEffect(segmentation_options_, options, segmentation_ != nullptr)) {
-    PCL_WARN("[segorient::SegmentOrientation::compute] %s changes nothing with method %s.\n",
-             name.c_str(), toString(options.method));
+    PCL_WARN("[segorient::SegmentOrientation::compute] %s changes nothing with method %s%s.\n",
+             name.c_str(), toString(options.method), segmentation_ ? " and given segments" : "");
   }
   result_ = orientSegmentation(points.view(), normals.view(), segmentation_.get(), otherNeighbors(),
                                segmentation_options, options, searchFunction());

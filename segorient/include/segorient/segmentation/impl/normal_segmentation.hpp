@@ -63,11 +63,11 @@ void NormalSegmentation<PointT, NormalT>::setNumberOfNeighbours(unsigned int nei
 template <typename PointT, typename NormalT>
 CloudSegmentation::Search NormalSegmentation<PointT, NormalT>::searchFunction() {
   if (!search_) return {};
-  // Unless it is on this cloud already, on all of it or on our indices.
-  const pcl::IndicesConstPtr& held = search_->getIndices();
-  const bool fits = !held || held->empty() || (!fake_indices_ && *held == *indices_);
-  if (search_->getInputCloud() != input_ || !fits) {
-    search_->setInputCloud(input_, fake_indices_ ? pcl::IndicesConstPtr() : indices_);
+  // Unless it is on all of this cloud already. Indices may have changed in place since.
+  if (!fake_indices_) {
+    search_->setInputCloud(input_, indices_);
+  } else if (search_->getInputCloud() != input_ || search_->getIndices()) {
+    search_->setInputCloud(input_);
   }
   return [this](pcl::index_t point, int k, pcl::Indices& indices, std::vector<float>& distances) {
     return search_->nearestKSearch((*input_)[static_cast<std::size_t>(point)], k, indices,
