@@ -198,6 +198,10 @@ void writeStep(const Plan& plan, const std::string& folder, std::size_t output, 
     CloudTable none = CloudStream(plan.inputs[to.first_input].streamed).layout();
     none.size = none.width = 0;
     if (trajectory.size() > 0) addViewpoints(trajectory, to.path, none);
+    // Columns begin somewhere, though nobody reads there.
+    none.rows.resize(none.row_bytes);
+    results.normals.assign(4, kNaN);
+    results.labels.assign(1, kNoSegment);
     addBlock(none, results, 0, colors, 0, threads, writer);
   }
   writer.end();
