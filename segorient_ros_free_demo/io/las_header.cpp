@@ -134,12 +134,13 @@ void readLasRecordsBehind(InputFile& file, LasHeader& header, std::uint64_t posi
   if (header.extended_records > 0 && !inside) {
     header.notes.emplace_back("the records behind its points are left out: they are not there");
   }
-  if (lasHasWaveform(header.origin.point_format)) {
+  const bool waveforms = lasHasWaveform(header.origin.point_format);  // they may be behind, too
+  if (waveforms) {
     header.notes.emplace_back("the waveforms of its points are left out");
   }
   const std::uint64_t more =
       ((inside ? header.extended_begin : end) - position) / header.record_bytes;
-  if (more > 0 && !lasHasWaveform(header.origin.point_format)) {
+  if (more > 0 && !waveforms) {
     header.notes.push_back("there is room for " + std::to_string(more) +
                            " more points than its header counts: they are not read");
   }

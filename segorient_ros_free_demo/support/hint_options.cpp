@@ -71,17 +71,20 @@ std::vector<double> timesOf(const CloudTable& table, const std::string& path) {
 void addTrajectory(const Trajectory& trajectory, const std::string& path, bool quiet,
                    CloudTable& table) {
   const TrajectoryJoin join = addViewpoints(trajectory, path, table);
-  if (join.joined == 0) throw FileError(path, explainNoOverlap(trajectory, join));
-  const std::size_t without = join.outside + join.without_time;
-  if (without > 0) warn(path + ": " + withoutPlaceText(without));
+  requireJoined(trajectory, join, path);
   if (!quiet) std::printf("trajectory      %zu points have a place of the sensor\n", join.joined);
 }
 
 }  // namespace
 
-std::string withoutPlaceText(std::size_t points) {
-  return std::to_string(points) +
-         " points were not measured within the trajectory's time; it says no sensor for them";
+void requireJoined(const Trajectory& trajectory, const TrajectoryJoin& join,
+                   const std::string& path) {
+  if (join.joined == 0) throw FileError(path, explainNoOverlap(trajectory, join));
+  const std::size_t without = join.outside + join.without_time;
+  if (without > 0) {
+    warn(path + ": " + std::to_string(without) +
+         " points were not measured within the trajectory's time; it says no sensor for them");
+  }
 }
 
 TrajectoryJoin addViewpoints(const Trajectory& trajectory, const std::string& path,

@@ -17,8 +17,10 @@ namespace segorient::program {
 /// The origin of the file's coordinates, as `points` have it: where many sensors put themselves.
 std::array<float, 3> localOrigin(const LocalPoints& points);
 
-/// Says how many points a trajectory has no place for.
-std::string withoutPlaceText(std::size_t points);
+/// A trajectory of another time base says nothing: throws FileError. Of one that ends early it
+/// warns. \param path names what was joined in messages
+void requireJoined(const Trajectory& trajectory, const TrajectoryJoin& join,
+                   const std::string& path);
 
 /// Gives each point its place at the point's time as vp_x, vp_y, vp_z; where the trajectory says
 /// none, those that it had. \param path names `table` in messages

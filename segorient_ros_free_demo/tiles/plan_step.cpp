@@ -166,14 +166,6 @@ void findWanted(const Probe& probe, const StoredPoint* points, std::size_t size,
   });
 }
 
-// A trajectory of another time base says nothing, and one that ends early only of some.
-void requireJoined(const Trajectory& trajectory, const TrajectoryJoin& joined,
-                   const std::string& path) {
-  if (joined.joined == 0) throw FileError(path, explainNoOverlap(trajectory, joined));
-  const std::size_t without = joined.outside + joined.without_time;
-  if (without > 0) warn(path + ": " + withoutPlaceText(without));
-}
-
 // The second pass: each point to its tile.
 void distribute(const std::string& folder, const StepProgress& progress, const PlanSensors& sensors,
                 int threads, Probe& probe, Plan& plan) {

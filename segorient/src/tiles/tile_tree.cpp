@@ -80,6 +80,14 @@ struct TileTree::Builder {
     return kHaloSpacings * 1.1 * *middle / std::sqrt(points_each);
   }
 
+  // \return the first place that is not below
+  std::size_t partition(const Range& r, std::size_t axis, double split) {
+    const auto begin = sample.begin() + static_cast<std::ptrdiff_t>(r.first);
+    const auto end = sample.begin() + static_cast<std::ptrdiff_t>(r.last);
+    const auto below = [&](const Place& p) { return p[axis] < split; };
+    return r.first + static_cast<std::size_t>(std::partition(begin, end, below) - begin);
+  }
+
   // Halves of about as many, and no equal places on both sides. \return false if all are in one
   bool halve(const Range& r, std::size_t& axis, double& split, std::size_t& middle) {
     const std::array<double, 3> s = sides(r);
@@ -99,7 +107,7 @@ struct TileTree::Builder {
       }
       split = next;
     }
-    middle = r.first + static_cast<std::size_t>(std::partition(begin, end, below) - begin);
+    middle = partition(r, axis, split);
     return true;
   }
 
@@ -107,11 +115,12 @@ struct TileTree::Builder {
   // them there.
   bool isTooWide(const Range& r) const {
     constexpr std::size_t kAsked = 32;
+    if (r.size() < 2 * kLeastApart) return false;
     const std::array<double, 3> s = sides(r);
     const double width = *std::max_element(s.begin(), s.end());
     const double least = std::pow(std::ldexp(width, -22), 2.0);
     std::vector<double> nearest;
-    for (std::size_t i = 0; i < kAsked && r.size() > kLeastApart; ++i) {
+    for (std::size_t i = 0; i < kAsked; ++i) {
       const Place& p = sample[r.first + i * r.size() / kAsked];
       double square = std::numeric_limits<double>::max();
       for (std::size_t j = r.first; j < r.last; ++j) {
@@ -121,7 +130,6 @@ struct TileTree::Builder {
       }
       nearest.push_back(std::sqrt(square / points_each));
     }
-    if (nearest.empty()) return false;
     const auto middle = nearest.begin() + static_cast<std::ptrdiff_t>(nearest.size() / 2);
     std::nth_element(nearest.begin(), middle, nearest.end());
     return width > kWidestInSpacings * *middle;
@@ -142,10 +150,7 @@ struct TileTree::Builder {
       split = along[i - 1] + 0.5 * gap;
     }
     if (!(widest > kGap * s[axis])) return false;
-    const auto begin = sample.begin() + static_cast<std::ptrdiff_t>(r.first);
-    const auto end = sample.begin() + static_cast<std::ptrdiff_t>(r.last);
-    const auto below = [&](const Place& p) { return p[axis] < split; };
-    middle = r.first + static_cast<std::size_t>(std::partition(begin, end, below) - begin);
+    middle = partition(r, axis, split);
     return middle >= r.first + kLeastApart && r.last >= middle + kLeastApart;
   }
 
