@@ -96,8 +96,6 @@ std::vector<std::int8_t> conventions(const SheetSigns& sheets, const std::vector
 // convention.
 ComponentOrientationResult sideOf(const SheetSigns& sheets, std::size_t component,
                                   std::int8_t convention, const HintVotes& hints) {
-  // Nothing to tell in from out: a plane, or an isolated point.
-  constexpr float kNoEvidence = 0.01F;
   const ComponentWinding& winding = sheets.windings[component];
   ComponentOrientationResult out = sheets.found.result.components[component];
   // Of open ground the winding number tells bulge from hollow, not outside from inside.

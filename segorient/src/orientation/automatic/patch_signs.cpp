@@ -52,6 +52,19 @@ bool isClosed(const std::vector<ComponentOrientationResult>& components) {
   return sum <= static_cast<double>(kClosedResidual) * points;
 }
 
+// Whether most of it is open ground with what stands on it, whose side is a convention whatever the
+// winding number says: it bounds no bodies.
+bool isGround(const std::vector<ComponentOrientationResult>& components) {
+  std::size_t ground = 0;
+  std::size_t points = 0;
+  for (const ComponentOrientationResult& component : components) {
+    const bool conventional = component.by == DecidedBy::NOTHING;
+    if (conventional && component.evidence >= kNoEvidence) ground += component.points;
+    points += component.points;
+  }
+  return 2 * ground > points;
+}
+
 // Of each cell, the sign of its patch. Half of an undecided patch may lie outside of the contact:
 // its cells look which way the field of all decided ones falls.
 std::vector<float> signsOfCells(const EvenCells& cells, const SignPatches& patches,
@@ -148,7 +161,8 @@ CellSigns findAtScale(const PointView& points, const std::vector<float>& normals
 CellSigns findCellSigns(const PointView& points, const std::vector<float>& normals, float spacing,
                         const std::vector<ComponentOrientationResult>& components, bool noisy,
                         int threads) {
-  if (isClosed(components) || !mayBoundBodies(points, normals, spacing, noisy, threads)) return {};
+  if (isClosed(components) || isGround(components)) return {};
+  if (!mayBoundBodies(points, normals, spacing, noisy, threads)) return {};
   CellSigns out = findAtScale(points, normals, spacing, kClean, threads);
   if (noisy && out.empty()) out = findAtScale(points, normals, spacing, kNoisy, threads);
   return out;

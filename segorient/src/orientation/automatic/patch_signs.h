@@ -35,7 +35,8 @@ struct CellSigns {
 /// signs near 0 and are left out of more rounds. Of these solutions and of the normals as they are,
 /// the best by whole signs is taken if it is clearly better.
 ///
-/// Nothing is found where the winding number is that of a closed surface already.
+/// Nothing is found where the winding number is that of a closed surface already, nor of open
+/// ground.
 ///
 /// \param points finite, near ones side by side \param normals 4 floats a point, oriented
 /// \param spacing of the points, median \param components as they were oriented

@@ -28,6 +28,8 @@ constexpr float kClosedResidual = 0.03F;
 /// Noise of half a spacing adds .045 on a plane of even points and .06 on one of random points,
 /// more noise .07 at most.
 constexpr float kOpenResidual = 0.1F;
+/// Evidence of less is that of a plane, or of an isolated point: nothing tells in from out.
+constexpr float kNoEvidence = 0.01F;
 constexpr float kClearly = 0.6F;  ///< four of five votes
 /// Agreement of borders, as votes for less votes against: what is known of single points, and what
 /// patches show as a whole, outweighs all that are not as firm as the first, and what could merely
