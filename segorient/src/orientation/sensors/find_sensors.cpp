@@ -67,19 +67,40 @@ void setOnly(const FoundSensor& sensor, const char* why, SensorReport& out) {
   out.why = why;
 }
 
+// Whether two places are on opposite sides of most pieces.
+bool seeOppositeSides(const DensityPatches& patches, const FittedPlace& a, const FittedPlace& b) {
+  const std::vector<float> over_a = patches.heightsOver(a.place.position);
+  const std::vector<float> over_b = patches.heightsOver(b.place.position);
+  std::size_t opposite = 0;
+  for (std::size_t i = 0; i < over_a.size(); ++i) {
+    if ((over_a[i] < 0.F) != (over_b[i] < 0.F)) ++opposite;
+  }
+  return 2 * opposite > over_a.size();
+}
+
+// From afar many places explain much. A suggested one stands unless the best of all explains far
+// more, or more from the other side: of 58 true ones the best saw the same sides, of 17 that were
+// one to five extents off it saw the others, or left .6 of what they did at most.
+bool betters(const FittedPlace& found, const FittedPlace& suggested, float constant,
+             const DensityPatches& patches) {
+  if (found.cost <= detail::kMuchBetter * suggested.cost) return true;
+  return found.cost < suggested.cost && found.cost <= detail::kSureFound * constant &&
+         seeOppositeSides(patches, found, suggested);
+}
+
 FoundSensor findStation(const DensityPatches& patches, float constant,
                         const SensorOptions& options) {
   const std::optional<FittedPlace> suggested = trySuggestions(patches, constant, options);
-  if (suggested) {
-    const FittedPlace beside = detail::fitBeside(patches, *suggested);
-    if (beside.cost > detail::kMuchBetter * suggested->cost) {
-      return describe(*suggested, constant, true);
-    }
+  std::optional<FittedPlace> found;
+  if (options.search) {
+    found = detail::searchStation(patches, constant, options.threads);
+  } else if (suggested) {
+    found = detail::fitBeside(patches, *suggested);
   }
-  if (!options.search) return {};
-  const std::optional<FittedPlace> found =
-      detail::searchStation(patches, constant, options.threads);
-  return found ? describe(*found, constant, false) : FoundSensor{};
+  if (suggested && !(found && betters(*found, *suggested, constant, patches))) {
+    return describe(*suggested, constant, true);
+  }
+  return found && options.search ? describe(*found, constant, false) : FoundSensor{};
 }
 
 // Whether a place is under the cloud's ground, about as far away as that is wide: of what a camera

@@ -19,7 +19,7 @@ constexpr float kHopeless = 0.8F;
 /// What a law may leave of the constant's deviation at the best of all places: true ones .04 to
 /// .31, solids and sheets .99 and more, several stations around an object from .42 on.
 constexpr float kSureFound = 0.33F;
-/// A place that somebody names is kept unless one beside it explains this much more.
+/// A place that somebody names is kept unless another one explains this much more.
 constexpr float kMuchBetter = 0.6F;
 
 /// A place and how far the densities deviate from its law.
