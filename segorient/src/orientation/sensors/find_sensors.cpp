@@ -4,12 +4,15 @@
 
 #include <algorithm>
 #include <optional>
+#include <utility>
+#include <vector>
 
 #include "common/in_double.h"
 #include "orientation/sensors/height_field.h"
 #include "orientation/sensors/image_rays.h"
 #include "orientation/sensors/joint_sensors.h"
 #include "orientation/sensors/room_shadows.h"
+#include "orientation/sensors/scene_frame.h"
 #include "orientation/sensors/sensor_search.h"
 #include "orientation/sensors/shadows.h"
 #include "orientation/sensors/station_search.h"
@@ -126,6 +129,29 @@ void lookForUpperSide(PreparedCloud& cloud, const DensityPatches& patches,
   if (out.faces_up) out.why += ", but it is one surface over the ground, whose upper side is seen";
 }
 
+void findSeveralIn(detail::SceneFrame frame, const DensityPatches& patches, PreparedCloud& cloud,
+                   int threads, SensorReport& out) {
+  if (frame.isOwn()) {
+    detail::findSeveral(cloud.points(), patches, &cloud, threads, out);
+    return;
+  }
+  std::vector<float> points = frame.into(cloud.points(), threads);
+  const PointView turned{points.data(), 3, cloud.size()};
+  detail::findSeveral(turned, frame.into(patches), nullptr, threads, out);
+  frame.back(out);
+  // The largest plane may be a wall, which rooms that were scanned on the way show more of.
+  for (int other = 0; other < 2 && out.sensors.empty(); ++other) {
+    frame = frame.rolled();
+    points = frame.into(cloud.points(), threads);
+    SensorReport moving = out;
+    detail::findMoving({points.data(), 3, cloud.size()}, frame.into(patches), threads, moving);
+    if (moving.sensors.empty()) continue;
+    moving.directions.clear();
+    frame.back(moving);
+    out = std::move(moving);
+  }
+}
+
 // By densities and layers; in the unit of the cloud, sensor_of by its points.
 SensorReport searchSensors(PreparedCloud& cloud, const SensorOptions& options) {
   SensorReport out;
@@ -144,7 +170,11 @@ SensorReport searchSensors(PreparedCloud& cloud, const SensorOptions& options) {
     lookForUpperSide(cloud, patches, options, out);
     return out;
   }
-  FoundSensor sensor = findStation(patches, out.deviation, options);
+  const detail::SceneFrame frame(patches);
+  SensorOptions in_frame = options;
+  for (std::array<float, 3>& s : in_frame.suggestions) s = frame.into(s);
+  FoundSensor sensor = findStation(frame.into(patches), out.deviation, in_frame);
+  frame.back(sensor);
   // Several stations around a body, most points from one of them, look like one at some place.
   const bool searched = sensor.kind == SensorKind::STATION && !sensor.suggested;
   if (sensor.sure && searched) {
@@ -153,7 +183,7 @@ SensorReport searchSensors(PreparedCloud& cloud, const SensorOptions& options) {
   if (!sensor.sure) {
     out.why = "no places explain the densities";
     if (options.search && out.deviation >= kFarBeyondChance * out.chance) {
-      detail::findSeveral(cloud, patches, options.threads, out);
+      findSeveralIn(frame, patches, cloud, options.threads, out);
     }
     return out;
   }

@@ -36,23 +36,24 @@ constexpr float kSureTrack = 0.4F;
 constexpr float kVariesTilted = 4.F;
 constexpr float kVariesMuch = 8.F;
 constexpr float kSureWhereMuch = 0.4F;
+constexpr std::array<double, 3> kUp{0.0, 0.0, 1.0};
 
 // Of each point, -1 = none.
-std::vector<std::int32_t> nearestPieces(PreparedCloud& cloud, const DensityPatches& patches,
+std::vector<std::int32_t> nearestPieces(const PointView& points, const DensityPatches& patches,
                                         int threads) {
   std::vector<float> centers;
   for (std::size_t i = 0; i < patches.size(); ++i) {
     centers.insert(centers.end(), {patches.x[i], patches.y[i], patches.z[i]});
   }
-  return search::nearestOf(search::indexOf({centers.data(), 3, patches.size()}, threads),
-                           cloud.points(), threads);
+  return search::nearestOf(search::indexOf({centers.data(), 3, patches.size()}, threads), points,
+                           threads);
 }
 
 // For each point the place that left most of the density of the nearest piece.
-void assignPlaces(PreparedCloud& cloud, const DensityPatches& patches,
+void assignPlaces(const PointView& points, const DensityPatches& patches,
                   const std::vector<std::int32_t>& place_of_piece, int threads,
                   SensorReport& report) {
-  report.sensor_of = nearestPieces(cloud, patches, threads);
+  report.sensor_of = nearestPieces(points, patches, threads);
   for (std::int32_t& s : report.sensor_of) {
     if (s >= 0) s = place_of_piece[static_cast<std::size_t>(s)];
   }
@@ -99,15 +100,15 @@ void lookFromAbove(PreparedCloud& cloud, const DensityPatches& patches,
 }
 
 // Nobody knows the places, but the sides.
-void lookWithin(PreparedCloud& cloud, const DensityPatches& all, const detail::Extent& extent,
+void lookWithin(const PointView& points, const DensityPatches& all, const detail::Extent& extent,
                 const detail::Occupancy& occupancy, int threads, SensorReport& report) {
   constexpr std::size_t kPieces = 800;
   const DensityPatches patches = all.thinned(kPieces);
   const std::vector<float> directions =
       detail::directionsWithin(patches, occupancy, extent, threads);
   if (directions.empty()) return;
-  const std::vector<std::int32_t> piece = nearestPieces(cloud, patches, threads);
-  report.directions.assign(3 * cloud.size(), 0.F);
+  const std::vector<std::int32_t> piece = nearestPieces(points, patches, threads);
+  report.directions.assign(3 * points.size, 0.F);
   for (std::size_t i = 0; i < piece.size(); ++i) {
     if (piece[i] < 0) continue;
     std::copy_n(&directions[3 * static_cast<std::size_t>(piece[i])], 3, &report.directions[3 * i]);
@@ -130,9 +131,23 @@ bool areOutside(const std::vector<std::array<double, 3>>& positions, const detai
   });
 }
 
+// \return what a scanner on its way leaves of the deviation
+float findTrack(const DensityPatches& patches, const detail::Extent& extent,
+                const detail::Occupancy& occupancy, const PointView& points, int threads,
+                SensorReport& report) {
+  const std::optional<detail::Track> track = detail::searchTrack(patches, extent, threads);
+  if (!track) return std::numeric_limits<float>::infinity();
+  const float left = track->cost / report.deviation;
+  if (left > kSureTrack) return left;
+  addSensors(track->places, SensorKind::MOVING, kUp, left, report);
+  assignPlaces(points, patches, detail::placeOf(patches, occupancy, *track), threads, report);
+  report.why = "places along a line explain the densities";
+  return left;
+}
+
 // Scanners that tilt turn about a level axis.
 // \param left what a scanner on its way leaves of the deviation: it is to be less
-void lookForTilted(PreparedCloud& cloud, const DensityPatches& patches,
+void lookForTilted(const PointView& points, const DensityPatches& patches,
                    const detail::Extent& extent, const detail::Occupancy& occupancy, float left,
                    int threads, SensorReport& report) {
   if (report.deviation < kVariesTilted * report.chance) return;
@@ -150,45 +165,41 @@ void lookForTilted(PreparedCloud& cloud, const DensityPatches& patches,
   if (ratio > (much ? kSureWhereMuch : kSureSeveral) || ratio >= left) return;
   if (!areInside(best->positions, extent)) return;
   addSensors(best->positions, SensorKind::STATION, best->axis, ratio, report);
-  assignPlaces(cloud, patches, detail::stationOf(patches, occupancy, *best), threads, report);
+  assignPlaces(points, patches, detail::stationOf(patches, occupancy, *best), threads, report);
   report.why = "several places of scanners that tilt explain the densities";
 }
 
 }  // namespace
 
-void detail::findSeveral(PreparedCloud& cloud, const DensityPatches& patches, int threads,
-                         SensorReport& report) {
-  constexpr std::array<double, 3> kUp{0.0, 0.0, 1.0};
+void detail::findSeveral(const PointView& points, const DensityPatches& patches,
+                         PreparedCloud* upright, int threads, SensorReport& report) {
   const detail::Extent extent = detail::extentOf(patches);
-  const detail::Occupancy occupancy(cloud.points(), patches, extent);
+  const detail::Occupancy occupancy(points, patches, extent);
   const std::optional<detail::Stations> stations =
       detail::searchStations(patches, occupancy, kUp, threads);
   if (stations && !areOutside(stations->positions, extent)) {
     const float ratio = stations->cost / report.deviation;
     if (ratio <= kSureSeveral || stations->cost <= report.chance) {
       addSensors(stations->positions, SensorKind::STATION, kUp, ratio, report);
-      assignPlaces(cloud, patches, detail::stationOf(patches, occupancy, *stations), threads,
+      assignPlaces(points, patches, detail::stationOf(patches, occupancy, *stations), threads,
                    report);
       report.why = "several places explain the densities";
       return;
     }
   }
-  const std::optional<detail::Track> track = detail::searchTrack(patches, extent, threads);
-  const float left =
-      track ? track->cost / report.deviation : std::numeric_limits<float>::infinity();
-  const bool is_track = left <= kSureTrack;
-  if (!is_track) lookFromAbove(cloud, patches, extent, report);
+  const float left = findTrack(patches, extent, occupancy, points, threads, report);
+  if (report.sensors.empty() && upright != nullptr)
+    lookFromAbove(*upright, patches, extent, report);
   if (report.sensors.empty() && left > kSureSeveral) {
-    lookForTilted(cloud, patches, extent, occupancy, left, threads, report);
+    lookForTilted(points, patches, extent, occupancy, left, threads, report);
   }
-  if (!report.sensors.empty()) return;
-  if (!is_track) {
-    lookWithin(cloud, patches, extent, occupancy, threads, report);
-    return;
-  }
-  addSensors(track->places, SensorKind::MOVING, kUp, left, report);
-  assignPlaces(cloud, patches, detail::placeOf(patches, occupancy, *track), threads, report);
-  report.why = "places along a line explain the densities";
+  if (report.sensors.empty()) lookWithin(points, patches, extent, occupancy, threads, report);
+}
+
+void detail::findMoving(const PointView& points, const DensityPatches& patches, int threads,
+                        SensorReport& report) {
+  const detail::Extent extent = detail::extentOf(patches);
+  findTrack(patches, extent, detail::Occupancy(points, patches, extent), points, threads, report);
 }
 
 }  // namespace segorient
