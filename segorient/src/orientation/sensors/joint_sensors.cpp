@@ -175,12 +175,20 @@ void detail::findSeveral(const PointView& points, const DensityPatches& patches,
                          PreparedCloud* upright, int threads, SensorReport& report) {
   const detail::Extent extent = detail::extentOf(patches);
   const detail::Occupancy occupancy(points, patches, extent);
-  const std::optional<detail::Stations> stations =
+  std::optional<detail::Stations> stations =
       detail::searchStations(patches, occupancy, kUp, threads);
+  // The largest plane of what is not upright may be a wall.
+  for (std::size_t a = 0; a < 2 && upright == nullptr; ++a) {
+    std::array<double, 3> axis{0.0, 0.0, 0.0};
+    axis[a] = 1.0;
+    const std::optional<detail::Stations> other =
+        detail::searchStations(patches, occupancy, axis, threads);
+    if (other && (!stations || other->cost < stations->cost)) stations = other;
+  }
   if (stations && !areOutside(stations->positions, extent)) {
     const float ratio = stations->cost / report.deviation;
     if (ratio <= kSureSeveral || stations->cost <= report.chance) {
-      addSensors(stations->positions, SensorKind::STATION, kUp, ratio, report);
+      addSensors(stations->positions, SensorKind::STATION, stations->axis, ratio, report);
       assignPlaces(points, patches, detail::stationOf(patches, occupancy, *stations), threads,
                    report);
       report.why = "several places explain the densities";

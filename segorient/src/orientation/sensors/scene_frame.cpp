@@ -19,6 +19,8 @@ using Axis = std::array<float, 3>;
 // Cosine of 8 degrees: as far as normals err on scans, and sine.
 constexpr float kAlong = 0.99F;
 constexpr float kAcross = 0.14F;
+// Cosine of 3 degrees: as far as tripods lean, and less than the laws tell from an upright axis.
+constexpr float kUpright = 0.9986F;
 // Of directions at random one in a hundred is that near to a line.
 constexpr float kMost = 0.1F;
 constexpr float kSecond = 0.03F;
@@ -118,7 +120,7 @@ SceneFrame::SceneFrame(const DensityPatches& patches) {
   const std::array<Axis, 3> axes{x, cross(z, x), z};
   for (const Axis& axis : axes) {
     for (const float v : axis) {
-      if (std::fabs(v) > kAlong) return;
+      if (std::fabs(v) > kUpright) return;
     }
   }
   axes_ = axes;
