@@ -113,15 +113,18 @@ SceneFrame::SceneFrame(const DensityPatches& patches) {
   const std::optional<Axis> first = lineOfMost(some, nullptr, thickness, kMost);
   if (!first) return;
   const Axis z = *first;
-  Axis x = lineOfMost(some, &z, thickness, kSecond).value_or(axisAcross(z));
+  const std::optional<Axis> second = lineOfMost(some, &z, thickness, kSecond);
+  Axis x = second.value_or(axisAcross(z));
   const float along = dot(x.data(), z.data());
   for (std::size_t a = 0; a < 3; ++a) x[a] -= along * z[a];
   if (!normalize(x)) return;
   const std::array<Axis, 3> axes{x, cross(z, x), z};
-  for (const Axis& axis : axes) {
-    for (const float v : axis) {
-      if (std::fabs(v) > kUpright) return;
-    }
+  // Upright by a wall's plane or a floor's, or lying on one of its sides.
+  const bool is_upright =
+      second && (std::fabs(axes[0][2]) > kUpright || std::fabs(axes[1][2]) > kUpright);
+  if (is_upright ||
+      std::any_of(z.begin(), z.end(), [](float v) { return std::fabs(v) > kUpright; })) {
+    return;
   }
   axes_ = axes;
   is_own_ = false;

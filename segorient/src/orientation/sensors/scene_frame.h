@@ -17,7 +17,8 @@ namespace segorient::detail {
 /// cloud is in, and the laws and paths of sensors are tried about the coordinate axes.
 class SceneFrame {
  public:
-  /// The cloud's own axes, if one of them is such a direction, or there is none.
+  /// The cloud's own axes, if its z is such a direction, or any of them that of the largest plane;
+  /// or if there are none.
   explicit SceneFrame(const DensityPatches& patches);
 
   bool isOwn() const { return is_own_; }  ///< nothing is turned
