@@ -175,9 +175,11 @@ SensorReport searchSensors(PreparedCloud& cloud, const SensorOptions& options) {
   for (std::array<float, 3>& s : in_frame.suggestions) s = frame.into(s);
   FoundSensor sensor = findStation(frame.into(patches), out.deviation, in_frame);
   frame.back(sensor);
-  // Several stations around a body, most points from one of them, look like one at some place.
+  // Several stations around a body, most points from one of them, look like one at some place, and
+  // somewhat like one at many.
   const bool searched = sensor.kind == SensorKind::STATION && !sensor.suggested;
-  if (sensor.sure && searched) {
+  const bool is_weak = sensor.suggested && sensor.cost_ratio > detail::kSureFound;
+  if (sensor.sure && (searched || is_weak)) {
     sensor.sure = !detail::findShadows(cloud.points(), sensor.position, options.threads).deny();
   }
   if (!sensor.sure) {
