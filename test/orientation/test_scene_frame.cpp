@@ -161,6 +161,23 @@ TEST(SceneFrame, ScannersOnTheirWayThroughATurnedStreetAreFound) {
   EXPECT_GT(static_cast<double>(near), 0.8 * static_cast<double>(scan.view().size));
 }
 
+// A town on a hillside, whose largest plane is not level: seen from above along the cloud's z.
+TEST(SceneFrame, AHillsideIsSeenFromAboveAllTheSame) {
+  std::mt19937 random(5);
+  std::uniform_real_distribution<float> unit(0.F, 1.F);
+  std::vector<float> rows;
+  while (rows.size() < 90000) {
+    const float x = 10.F * unit(random);
+    const float y = 10.F * unit(random);
+    if (std::fmod(x, 2.F) > 0.5F && unit(random) > 0.4F) continue;  // strips, as aircraft fly
+    const bool roof = std::fmod(x, 2.F) < 0.7F && std::fmod(y, 2.F) < 0.7F;
+    rows.insert(rows.end(), {x, y, 0.14F * x + (roof ? 0.6F : 0.F)});
+  }
+  const SensorReport report = findSensors({rows.data(), 3, rows.size() / 3});
+  ASSERT_EQ(report.sensors.size(), 1U) << report.why;
+  EXPECT_EQ(report.sensors[0].kind, SensorKind::ABOVE);
+}
+
 // From afar a wrong place may explain a view's densities well, too, from behind the surface.
 TEST(Sensors, SuggestionGivesWayToTheBestPlace) {
   struct View {

@@ -4,6 +4,7 @@
 #include <segorient/search/median_hash_index.h>
 #include <sys/resource.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdlib>

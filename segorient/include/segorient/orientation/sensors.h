@@ -92,8 +92,9 @@ SEGORIENT_ORIENTATION_EXPORT const char* toString(SensorEvidence evidence);
 
 struct SensorOptions {
   /// Positions to be looked at first: where a file says nothing, the origin is where most cameras
-  /// and scanners put themselves. A position that fits is preferred to any that is searched; one
-  /// that does not is no evidence of anything. Not finite: left out.
+  /// and scanners put themselves. A position that fits is preferred to those that are searched,
+  /// unless one of them explains far more, or more from the other side of the surface; one that
+  /// does not fit is no evidence of anything. Not finite: left out.
   std::vector<std::array<float, 3>> suggestions{{0.F, 0.F, 0.F}};
   bool search = true;  ///< otherwise only suggestions, and images
   /// Pixels in a row of an organised cloud, row by row from the first; 0 = not organised.

@@ -81,14 +81,16 @@ bool seeOppositeSides(const DensityPatches& patches, const FittedPlace& a, const
   return 2 * opposite > over_a.size();
 }
 
-// From afar many places explain much. A suggested one stands unless the best of all explains far
-// more, or more from the other side: of 58 true ones the best saw the same sides, of 17 that were
-// one to five extents off it saw the others, or left .6 of what they did at most.
+// From afar many places explain much. A suggested one stands unless the best of all, which has to
+// be sure itself, explains far more, or more from the other side: of 58 true ones the best saw the
+// same sides, of 17 that were one to five extents off it saw the others, or left .6 of what they
+// did at most.
 bool betters(const FittedPlace& found, const FittedPlace& suggested, float constant,
              const DensityPatches& patches) {
-  if (found.cost <= detail::kMuchBetter * suggested.cost) return true;
-  return found.cost < suggested.cost && found.cost <= detail::kSureFound * constant &&
-         seeOppositeSides(patches, found, suggested);
+  if (found.cost > detail::kSureFound * constant || found.cost >= suggested.cost) return false;
+  const bool explains_more = found.cost <= detail::kMuchBetter * suggested.cost &&
+                             found.cost <= suggested.cost - detail::kGain * constant;
+  return explains_more || seeOppositeSides(patches, found, suggested);
 }
 
 FoundSensor findStation(const DensityPatches& patches, float constant,
@@ -129,27 +131,55 @@ void lookForUpperSide(PreparedCloud& cloud, const DensityPatches& patches,
   if (out.faces_up) out.why += ", but it is one surface over the ground, whose upper side is seen";
 }
 
-void findSeveralIn(detail::SceneFrame frame, const DensityPatches& patches, PreparedCloud& cloud,
-                   int threads, SensorReport& out) {
-  if (frame.isOwn()) {
-    detail::findSeveral(cloud.points(), patches, &cloud, threads, out);
+// \param frame in another one than the cloud's, nothing is to be suggested
+// \param has_axes whether the scene lies along the cloud's axes
+// \param out has the deviations
+void searchPlaces(const detail::SceneFrame& frame, bool has_axes, const DensityPatches& patches,
+                  PreparedCloud& cloud, const SensorOptions& options, SensorReport& out) {
+  FoundSensor sensor = findStation(frame.into(patches), out.deviation, options);
+  frame.back(sensor);
+  // Several stations around a body, most points from one of them, look like one at some place, and
+  // somewhat like one at many.
+  const bool searched = sensor.kind == SensorKind::STATION && !sensor.suggested;
+  const bool is_weak = sensor.suggested && sensor.cost_ratio > detail::kSureFound;
+  if (sensor.sure && (searched || is_weak)) {
+    sensor.sure = !detail::findShadows(cloud.points(), sensor.position, options.threads).deny();
+  }
+  if (sensor.sure) {
+    setOnly(sensor,
+            sensor.suggested ? "the suggested place explains the densities"
+                             : "one place explains the densities",
+            out);
     return;
   }
-  std::vector<float> points = frame.into(cloud.points(), threads);
-  const PointView turned{points.data(), 3, cloud.size()};
-  detail::findSeveral(turned, frame.into(patches), nullptr, threads, out);
-  frame.back(out);
-  // The largest plane may be a wall, which rooms that were scanned on the way show more of.
-  for (int other = 0; other < 2 && out.sensors.empty(); ++other) {
-    frame = frame.rolled();
-    points = frame.into(cloud.points(), threads);
-    SensorReport moving = out;
-    detail::findMoving({points.data(), 3, cloud.size()}, frame.into(patches), threads, moving);
-    if (moving.sensors.empty()) continue;
-    moving.directions.clear();
-    frame.back(moving);
-    out = std::move(moving);
+  out.why = "no places explain the densities";
+  if (!options.search || out.deviation < kFarBeyondChance * out.chance) return;
+  if (frame.isOwn()) {
+    detail::findSeveral(cloud, patches, has_axes, options.threads, out);
+  } else {
+    detail::findSeveralTurned(frame, cloud, patches, options.threads, out);
   }
+}
+
+// What was found in the cloud's own coordinates, or in the scene's frame if that explains more. A
+// place that was suggested is exact, and one layer over the ground is one in upright clouds only.
+SensorReport searchUpright(const DensityPatches& patches, PreparedCloud& cloud,
+                           const SensorOptions& options, const SensorReport& empty) {
+  const detail::SceneFrame frame(patches);
+  SensorReport own = empty;
+  searchPlaces({}, frame.isOwn(), patches, cloud, options, own);
+  const bool stands =
+      own.sure() && (own.sensors[0].suggested || own.sensors[0].evidence == SensorEvidence::LAYERS);
+  if (stands || frame.isOwn() || !options.search) return own;
+  SensorOptions without = options;
+  without.suggestions.clear();
+  SensorReport turned = empty;
+  searchPlaces(frame, true, patches, cloud, without, turned);
+  const bool knows_side = own.sure() || !own.directions.empty();
+  const bool is_better =
+      turned.sure() ? !own.sure() || turned.sensors[0].cost_ratio < own.sensors[0].cost_ratio
+                    : !knows_side && !turned.directions.empty();
+  return is_better ? turned : own;
 }
 
 // By densities and layers; in the unit of the cloud, sensor_of by its points.
@@ -170,30 +200,7 @@ SensorReport searchSensors(PreparedCloud& cloud, const SensorOptions& options) {
     lookForUpperSide(cloud, patches, options, out);
     return out;
   }
-  const detail::SceneFrame frame(patches);
-  SensorOptions in_frame = options;
-  for (std::array<float, 3>& s : in_frame.suggestions) s = frame.into(s);
-  FoundSensor sensor = findStation(frame.into(patches), out.deviation, in_frame);
-  frame.back(sensor);
-  // Several stations around a body, most points from one of them, look like one at some place, and
-  // somewhat like one at many.
-  const bool searched = sensor.kind == SensorKind::STATION && !sensor.suggested;
-  const bool is_weak = sensor.suggested && sensor.cost_ratio > detail::kSureFound;
-  if (sensor.sure && (searched || is_weak)) {
-    sensor.sure = !detail::findShadows(cloud.points(), sensor.position, options.threads).deny();
-  }
-  if (!sensor.sure) {
-    out.why = "no places explain the densities";
-    if (options.search && out.deviation >= kFarBeyondChance * out.chance) {
-      findSeveralIn(frame, patches, cloud, options.threads, out);
-    }
-    return out;
-  }
-  setOnly(sensor,
-          sensor.suggested ? "the suggested place explains the densities"
-                           : "one place explains the densities",
-          out);
-  return out;
+  return searchUpright(patches, cloud, options, out);
 }
 
 // Thinned clouds have lost their densities, which leaves who hides whom. That there is one layer

@@ -131,23 +131,31 @@ bool areOutside(const std::vector<std::array<double, 3>>& positions, const detai
   });
 }
 
-// \return what a scanner on its way leaves of the deviation
-float findTrack(const DensityPatches& patches, const detail::Extent& extent,
-                const detail::Occupancy& occupancy, const PointView& points, int threads,
-                SensorReport& report) {
-  const std::optional<detail::Track> track = detail::searchTrack(patches, extent, threads);
-  if (!track) return std::numeric_limits<float>::infinity();
-  const float left = track->cost / report.deviation;
-  if (left > kSureTrack) return left;
-  addSensors(track->places, SensorKind::MOVING, kUp, left, report);
-  assignPlaces(points, patches, detail::placeOf(patches, occupancy, *track), threads, report);
+bool addStations(const PointView& points, const DensityPatches& patches,
+                 const detail::Extent& extent, const detail::Occupancy& occupancy, int threads,
+                 SensorReport& report) {
+  const std::optional<detail::Stations> stations =
+      detail::searchStations(patches, occupancy, kUp, threads);
+  if (!stations || areOutside(stations->positions, extent)) return false;
+  const float ratio = stations->cost / report.deviation;
+  if (ratio > kSureSeveral && stations->cost > report.chance) return false;
+  addSensors(stations->positions, SensorKind::STATION, kUp, ratio, report);
+  assignPlaces(points, patches, detail::stationOf(patches, occupancy, *stations), threads, report);
+  report.why = "several places explain the densities";
+  return true;
+}
+
+void addTrack(const PointView& points, const DensityPatches& patches,
+              const detail::Occupancy& occupancy, const detail::Track& track, int threads,
+              SensorReport& report) {
+  addSensors(track.places, SensorKind::MOVING, kUp, track.cost / report.deviation, report);
+  assignPlaces(points, patches, detail::placeOf(patches, occupancy, track), threads, report);
   report.why = "places along a line explain the densities";
-  return left;
 }
 
 // Scanners that tilt turn about a level axis.
 // \param left what a scanner on its way leaves of the deviation: it is to be less
-void lookForTilted(const PointView& points, const DensityPatches& patches,
+void lookForTilted(PreparedCloud& cloud, const DensityPatches& patches,
                    const detail::Extent& extent, const detail::Occupancy& occupancy, float left,
                    int threads, SensorReport& report) {
   if (report.deviation < kVariesTilted * report.chance) return;
@@ -165,49 +173,66 @@ void lookForTilted(const PointView& points, const DensityPatches& patches,
   if (ratio > (much ? kSureWhereMuch : kSureSeveral) || ratio >= left) return;
   if (!areInside(best->positions, extent)) return;
   addSensors(best->positions, SensorKind::STATION, best->axis, ratio, report);
-  assignPlaces(points, patches, detail::stationOf(patches, occupancy, *best), threads, report);
+  assignPlaces(cloud.points(), patches, detail::stationOf(patches, occupancy, *best), threads,
+               report);
   report.why = "several places of scanners that tilt explain the densities";
 }
 
 }  // namespace
 
-void detail::findSeveral(const PointView& points, const DensityPatches& patches,
-                         PreparedCloud* upright, int threads, SensorReport& report) {
+void detail::findSeveral(PreparedCloud& cloud, const DensityPatches& patches, bool has_axes,
+                         int threads, SensorReport& report) {
   const detail::Extent extent = detail::extentOf(patches);
-  const detail::Occupancy occupancy(points, patches, extent);
-  std::optional<detail::Stations> stations =
-      detail::searchStations(patches, occupancy, kUp, threads);
-  // The largest plane of what is not upright may be a wall.
-  for (std::size_t a = 0; a < 2 && upright == nullptr; ++a) {
-    std::array<double, 3> axis{0.0, 0.0, 0.0};
-    axis[a] = 1.0;
-    const std::optional<detail::Stations> other =
-        detail::searchStations(patches, occupancy, axis, threads);
-    if (other && (!stations || other->cost < stations->cost)) stations = other;
+  const detail::Occupancy occupancy(cloud.points(), patches, extent);
+  if (addStations(cloud.points(), patches, extent, occupancy, threads, report)) return;
+  const std::optional<detail::Track> track = detail::searchTrack(patches, extent, threads);
+  const float left =
+      track ? track->cost / report.deviation : std::numeric_limits<float>::infinity();
+  const bool is_track = left <= kSureTrack;
+  if (!is_track) lookFromAbove(cloud, patches, extent, report);
+  if (has_axes && report.sensors.empty() && left > kSureSeveral) {
+    lookForTilted(cloud, patches, extent, occupancy, left, threads, report);
   }
-  if (stations && !areOutside(stations->positions, extent)) {
-    const float ratio = stations->cost / report.deviation;
-    if (ratio <= kSureSeveral || stations->cost <= report.chance) {
-      addSensors(stations->positions, SensorKind::STATION, stations->axis, ratio, report);
-      assignPlaces(points, patches, detail::stationOf(patches, occupancy, *stations), threads,
-                   report);
-      report.why = "several places explain the densities";
-      return;
-    }
+  if (!report.sensors.empty()) return;
+  if (!is_track) {
+    lookWithin(cloud.points(), patches, extent, occupancy, threads, report);
+    return;
   }
-  const float left = findTrack(patches, extent, occupancy, points, threads, report);
-  if (report.sensors.empty() && upright != nullptr)
-    lookFromAbove(*upright, patches, extent, report);
-  if (report.sensors.empty() && left > kSureSeveral) {
-    lookForTilted(points, patches, extent, occupancy, left, threads, report);
-  }
-  if (report.sensors.empty()) lookWithin(points, patches, extent, occupancy, threads, report);
+  addTrack(cloud.points(), patches, occupancy, *track, threads, report);
 }
 
-void detail::findMoving(const PointView& points, const DensityPatches& patches, int threads,
-                        SensorReport& report) {
-  const detail::Extent extent = detail::extentOf(patches);
-  findTrack(patches, extent, detail::Occupancy(points, patches, extent), points, threads, report);
+void detail::findSeveralTurned(SceneFrame frame, const PreparedCloud& cloud,
+                               const DensityPatches& patches, int threads, SensorReport& report) {
+  // Those on their way only where no stations are: a line has more to adapt.
+  for (const bool on_its_way : {false, true}) {
+    for (std::size_t up = 0; up < 3; ++up, frame = frame.rolled()) {
+      const std::vector<float> rows = frame.into(cloud.points(), threads);
+      const PointView points{rows.data(), 3, cloud.size()};
+      const DensityPatches turned = frame.into(patches);
+      const Extent extent = extentOf(turned);
+      const Occupancy occupancy(points, turned, extent);
+      SensorReport found = report;
+      found.sensors.clear();
+      if (on_its_way) {
+        const std::optional<Track> track = searchTrack(turned, extent, threads);
+        if (!track || track->cost > kSureTrack * report.deviation) continue;
+        addTrack(points, turned, occupancy, *track, threads, found);
+      } else if (!addStations(points, turned, extent, occupancy, threads, found)) {
+        continue;
+      }
+      frame.back(found);
+      const bool is_best =
+          report.sensors.empty() || found.sensors[0].cost_ratio < report.sensors[0].cost_ratio;
+      if (is_best) report = std::move(found);
+    }
+    if (!report.sensors.empty()) return;
+  }
+  const std::vector<float> rows = frame.into(cloud.points(), threads);
+  const PointView points{rows.data(), 3, cloud.size()};
+  const DensityPatches turned = frame.into(patches);
+  const Extent extent = extentOf(turned);
+  lookWithin(points, turned, extent, Occupancy(points, turned, extent), threads, report);
+  frame.back(report);
 }
 
 }  // namespace segorient

@@ -5,19 +5,24 @@
 #include <segorient/orientation/sensors.h>
 
 #include "orientation/sensors/density_patches.h"
+#include "orientation/sensors/scene_frame.h"
 #include "search/prepared_cloud.h"
 
 namespace segorient::detail {
 
 /// What no single place explains: several stations, a scanner on its way, or an aircraft are put
-/// into the report if they are sure, in the coordinates of these points.
-/// \param upright the cloud, if that has these coordinates; in others nothing is above
+/// into the report if they are sure, in the unit of the cloud and by its points.
+/// \param has_axes whether the scene lies along the coordinate axes, so that scanners may tilt
+/// about
+///        those that are level
 /// \param report has the deviation, and no sensors
-void findSeveral(const PointView& points, const DensityPatches& patches, PreparedCloud* upright,
-                 int threads, SensorReport& report);
+void findSeveral(PreparedCloud& cloud, const DensityPatches& patches, bool has_axes, int threads,
+                 SensorReport& report);
 
-/// The same, of a scanner on its way alone.
-void findMoving(const PointView& points, const DensityPatches& patches, int threads,
-                SensorReport& report);
+/// Several stations, or a scanner on its way, or the side, of a scene that lies otherwise in the
+/// cloud's coordinates. Which of the frame's axes is up its largest plane does not tell for sure,
+/// as that may be a wall: the one that explains most.
+void findSeveralTurned(SceneFrame frame, const PreparedCloud& cloud, const DensityPatches& patches,
+                       int threads, SensorReport& report);
 
 }  // namespace segorient::detail

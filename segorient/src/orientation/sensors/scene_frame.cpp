@@ -19,7 +19,7 @@ using Axis = std::array<float, 3>;
 // Cosine of 8 degrees: as far as normals err on scans, and sine.
 constexpr float kAlong = 0.99F;
 constexpr float kAcross = 0.14F;
-// Cosine of 3 degrees: as far as tripods lean, and less than the laws tell from an upright axis.
+// Cosine of 3 degrees: the laws hardly tell that from upright.
 constexpr float kUpright = 0.9986F;
 // Of directions at random one in a hundred is that near to a line.
 constexpr float kMost = 0.1F;
@@ -85,7 +85,9 @@ std::optional<Axis> lineOfMost(const DensityPatches& patches, const Axis* across
     most = count;
     best = line;
   }
-  if (static_cast<float>(most) < least * static_cast<float>(patches.size())) return std::nullopt;
+  if (most == 0 || static_cast<float>(most) < least * static_cast<float>(patches.size())) {
+    return std::nullopt;
+  }
   for (int round = 0; round < kRounds; ++round) best = meanAlong(patches, best);
   return best;
 }
@@ -110,22 +112,22 @@ Axis axisAcross(const Axis& z) {
 SceneFrame::SceneFrame(const DensityPatches& patches) {
   const DensityPatches some = patches.thinned(kPieces);
   const float thickness = kFlat * static_cast<float>(extentOf(some).diagonal());
-  const std::optional<Axis> first = lineOfMost(some, nullptr, thickness, kMost);
-  if (!first) return;
-  const Axis z = *first;
-  const std::optional<Axis> second = lineOfMost(some, &z, thickness, kSecond);
-  Axis x = second.value_or(axisAcross(z));
-  const float along = dot(x.data(), z.data());
-  for (std::size_t a = 0; a < 3; ++a) x[a] -= along * z[a];
-  if (!normalize(x)) return;
-  const std::array<Axis, 3> axes{x, cross(z, x), z};
-  // Upright by a wall's plane or a floor's, or lying on one of its sides.
-  const bool is_upright =
-      second && (std::fabs(axes[0][2]) > kUpright || std::fabs(axes[1][2]) > kUpright);
-  if (is_upright ||
-      std::any_of(z.begin(), z.end(), [](float v) { return std::fabs(v) > kUpright; })) {
-    return;
+  std::optional<Axis> z = lineOfMost(some, nullptr, thickness, kMost);
+  if (!z) return;
+  // Of a cloud that leans, up stays up.
+  const auto largest = std::max_element(
+      z->begin(), z->end(), [](float a, float b) { return std::fabs(a) < std::fabs(b); });
+  if (*largest < 0.F) {
+    for (float& v : *z) v = -v;
   }
+  const std::optional<Axis> second = lineOfMost(some, &*z, thickness, kSecond);
+  Axis x = second.value_or(axisAcross(*z));
+  const float along = dot(x.data(), z->data());
+  for (std::size_t a = 0; a < 3; ++a) x[a] -= along * (*z)[a];
+  if (!normalize(x)) return;
+  const std::array<Axis, 3> axes{x, cross(*z, x), *z};
+  const auto isUp = [](const Axis& axis) { return std::fabs(axis[2]) > kUpright; };
+  if (isUp(*z) || (second && (isUp(axes[0]) || isUp(axes[1])))) return;
   axes_ = axes;
   is_own_ = false;
 }

@@ -13,12 +13,12 @@
 namespace segorient::detail {
 
 /// The directions that most of a scene faces, floors and walls at right angles, as coordinate axes:
-/// z is that of the largest plane. Scanners stand upright on a floor, whatever coordinates the
-/// cloud is in, and the laws and paths of sensors are tried about the coordinate axes.
+/// z is across the largest plane. Scanners stand upright on a floor, whatever coordinates the cloud
+/// is in, and the laws and paths of sensors are tried about the coordinate axes.
 class SceneFrame {
  public:
-  /// The cloud's own axes, if its z is such a direction, or any of them that of the largest plane;
-  /// or if there are none.
+  SceneFrame() = default;  ///< the cloud's own axes
+  /// The cloud's own axes also where its z is such a direction, or there are none.
   explicit SceneFrame(const DensityPatches& patches);
 
   bool isOwn() const { return is_own_; }  ///< nothing is turned

@@ -29,8 +29,6 @@ constexpr int kFineRounds = 2;
 constexpr int kRelocations = 3;  // at most, for each number of stations
 constexpr int kAlternatives = 200;
 constexpr std::size_t kMostRelocated = 6;  // more stations than that find places by their number
-// Of the constant's cost: stations that gain less than this are not there.
-constexpr float kGain = 0.035F;
 
 // What stations leave on the pieces, by the side that they see. Of a surface nobody sees both.
 struct SideSums {

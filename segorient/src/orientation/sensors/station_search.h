@@ -19,6 +19,8 @@ constexpr float kHopeless = 0.8F;
 /// What a law may leave of the constant's deviation at the best of all places: true ones .04 to
 /// .31, solids and sheets .99 and more, several stations around an object from .42 on.
 constexpr float kSureFound = 0.33F;
+/// Of the constant's cost: stations that gain less than this are not there.
+constexpr float kGain = 0.035F;
 /// A place that somebody names is kept unless another one explains this much more.
 constexpr float kMuchBetter = 0.6F;
 
