@@ -15,7 +15,6 @@
 #include <vector>
 
 #include "common/compact_cloud.h"
-#include "common/parallel_for.h"
 #include "common/prefetch.h"
 
 namespace segorient {
@@ -91,15 +90,14 @@ std::vector<T> PreparedCloud::scatter(const std::vector<T>& of_points, std::size
                                       T none) const {
   std::vector<T> out(width * rows(), none);
   constexpr std::size_t kAhead = 16;  // the input may be in any order
-  constexpr double kRowTime = 5.0;    // ns, see resolveThreads()
-  parallelFor(rows(), threads_, kRowTime, [&](std::size_t row) {
+  for (std::size_t row = 0; row < rows(); ++row) {
     if (row + kAhead < rows() && cloud_.row_of[row + kAhead] >= 0) {
       prefetch(&of_points[width * static_cast<std::size_t>(cloud_.row_of[row + kAhead])]);
     }
-    if (cloud_.row_of[row] < 0) return;
+    if (cloud_.row_of[row] < 0) continue;
     std::copy_n(&of_points[width * static_cast<std::size_t>(cloud_.row_of[row])], width,
                 &out[width * row]);
-  });
+  }
   return out;
 }
 
