@@ -12,9 +12,8 @@ namespace segorient::detail {
 
 /// What no single place explains: several stations, a scanner on its way, or an aircraft are put
 /// into the report if they are sure, in the unit of the cloud and by its points.
-/// \param has_axes whether the scene lies along the coordinate axes, so that scanners may tilt
-/// about
-///        those that are level
+/// \param has_axes whether the scene lies along the coordinate axes: scanners that tilt are sought
+///        about those that are level then
 /// \param report has the deviation, and no sensors
 void findSeveral(PreparedCloud& cloud, const DensityPatches& patches, bool has_axes, int threads,
                  SensorReport& report);

@@ -22,6 +22,7 @@ class SceneFrame {
   explicit SceneFrame(const DensityPatches& patches);
 
   bool isOwn() const { return is_own_; }  ///< nothing is turned
+  /// From the cloud's coordinates into those of the frame, and back; the origin stays.
   std::array<float, 3> into(const std::array<float, 3>& v) const;
   std::array<float, 3> back(const std::array<float, 3>& v) const;
   DensityPatches into(DensityPatches patches) const;
