@@ -79,6 +79,22 @@ inline Scan scanFrom(const Vector& station, double step_degrees, const Room& roo
   return scan;
 }
 
+// A lidar of few beams that turns while it goes along: from each of the poses.
+inline Scan scanAlong(const std::vector<Vector>& poses, const Room& room) {
+  Scan scan(room);
+  for (std::size_t i = 0; i < poses.size(); ++i) {
+    for (double e = -24.0; e <= 8.0; e += 2.0) {
+      for (double a = 0.1 * static_cast<double>(i); a < 360.0; a += 1.0) {
+        const double azimuth = a * kPi / 180.0;
+        const double elevation = e * kPi / 180.0;
+        scan.add(poses[i], {std::cos(elevation) * std::cos(azimuth),
+                            std::cos(elevation) * std::sin(azimuth), std::sin(elevation)});
+      }
+    }
+  }
+  return scan;
+}
+
 // A lidar of few beams, tilted by 45 degrees, which swings while it is carried about in a room.
 struct Carried {
   Scan scan;

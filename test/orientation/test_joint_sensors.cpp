@@ -71,30 +71,18 @@ class MovingScanner : public testing::TestWithParam<Way> {};
 
 TEST_P(MovingScanner, IsFoundAlongItsWay) {
   const Way& way = GetParam();
-  Scan scan(way.room);
-  constexpr int kPoses = 12;
-  const auto pose = [&](int i) {
-    Vector out = way.first;
-    for (std::size_t a = 0; a < 3; ++a) out[a] += i * way.step[a];
-    return out;
-  };
-  for (int i = 0; i < kPoses; ++i) {
-    for (double e = -24.0; e <= 8.0; e += 2.0) {
-      for (double a = 0.1 * i; a < 360.0; a += 1.0) {
-        const double azimuth = a * kPi / 180.0;
-        const double elevation = e * kPi / 180.0;
-        scan.add(pose(i), {std::cos(elevation) * std::cos(azimuth),
-                           std::cos(elevation) * std::sin(azimuth), std::sin(elevation)});
-      }
-    }
+  std::vector<Vector> poses(12, way.first);
+  for (std::size_t i = 0; i < poses.size(); ++i) {
+    for (std::size_t a = 0; a < 3; ++a) poses[i][a] += static_cast<double>(i) * way.step[a];
   }
+  Scan scan = scanAlong(poses, way.room);
   const SensorReport report = findSensors(scan.view());
   ASSERT_GT(report.sensors.size(), 1U) << report.why;
   std::size_t points = 0;
   for (const FoundSensor& s : report.sensors) {
     EXPECT_TRUE(s.sure);
     double nearest = 1e30;
-    for (int i = 0; i < kPoses; ++i) nearest = std::min(nearest, distanceTo(s, pose(i)));
+    for (const Vector& pose : poses) nearest = std::min(nearest, distanceTo(s, pose));
     // Between two poses, and .1 of the room's height.
     EXPECT_LT(nearest, 0.5 * way.step[0] + 0.1 * way.room.size[2]);
     points += s.points;

@@ -135,26 +135,16 @@ TEST(SceneFrame, StationsOfATurnedRoomAreFound) {
 }
 
 TEST(SceneFrame, ScannersOnTheirWayThroughATurnedStreetAreFound) {
-  Scan scan({{50.0, 6.0, 5.0}, {30.0, 0.0, 0.0}, {34.0, 2.0, 2.0}});
-  const auto pose = [](int i) { return Vector{6.0 + 1.2 * i, 2.7 + .03 * i, 1.8}; };
-  constexpr int kPoses = 12;
-  for (int i = 0; i < kPoses; ++i) {
-    for (double e = -24.0; e <= 8.0; e += 2.0) {
-      for (double a = 0.1 * i; a < 360.0; a += 1.0) {
-        const double azimuth = a * kPi / 180.0;
-        const double elevation = e * kPi / 180.0;
-        scan.add(pose(i), {std::cos(elevation) * std::cos(azimuth),
-                           std::cos(elevation) * std::sin(azimuth), std::sin(elevation)});
-      }
-    }
-  }
+  std::vector<Vector> poses;
+  for (int i = 0; i < 12; ++i) poses.push_back({6.0 + 1.2 * i, 2.7 + .03 * i, 1.8});
+  Scan scan = scanAlong(poses, {{50.0, 6.0, 5.0}, {30.0, 0.0, 0.0}, {34.0, 2.0, 2.0}});
   turn(scan);
   const SensorReport report = findSensors(scan.view());
   ASSERT_GT(report.sensors.size(), 1U) << report.why;
   std::size_t near = 0;
   for (const FoundSensor& s : report.sensors) {
     double nearest = 1e30;
-    for (int i = 0; i < kPoses; ++i) nearest = std::min(nearest, distanceTo(s, turned(pose(i))));
+    for (const Vector& pose : poses) nearest = std::min(nearest, distanceTo(s, turned(pose)));
     if (nearest < 1.1) near += s.points;  // as where nothing is turned
   }
   // An end of the way may be some metres off, as the last few poses say little.

@@ -70,17 +70,6 @@ void setOnly(const FoundSensor& sensor, const char* why, SensorReport& out) {
   out.why = why;
 }
 
-// Whether two places are on opposite sides of most pieces.
-bool seeOppositeSides(const DensityPatches& patches, const FittedPlace& a, const FittedPlace& b) {
-  const std::vector<float> over_a = patches.heightsOver(a.place.position);
-  const std::vector<float> over_b = patches.heightsOver(b.place.position);
-  std::size_t opposite = 0;
-  for (std::size_t i = 0; i < over_a.size(); ++i) {
-    if ((over_a[i] < 0.F) != (over_b[i] < 0.F)) ++opposite;
-  }
-  return 2 * opposite > over_a.size();
-}
-
 // From afar many places explain much. A suggested one stands unless the best of all, which has to
 // be sure itself, explains far more, or more from the other side: of 58 true ones the best saw the
 // same sides, of 17 that were one to five extents off it saw the others, or left .6 of what they
@@ -90,7 +79,7 @@ bool betters(const FittedPlace& found, const FittedPlace& suggested, float const
   if (found.cost > detail::kSureFound * constant || found.cost >= suggested.cost) return false;
   const bool explains_more = found.cost <= detail::kMuchBetter * suggested.cost &&
                              found.cost <= suggested.cost - detail::kGain * constant;
-  return explains_more || seeOppositeSides(patches, found, suggested);
+  return explains_more || 2 * detail::countTurned(patches, found, suggested) > patches.size();
 }
 
 FoundSensor findStation(const DensityPatches& patches, float constant,

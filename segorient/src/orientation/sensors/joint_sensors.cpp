@@ -7,6 +7,7 @@
 #include <cstddef>
 #include <limits>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "common/by_size.h"
@@ -153,6 +154,25 @@ void addTrack(const PointView& points, const DensityPatches& patches,
   report.why = "places along a line explain the densities";
 }
 
+// A cloud in another frame.
+struct TurnedScene {
+  detail::SceneFrame frame;
+  std::vector<float> rows;
+  DensityPatches patches;
+  detail::Extent extent;
+  detail::Occupancy occupancy;
+
+  TurnedScene(const detail::SceneFrame& into, const PointView& cloud, const DensityPatches& all,
+              int threads)
+      : frame(into),
+        rows(into.into(cloud, threads)),
+        patches(into.into(all)),
+        extent(detail::extentOf(patches)),
+        occupancy(points(), patches, extent) {}
+
+  PointView points() const { return {rows.data(), 3, rows.size() / 3}; }
+};
+
 // Scanners that tilt turn about a level axis.
 // \param left what a scanner on its way leaves of the deviation: it is to be less
 void lookForTilted(PreparedCloud& cloud, const DensityPatches& patches,
@@ -203,36 +223,35 @@ void detail::findSeveral(PreparedCloud& cloud, const DensityPatches& patches, bo
 
 void detail::findSeveralTurned(SceneFrame frame, const PreparedCloud& cloud,
                                const DensityPatches& patches, int threads, SensorReport& report) {
-  // Those on their way only where no stations are: a line has more to adapt.
-  for (const bool on_its_way : {false, true}) {
-    for (std::size_t up = 0; up < 3; ++up, frame = frame.rolled()) {
-      const std::vector<float> rows = frame.into(cloud.points(), threads);
-      const PointView points{rows.data(), 3, cloud.size()};
-      const DensityPatches turned = frame.into(patches);
-      const Extent extent = extentOf(turned);
-      const Occupancy occupancy(points, turned, extent);
-      SensorReport found = report;
-      found.sensors.clear();
-      if (on_its_way) {
-        const std::optional<Track> track = searchTrack(turned, extent, threads);
-        if (!track || track->cost > kSureTrack * report.deviation) continue;
-        addTrack(points, turned, occupancy, *track, threads, found);
-      } else if (!addStations(points, turned, extent, occupancy, threads, found)) {
-        continue;
-      }
-      frame.back(found);
-      const bool is_best =
-          report.sensors.empty() || found.sensors[0].cost_ratio < report.sensors[0].cost_ratio;
-      if (is_best) report = std::move(found);
-    }
-    if (!report.sensors.empty()) return;
+  std::vector<TurnedScene> scenes;
+  for (std::size_t up = 0; up < 3; ++up, frame = frame.rolled()) {
+    scenes.emplace_back(frame, cloud.points(), patches, threads);
   }
-  const std::vector<float> rows = frame.into(cloud.points(), threads);
-  const PointView points{rows.data(), 3, cloud.size()};
-  const DensityPatches turned = frame.into(patches);
-  const Extent extent = extentOf(turned);
-  lookWithin(points, turned, extent, Occupancy(points, turned, extent), threads, report);
-  frame.back(report);
+  const auto keepBetter = [&report](const TurnedScene& scene, SensorReport found) {
+    scene.frame.back(found);
+    const bool is_best =
+        report.sensors.empty() || found.sensors[0].cost_ratio < report.sensors[0].cost_ratio;
+    if (is_best) report = std::move(found);
+  };
+  const SensorReport nothing = report;
+  for (const TurnedScene& scene : scenes) {
+    SensorReport found = nothing;
+    if (addStations(scene.points(), scene.patches, scene.extent, scene.occupancy, threads, found))
+      keepBetter(scene, std::move(found));
+  }
+  if (!report.sensors.empty()) return;
+  // A line has more to adapt, and is looked for only where no stations are.
+  for (const TurnedScene& scene : scenes) {
+    const std::optional<Track> track = searchTrack(scene.patches, scene.extent, threads);
+    if (!track || track->cost > kSureTrack * report.deviation) continue;
+    SensorReport found = nothing;
+    addTrack(scene.points(), scene.patches, scene.occupancy, *track, threads, found);
+    keepBetter(scene, std::move(found));
+  }
+  if (!report.sensors.empty()) return;
+  const TurnedScene& upright = scenes.front();
+  lookWithin(upright.points(), upright.patches, upright.extent, upright.occupancy, threads, report);
+  upright.frame.back(report);
 }
 
 }  // namespace segorient

@@ -198,11 +198,8 @@ bool Scan::stoodElsewhere() const {
   }
   // A place that is off by little sees from the other side what it sees edge-on.
   constexpr double kFewTurned = 0.01;
-  const std::vector<float> as_said = patches.heightsOver(said.place.position);
-  const std::vector<float> as_found = patches.heightsOver(beside.place.position);
-  std::size_t turned = 0;
-  for (std::size_t p = 0; p < patches.size(); ++p) turned += as_said[p] * as_found[p] < 0.F ? 1 : 0;
-  return static_cast<double>(turned) > kFewTurned * static_cast<double>(patches.size());
+  const auto turned = static_cast<double>(countTurned(patches, said, beside));
+  return turned > kFewTurned * static_cast<double>(patches.size());
 }
 
 std::vector<ScanPairs> findContraryPairs(const PointView& points, const Neighborhoods& nb,

@@ -193,6 +193,14 @@ FittedPlace fitBeside(const DensityPatches& patches, const FittedPlace& place) {
   return beside;
 }
 
+std::size_t countTurned(const DensityPatches& patches, const FittedPlace& a, const FittedPlace& b) {
+  const std::vector<float> over_a = patches.heightsOver(a.place.position);
+  const std::vector<float> over_b = patches.heightsOver(b.place.position);
+  std::size_t turned = 0;
+  for (std::size_t i = 0; i < over_a.size(); ++i) turned += over_a[i] * over_b[i] < 0.F ? 1 : 0;
+  return turned;
+}
+
 std::optional<FittedPlace> searchStation(const DensityPatches& patches, float constant,
                                          int threads) {
   const Extent extent = extentOf(patches);

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <optional>
 #include <vector>
 
@@ -35,6 +36,9 @@ FittedPlace fitAt(const DensityPatches& patches, const std::array<double, 3>& po
 
 /// The place of least cost near another one.
 FittedPlace fitBeside(const DensityPatches& patches, const FittedPlace& place);
+
+/// Of how many pieces two places see opposite sides.
+std::size_t countTurned(const DensityPatches& patches, const FittedPlace& a, const FittedPlace& b);
 
 /// The best place anywhere around and inside the cloud; nothing where none is much better than
 /// no sensor. \param constant deviation() of the log densities
