@@ -115,8 +115,10 @@ std::array<float, 3> PlanSensors::directionOf(std::uint64_t row,
 }
 
 std::array<float, 3> PlanSensors::of(std::uint64_t row, const std::array<float, 3>& place) const {
-  const std::int32_t sensor = report_.sensor_of[sampleOf(row, place)];
-  if (sensor < 0 || !report_.sensors[static_cast<std::size_t>(sensor)].sure) {
+  const std::size_t point = sampleOf(row, place);
+  const std::int32_t sensor = report_.sensor_of[point];
+  const bool either_side = !report_.either_side.empty() && report_.either_side[point] != 0;
+  if (sensor < 0 || either_side || !report_.sensors[static_cast<std::size_t>(sensor)].sure) {
     return {kNaN, kNaN, kNaN};
   }
   return report_.sensors[static_cast<std::size_t>(sensor)].position;

@@ -105,6 +105,9 @@ struct SensorOptions {
 struct SensorReport {
   std::vector<FoundSensor> sensors;     ///< by descending number of points
   std::vector<std::int32_t> sensor_of;  ///< for each row, into `sensors`; -1 = by none
+  /// Of several sensors: 1 for each row that ones on either side of its surface may have seen, as
+  /// far as densities tell. No normal is turned by such a row's. Empty = none.
+  std::vector<std::uint8_t> either_side;
   /// Where no sensor was found, but it is known that the scene was seen from within: 3 floats a
   /// row, the mean direction to where it was seen from; 0 = unknown. Empty elsewhere.
   std::vector<float> directions;

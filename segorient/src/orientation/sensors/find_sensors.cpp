@@ -247,6 +247,8 @@ SensorReport detail::sensorsOf(const PointView& points, PreparedCloud& cloud,
     }
   }
   out.sensor_of = cloud.scatter(out.sensor_of, 1, std::int32_t{-1});
+  if (!out.either_side.empty())
+    out.either_side = cloud.scatter(out.either_side, 1, std::uint8_t{0});
   if (!out.directions.empty()) out.directions = cloud.scatter(out.directions, 3, 0.F);
   for (FoundSensor& s : out.sensors) s.points = 0;
   for (const std::int32_t s : out.sensor_of) {

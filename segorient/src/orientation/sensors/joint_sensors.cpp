@@ -50,13 +50,16 @@ std::vector<std::int32_t> nearestPieces(const PointView& points, const DensityPa
                            threads);
 }
 
-// For each point the place that left most of the density of the nearest piece.
+// For each point what is known of the nearest piece.
 void assignPlaces(const PointView& points, const DensityPatches& patches,
-                  const std::vector<std::int32_t>& place_of_piece, int threads,
-                  SensorReport& report) {
+                  const detail::PieceOrigins& origins, int threads, SensorReport& report) {
   report.sensor_of = nearestPieces(points, patches, threads);
-  for (std::int32_t& s : report.sensor_of) {
-    if (s >= 0) s = place_of_piece[static_cast<std::size_t>(s)];
+  report.either_side.assign(points.size, 0);
+  for (std::size_t i = 0; i < points.size; ++i) {
+    std::int32_t& s = report.sensor_of[i];
+    if (s < 0) continue;
+    report.either_side[i] = origins.either_side[static_cast<std::size_t>(s)];
+    s = origins.place[static_cast<std::size_t>(s)];
   }
   for (const std::int32_t s : report.sensor_of) {
     if (s >= 0) ++report.sensors[static_cast<std::size_t>(s)].points;
@@ -141,7 +144,7 @@ bool addStations(const PointView& points, const DensityPatches& patches,
   const float ratio = stations->cost / report.deviation;
   if (ratio > kSureSeveral && stations->cost > report.chance) return false;
   addSensors(stations->positions, SensorKind::STATION, kUp, ratio, report);
-  assignPlaces(points, patches, detail::stationOf(patches, occupancy, *stations), threads, report);
+  assignPlaces(points, patches, detail::originsOf(patches, occupancy, *stations), threads, report);
   report.why = "several places explain the densities";
   return true;
 }
@@ -150,7 +153,7 @@ void addTrack(const PointView& points, const DensityPatches& patches,
               const detail::Occupancy& occupancy, const detail::Track& track, int threads,
               SensorReport& report) {
   addSensors(track.places, SensorKind::MOVING, kUp, track.cost / report.deviation, report);
-  assignPlaces(points, patches, detail::placeOf(patches, occupancy, track), threads, report);
+  assignPlaces(points, patches, detail::originsOf(patches, occupancy, track), threads, report);
   report.why = "places along a line explain the densities";
 }
 
@@ -193,7 +196,7 @@ void lookForTilted(PreparedCloud& cloud, const DensityPatches& patches,
   if (ratio > (much ? kSureWhereMuch : kSureSeveral) || ratio >= left) return;
   if (!areInside(best->positions, extent)) return;
   addSensors(best->positions, SensorKind::STATION, best->axis, ratio, report);
-  assignPlaces(cloud.points(), patches, detail::stationOf(patches, occupancy, *best), threads,
+  assignPlaces(cloud.points(), patches, detail::originsOf(patches, occupancy, *best), threads,
                report);
   report.why = "several places of scanners that tilt explain the densities";
 }

@@ -55,6 +55,10 @@ class Finder {
     point(sensors);
     for (std::size_t s = 0; s < out_.scans.size(); ++s) look(s);
     if (!out_.allowed && (out_.scans.size() > 1 || !out_.common)) compare();
+    // Last, as places that were found by chance contradict themselves most there.
+    for (std::size_t i = 0; i < hints_.place.either_side.size(); ++i) {
+      if (hints_.place.either_side[i] != 0) std::fill_n(&out_.toward[3 * i], 3, 0.F);
+    }
     out_.countSeen();
     return std::move(out_);
   }
@@ -130,6 +134,7 @@ class Finder {
     const Scan::Density density = scan.density();
     report.density = density.ratio;
     report.hidden = shareOf(scan.hidden());
+    if (hints_.place.along_way) return;
     if (!out_.one_place && report.hidden > kFewHidden &&
         (scan.stoodElsewhere() || shadowsOf(s).deny())) {
       report.used = false;
@@ -198,6 +203,7 @@ class Finder {
     for (std::size_t s = 0; mixed_up && s < n; ++s) {
       KnownSensor& scan = out_.scans[s];
       if (!scan.used || scan.moving || scan.density < kConfirmed) continue;
+      if (hints_.place.along_way) continue;
       const Shadows& shadows = shadowsOf(s);
       scan.used = hints_.even_sample ? !shadows.deny() : shadows.confirm();
     }

@@ -12,7 +12,6 @@
 #include "common/median.h"
 #include "common/parallel_for.h"
 #include "orientation/sensors/sampling_law.h"
-#include "orientation/sensors/shares.h"
 #include "orientation/sensors/simplex.h"
 
 namespace segorient::detail {
@@ -277,8 +276,8 @@ std::optional<Track> searchTrack(const DensityPatches& patches, const Extent& ex
   return out;
 }
 
-std::vector<std::int32_t> placeOf(const DensityPatches& patches, const Occupancy& occupancy,
-                                  const Track& track) {
+PieceOrigins originsOf(const DensityPatches& patches, const Occupancy& occupancy,
+                       const Track& track) {
   std::vector<std::vector<float>> rows(track.places.size());
   std::vector<std::uint8_t> bins;
   std::vector<float> seen(patches.size());

@@ -3,12 +3,12 @@
 #pragma once
 
 #include <array>
-#include <cstdint>
 #include <optional>
 #include <vector>
 
 #include "orientation/sensors/density_patches.h"
 #include "orientation/sensors/occupancy.h"
+#include "orientation/sensors/shares.h"
 #include "orientation/sensors/station_search.h"
 
 namespace segorient::detail {
@@ -25,9 +25,8 @@ struct Track {
 /// Nothing where that is hopeless.
 std::optional<Track> searchTrack(const DensityPatches& patches, const Extent& extent, int threads);
 
-/// For each piece the place of the track that most of its points come from, by the side of the
-/// surface that most of them were seen from.
-std::vector<std::int32_t> placeOf(const DensityPatches& patches, const Occupancy& occupancy,
-                                  const Track& track);
+/// Which of the track's places the pieces were seen from.
+PieceOrigins originsOf(const DensityPatches& patches, const Occupancy& occupancy,
+                       const Track& track);
 
 }  // namespace segorient::detail

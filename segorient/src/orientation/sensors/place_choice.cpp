@@ -28,6 +28,14 @@ OrientationHints asIfNotThere(const OrientationHints& given, const std::array<fl
   return hints;
 }
 
+// By distinct point; of rows that repeat one, any.
+std::vector<std::uint8_t> ofPoints(const std::vector<std::uint8_t>& flags,
+                                   const PreparedCloud& cloud) {
+  std::vector<std::uint8_t> out(flags.empty() ? 0 : cloud.size(), 0);
+  for (std::size_t i = 0; i < out.size(); ++i) out[i] = flags[cloud.rowOf(i)];
+  return out;
+}
+
 // What a search finds is followed as if it had been given.
 PlaceChoice findOthers(const PointView& points, OrientationHints hints, PreparedCloud& cloud,
                        int threads, SeenShadows seen = {}) {
@@ -35,6 +43,8 @@ PlaceChoice findOthers(const PointView& points, OrientationHints hints, Prepared
   out.sensors = addFoundSensors(points, cloud, threads, hints, seen);
   // What one layer told is not to be told by others again, which know nothing of trees.
   out.place.found = out.sensors.sure() && out.sensors.sensors[0].evidence == SensorEvidence::LAYERS;
+  out.place.along_way = out.sensors.sure() && out.sensors.sensors[0].kind == SensorKind::MOVING;
+  out.place.either_side = ofPoints(out.sensors.either_side, cloud);
   // Whoever names a side of a sheet means it.
   if (out.sensors.faces_up && !hints.seeds.empty()) {
     out.sensors.faces_up = false;

@@ -7,6 +7,7 @@
 
 #include <array>
 #include <cstddef>
+#include <cstdint>
 #include <vector>
 
 #include "orientation/sensors/shadows.h"
@@ -15,7 +16,7 @@
 namespace segorient {
 
 /// What the whole cloud says of the one place that all of its points are said to have been seen
-/// from.
+/// from, or of those that were found.
 struct CloudPlace {
   detail::Shadows shadows;  ///< what steps of depth say of it; no steps where nobody looked
   /// Whether a search for sensors came to it, too, by itself, or found it by layers, which is told
@@ -23,6 +24,11 @@ struct CloudPlace {
   bool found = false;
   /// Whether nobody knows a place, but all of it is one surface over the ground, see SensorReport.
   bool faces_up = false;
+  /// Whether a search found places along a sensor's way, which are near the true ones only: what
+  /// is hidden from them, and how dense their own points are, says little.
+  bool along_way = false;
+  /// By distinct point: see SensorReport::either_side.
+  std::vector<std::uint8_t> either_side;
 };
 
 /// OrientationHints by distinct point, in the unit of a PreparedCloud.

@@ -10,7 +10,6 @@
 
 #include "common/parallel_for.h"
 #include "orientation/sensors/sampling_law.h"
-#include "orientation/sensors/shares.h"
 #include "orientation/sensors/simplex.h"
 #include "orientation/sensors/station_mixture.h"
 #include "orientation/sensors/station_search.h"
@@ -170,7 +169,7 @@ class Sum {
 
   float cost() { return costWithout(positions_.size()); }
 
-  std::vector<std::int32_t> strongest() const {
+  PieceOrigins strongest() const {
     std::vector<std::vector<float>> left = densities_;
     for (std::vector<float>& row : left) {
       for (float& v : row) v = std::fabs(v);
@@ -297,8 +296,8 @@ std::optional<Stations> searchStations(const DensityPatches& patches, const Occu
   return out;
 }
 
-std::vector<std::int32_t> stationOf(const DensityPatches& patches, const Occupancy& occupancy,
-                                    const Stations& stations) {
+PieceOrigins originsOf(const DensityPatches& patches, const Occupancy& occupancy,
+                       const Stations& stations) {
   return Sum(patches, occupancy, stations.axis, stations.positions).strongest();
 }
 

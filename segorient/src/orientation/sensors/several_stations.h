@@ -8,6 +8,7 @@
 
 #include "orientation/sensors/density_patches.h"
 #include "orientation/sensors/occupancy.h"
+#include "orientation/sensors/shares.h"
 
 namespace segorient::detail {
 
@@ -24,8 +25,8 @@ struct Stations {
 std::optional<Stations> searchStations(const DensityPatches& patches, const Occupancy& occupancy,
                                        const std::array<double, 3>& axis, int threads);
 
-/// For each piece the station that left most of its density.
-std::vector<std::int32_t> stationOf(const DensityPatches& patches, const Occupancy& occupancy,
-                                    const Stations& stations);
+/// Which of the stations the pieces were seen from.
+PieceOrigins originsOf(const DensityPatches& patches, const Occupancy& occupancy,
+                       const Stations& stations);
 
 }  // namespace segorient::detail
