@@ -13,8 +13,6 @@
 namespace segorient::detail {
 namespace {
 
-// What is seen at more than 88 degrees from its normal is noise.
-constexpr float kGrazing = 0.03F;
 // A grid of angles is not finer than this towards its poles: scanners' heads are in the way.
 constexpr float kPole = 0.01F;
 // A pinhole camera sees no more than 84 degrees from its axis.

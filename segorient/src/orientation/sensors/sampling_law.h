@@ -17,6 +17,9 @@ inline std::array<float, 3> toFloat(const std::array<double, 3>& v) {
 /// A density so low that it is none, whose logarithm and inverse are numbers.
 constexpr float kNothing = 1e-30F;
 
+/// Cosine of the incidence from which on a normal's own noise decides: 88 degrees.
+constexpr float kGrazing = 0.03F;
+
 /// How a device spreads its rays. Points per area of a surface seen under the angle c from its
 /// normal at distance d are cos(c) / d^2 times the rays per solid angle, which are:
 enum class SamplingLaw : std::uint8_t {

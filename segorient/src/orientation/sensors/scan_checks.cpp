@@ -13,6 +13,7 @@
 #include "common/parallel_for.h"
 #include "features/sheet_fit.h"
 #include "orientation/sensors/density_patches.h"
+#include "orientation/sensors/sampling_law.h"
 #include "orientation/sensors/station_search.h"
 #include "search/index_of.h"
 
@@ -139,7 +140,6 @@ Scan::Density Scan::density() const {
   constexpr float kFlat = 0.05F;
   constexpr float kWide = 0.08F;
   constexpr std::size_t kFewest = 50;
-  constexpr float kGrazing = 0.03F;
   // Equal angles crowd at the poles of the sensor's axis: no nearer than 6 degrees.
   constexpr float kPole = 0.1F;
   constexpr std::size_t kLaws = 5;  // no axis, three axes, an image
