@@ -55,6 +55,10 @@ TEST_P(SeveralStations, AreFoundAndShareThePoints) {
     EXPECT_GE(report.sensors[0].points, report.sensors[s].points);
   }
   EXPECT_EQ(points, scan.view().size);
+  // Walls were seen from one side only.
+  ASSERT_EQ(report.either_side.size(), scan.view().size);
+  const auto unsure = std::count(report.either_side.begin(), report.either_side.end(), 1);
+  EXPECT_LT(static_cast<double>(unsure), 0.05 * static_cast<double>(scan.view().size));
 }
 
 INSTANTIATE_TEST_SUITE_P(Sensors, SeveralStations, testing::Values(0.0, 0.8));
