@@ -9,6 +9,7 @@
 #include <memory>
 #include <utility>
 
+#include "orientation/sensors/known_sensors.h"
 #include "orientation/sensors/place_choice.h"
 #include "search/prepared_cloud.h"
 #include "tiles/plan_probe.h"
@@ -64,14 +65,22 @@ void PlanSensors::takeSample(const Plan& plan, const PointSample& sample) {
   }
 }
 
-// Whether the surface does: of an even part of the sample, as segments are few.
-bool PlanSensors::heeds(const OrientationHints& given, int threads) const {
+// An even part of the sample.
+std::vector<std::size_t> PlanSensors::somePoints() const {
   constexpr std::size_t kMost = 100000;
   const std::size_t size = points_.size() / 3;
   const std::size_t one_of = (size + kMost - 1) / kMost;
-  std::vector<float> part;
+  std::vector<std::size_t> out;
   for (std::size_t i = 0; i < size; ++i) {
-    if (PointSample::scatter(i) % one_of != 0) continue;
+    if (PointSample::scatter(i) % one_of == 0) out.push_back(i);
+  }
+  return out;
+}
+
+// Whether the surface does: of a part, as segments are few.
+bool PlanSensors::heeds(const OrientationHints& given, int threads) const {
+  std::vector<float> part;
+  for (const std::size_t i : somePoints()) {
     part.insert(part.end(), &points_[3 * i], &points_[3 * i] + 3);
   }
   PipelineOptions options;
@@ -81,6 +90,22 @@ bool PlanSensors::heeds(const OrientationHints& given, int threads) const {
   const std::vector<KnownSensor> known =
       orientCloud({part.data(), 3, part.size() / 3}, nullptr, options).report.known_sensors;
   return known.empty() || known.front().used;
+}
+
+// Whether those that were found together see sheets from both sides, where what may have been seen
+// from either side counts, too: tiles are not told that.
+bool PlanSensors::seeBothSides(int threads) const {
+  std::vector<float> part;
+  OrientationHints hints;
+  for (const std::size_t i : somePoints()) {
+    part.insert(part.end(), &points_[3 * i], &points_[3 * i] + 3);
+    const std::array<float, 3> sensor = placeOf(i);
+    hints.viewpoints.insert(hints.viewpoints.end(), sensor.begin(), sensor.end());
+  }
+  PreparedCloud cloud({part.data(), 3, part.size() / 3}, nullptr, threads);
+  PointHints known = resolveHints(hints, cloud);
+  known.place.along_way = place_.along_way;
+  return detail::seeBothSides(cloud, known, threads);
 }
 
 void PlanSensors::choose(const OrientationHints& given, int threads) {
@@ -94,6 +119,11 @@ void PlanSensors::choose(const OrientationHints& given, int threads) {
   }
   report_ = std::move(choice.sensors);
   if (!report_.sure()) return;
+  if (report_.sensors.size() > 1 && seeBothSides(threads)) {
+    for (FoundSensor& s : report_.sensors) s.sure = false;
+    place_ = {};
+    return;
+  }
   sure_ = static_cast<std::size_t>(std::count_if(report_.sensors.begin(), report_.sensors.end(),
                                                  [](const FoundSensor& s) { return s.sure; }));
 }
@@ -114,14 +144,18 @@ std::array<float, 3> PlanSensors::directionOf(std::uint64_t row,
   return out;
 }
 
-std::array<float, 3> PlanSensors::of(std::uint64_t row, const std::array<float, 3>& place) const {
-  const std::size_t point = sampleOf(row, place);
+std::array<float, 3> PlanSensors::placeOf(std::size_t point) const {
   const std::int32_t sensor = report_.sensor_of[point];
-  const bool either_side = !report_.either_side.empty() && report_.either_side[point] != 0;
-  if (sensor < 0 || either_side || !report_.sensors[static_cast<std::size_t>(sensor)].sure) {
+  if (sensor < 0 || !report_.sensors[static_cast<std::size_t>(sensor)].sure) {
     return {kNaN, kNaN, kNaN};
   }
   return report_.sensors[static_cast<std::size_t>(sensor)].position;
+}
+
+std::array<float, 3> PlanSensors::of(std::uint64_t row, const std::array<float, 3>& place) const {
+  const std::size_t point = sampleOf(row, place);
+  const bool either_side = !report_.either_side.empty() && report_.either_side[point] != 0;
+  return either_side ? std::array<float, 3>{kNaN, kNaN, kNaN} : placeOf(point);
 }
 
 }  // namespace segorient::program

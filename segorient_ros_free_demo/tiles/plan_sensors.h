@@ -70,8 +70,11 @@ class PlanSensors {
 
  private:
   void takeSample(const Plan& plan, const PointSample& sample);
+  std::vector<std::size_t> somePoints() const;
   bool heeds(const OrientationHints& given, int threads) const;
+  bool seeBothSides(int threads) const;
   void choose(const OrientationHints& given, int threads);
+  std::array<float, 3> placeOf(std::size_t point) const;  // of the sample
   std::size_t sampleOf(std::uint64_t row, const std::array<float, 3>& place) const;
 
   SensorReport report_;

@@ -116,6 +116,19 @@ TEST(Shares, WhatIsNotToldIsEvidenceAgainstPlacesAllTheSame) {
   EXPECT_TRUE(detail::seeBothSides(know(rows, hints).scans));
 }
 
+// Of a cloud whose neighbours nobody has looked for, too.
+TEST(Shares, SensorsThatSeeASheetFromBothSidesAreTold) {
+  const std::vector<float> rows = grid();
+  for (const float below : {4.F, -4.F}) {
+    PreparedCloud cloud({rows.data(), 3, rows.size() / 3}, nullptr, 0);
+    PointHints hints;
+    for (std::size_t i = 0; i < cloud.size(); ++i) {
+      hints.sensors.insert(hints.sensors.end(), {1.F, 1.F, i % 7 == 0 ? below : 4.F});
+    }
+    EXPECT_EQ(detail::seeBothSides(cloud, hints, 0), below < 0.F);
+  }
+}
+
 // A lower sheet that the upper one hides from both places.
 TEST(Shares, PlacesAlongAWayAreNotDeniedByWhatTheyHide) {
   std::vector<float> rows = grid();

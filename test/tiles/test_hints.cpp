@@ -168,6 +168,25 @@ TEST_F(Hints, ARoomFacesItsSensorAsInMemory) {
   EXPECT_EQ(sameSides(whole, out), 6000U);
 }
 
+// Places along a line, and points that those on either side may have seen.
+TEST_F(Hints, AStreetFacesWhoWentAlongItAsInMemory) {
+  const Room street{{30.0, 8.0, 6.0}, {14.0, 2.0, 0.0}, {18.0, 3.0, 2.0}};
+  std::vector<Vector> poses;
+  for (int i = 0; i < 12; ++i) poses.push_back({5.0 + 1.7 * i, 5.0 + 0.05 * i, 1.9});
+  Scan scan = scanAlong(poses, street);
+  const PointView points = scan.view();
+  std::vector<double> xyz;
+  for (std::size_t i = 0; i < points.size; ++i) xyz.insert(xyz.end(), points[i], points[i] + 3);
+  const std::string in = writeDoubles(scratch.file("in.ply"), xyz);
+  const std::string whole = scratch.file("whole.ply");
+  const Outcome run = runProgram({"orient", in, whole});
+  ASSERT_EQ(run.status, 0);
+  EXPECT_NE(run.out.find("moving at"), std::string::npos) << run.out;
+  ASSERT_EQ(
+      runProgram({"orient", in, out, "-q", "--memory", "1G", "--tile-points", "20000"}).status, 0);
+  EXPECT_GE(sameSides(whole, out) + points.size / 1000, points.size);
+}
+
 // No search finds the places, and no tile could tell from its own points that there were any.
 TEST_F(Hints, ARoomFacesWhoWasCarriedAboutInItAsInMemory) {
   const Carried carried = carriedAbout();

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
-#include <limits>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -177,10 +176,9 @@ struct TurnedScene {
 };
 
 // Scanners that tilt turn about a level axis.
-// \param left what a scanner on its way leaves of the deviation: it is to be less
 void lookForTilted(PreparedCloud& cloud, const DensityPatches& patches,
-                   const detail::Extent& extent, const detail::Occupancy& occupancy, float left,
-                   int threads, SensorReport& report) {
+                   const detail::Extent& extent, const detail::Occupancy& occupancy, int threads,
+                   SensorReport& report) {
   if (report.deviation < kVariesTilted * report.chance) return;
   std::optional<detail::Stations> best;
   for (std::size_t a = 0; a < 2; ++a) {
@@ -193,7 +191,7 @@ void lookForTilted(PreparedCloud& cloud, const DensityPatches& patches,
   if (!best) return;
   const float ratio = best->cost / report.deviation;
   const bool much = report.deviation >= kVariesMuch * report.chance;
-  if (ratio > (much ? kSureWhereMuch : kSureSeveral) || ratio >= left) return;
+  if (ratio > (much ? kSureWhereMuch : kSureSeveral)) return;
   if (!areInside(best->positions, extent)) return;
   addSensors(best->positions, SensorKind::STATION, best->axis, ratio, report);
   assignPlaces(cloud.points(), patches, detail::originsOf(patches, occupancy, *best), threads,
@@ -209,19 +207,19 @@ void detail::findSeveral(PreparedCloud& cloud, const DensityPatches& patches, bo
   const detail::Occupancy occupancy(cloud.points(), patches, extent);
   if (addStations(cloud.points(), patches, extent, occupancy, threads, report)) return;
   const std::optional<detail::Track> track = detail::searchTrack(patches, extent, threads);
-  const float left =
-      track ? track->cost / report.deviation : std::numeric_limits<float>::infinity();
-  const bool is_track = left <= kSureTrack;
-  if (!is_track) lookFromAbove(cloud, patches, extent, report);
-  if (has_axes && report.sensors.empty() && left > kSureSeveral) {
-    lookForTilted(cloud, patches, extent, occupancy, left, threads, report);
-  }
-  if (!report.sensors.empty()) return;
-  if (!is_track) {
-    lookWithin(cloud.points(), patches, extent, occupancy, threads, report);
+  const bool is_track = track && track->cost <= kSureTrack * report.deviation;
+  // A line is told by five numbers, several places by three each: what it explains needs no more.
+  if (is_track) {
+    addTrack(cloud.points(), patches, occupancy, *track, threads, report);
     return;
   }
-  addTrack(cloud.points(), patches, occupancy, *track, threads, report);
+  lookFromAbove(cloud, patches, extent, report);
+  if (has_axes && report.sensors.empty()) {
+    lookForTilted(cloud, patches, extent, occupancy, threads, report);
+  }
+  if (report.sensors.empty()) {
+    lookWithin(cloud.points(), patches, extent, occupancy, threads, report);
+  }
 }
 
 void detail::findSeveralTurned(SceneFrame frame, const PreparedCloud& cloud,

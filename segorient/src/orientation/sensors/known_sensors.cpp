@@ -266,4 +266,15 @@ KnownSensors findKnownSensors(const PointView& points, const Neighborhoods& neig
   return Finder(points, neighborhoods, spacing, hints, threads).run();
 }
 
+bool seeBothSides(PreparedCloud& cloud, const PointHints& hints, int threads) {
+  cloud.findNeighbors(kSheetNeighbors, false);
+  const Neighborhoods& nb = cloud.neighborhoods();
+  std::vector<float> spacing(cloud.size(), 0.F);
+  for (std::size_t i = 0; i < spacing.size(); ++i) {
+    const int count = std::min(nb.count(i) - 1, kFirstRing);
+    spacing[i] = meanDistance(cloud.points(), i, nb.indices(i) + 1, count);
+  }
+  return seeBothSides(findKnownSensors(cloud.points(), nb, spacing.data(), hints, threads).scans);
+}
+
 }  // namespace segorient::detail

@@ -2,6 +2,7 @@
 // Copyright (c) 2026, the segorient authors
 #pragma once
 
+#include <segorient/common/export.h>
 #include <segorient/common/neighborhoods.h>
 #include <segorient/common/point_view.h>
 #include <segorient/orientation/sensors.h>
@@ -12,6 +13,7 @@
 #include <vector>
 
 #include "orientation/sensors/point_hints.h"
+#include "search/prepared_cloud.h"
 
 namespace segorient::detail {
 
@@ -75,5 +77,9 @@ struct KnownSensors : SeenPoints {
 /// \param spacing one a point: mean distance to the 6 nearest
 KnownSensors findKnownSensors(const PointView& points, const Neighborhoods& neighborhoods,
                               const float* spacing, const PointHints& hints, int threads);
+
+/// seeBothSides() of what findKnownSensors() finds. \param[in,out] cloud finds its neighbours
+SEGORIENT_ORIENTATION_EXPORT bool seeBothSides(PreparedCloud& cloud, const PointHints& hints,
+                                               int threads);
 
 }  // namespace segorient::detail
