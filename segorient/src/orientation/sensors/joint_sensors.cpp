@@ -148,12 +148,16 @@ bool addStations(const PointView& points, const DensityPatches& patches,
   return true;
 }
 
-void addTrack(const PointView& points, const DensityPatches& patches,
+// A wrong line runs through what it would have seen.
+bool addTrack(const PointView& points, const DensityPatches& patches,
               const detail::Occupancy& occupancy, const detail::Track& track, int threads,
               SensorReport& report) {
+  const float in_sight = detail::costInSight(patches, occupancy, track);
+  if (in_sight > kSureTrack * report.deviation) return false;
   addSensors(track.places, SensorKind::MOVING, kUp, track.cost / report.deviation, report);
   assignPlaces(points, patches, detail::originsOf(patches, occupancy, track), threads, report);
   report.why = "places along a line explain the densities";
+  return true;
 }
 
 // A cloud in another frame.
@@ -208,13 +212,10 @@ void detail::findSeveral(PreparedCloud& cloud, const DensityPatches& patches, bo
   if (addStations(cloud.points(), patches, extent, occupancy, threads, report)) return;
   const std::optional<detail::Track> track = detail::searchTrack(patches, extent, threads);
   const bool is_track = track && track->cost <= kSureTrack * report.deviation;
-  // A line is told by five numbers, several places by three each: what it explains needs no more.
-  if (is_track) {
-    addTrack(cloud.points(), patches, occupancy, *track, threads, report);
-    return;
-  }
+  if (is_track && addTrack(cloud.points(), patches, occupancy, *track, threads, report)) return;
   lookFromAbove(cloud, patches, extent, report);
-  if (has_axes && report.sensors.empty()) {
+  // A line is told by five numbers, several places by three each: what one explains needs no more.
+  if (has_axes && report.sensors.empty() && !is_track) {
     lookForTilted(cloud, patches, extent, occupancy, threads, report);
   }
   if (report.sensors.empty()) {
@@ -246,8 +247,8 @@ void detail::findSeveralTurned(SceneFrame frame, const PreparedCloud& cloud,
     const std::optional<Track> track = searchTrack(scene.patches, scene.extent, threads);
     if (!track || track->cost > kSureTrack * report.deviation) continue;
     SensorReport found = nothing;
-    addTrack(scene.points(), scene.patches, scene.occupancy, *track, threads, found);
-    keepBetter(scene, std::move(found));
+    if (addTrack(scene.points(), scene.patches, scene.occupancy, *track, threads, found))
+      keepBetter(scene, std::move(found));
   }
   if (!report.sensors.empty()) return;
   const TurnedScene& upright = scenes.front();

@@ -276,8 +276,11 @@ std::optional<Track> searchTrack(const DensityPatches& patches, const Extent& ex
   return out;
 }
 
-PieceOrigins originsOf(const DensityPatches& patches, const Occupancy& occupancy,
-                       const Track& track) {
+namespace {
+
+// What each place leaves on the pieces where it can see them.
+std::vector<std::vector<float>> sharesOf(const DensityPatches& patches, const Occupancy& occupancy,
+                                         const Track& track) {
   std::vector<std::vector<float>> rows(track.places.size());
   std::vector<std::uint8_t> bins;
   std::vector<float> seen(patches.size());
@@ -286,7 +289,23 @@ PieceOrigins originsOf(const DensityPatches& patches, const Occupancy& occupancy
     occupancy.visibility(patches, track.places[j], seen.data());
     for (std::size_t i = 0; i < seen.size(); ++i) rows[j][i] *= track.beams[bins[i]] * seen[i];
   }
-  return strongestPlaces(patches, track.places, rows);
+  return rows;
+}
+
+}  // namespace
+
+float costInSight(const DensityPatches& patches, const Occupancy& occupancy, const Track& track) {
+  std::vector<float> sum(patches.size(), kNothing);
+  for (const std::vector<float>& row : sharesOf(patches, occupancy, track)) {
+    for (std::size_t i = 0; i < sum.size(); ++i) sum[i] += row[i];
+  }
+  takeLogs(sum);
+  return deviation(sum);
+}
+
+PieceOrigins originsOf(const DensityPatches& patches, const Occupancy& occupancy,
+                       const Track& track) {
+  return strongestPlaces(patches, track.places, sharesOf(patches, occupancy, track));
 }
 
 }  // namespace segorient::detail
