@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "common/in_double.h"
+#include "common/unit_vector.h"
 #include "orientation/sensors/height_field.h"
 #include "orientation/sensors/image_rays.h"
 #include "orientation/sensors/joint_sensors.h"
@@ -16,6 +17,7 @@
 #include "orientation/sensors/sensor_search.h"
 #include "orientation/sensors/shadows.h"
 #include "orientation/sensors/station_search.h"
+#include "orientation/sensors/view_pyramid.h"
 
 namespace segorient {
 
@@ -192,6 +194,20 @@ SensorReport searchSensors(PreparedCloud& cloud, const SensorOptions& options) {
   return searchUpright(patches, cloud, options, out);
 }
 
+// A place that shadows reveal, in the cloud's unit.
+void setRevealed(const std::array<float, 3>& place, const detail::Shadows& shadows,
+                 const char* why, detail::SeenShadows& seen, SensorReport& out) {
+  seen.of_sensor = shadows;
+  FoundSensor sensor;
+  sensor.evidence = SensorEvidence::SHADOWS;
+  sensor.position = place;
+  sensor.cost_ratio = shadows.coveredOfSteps();
+  sensor.sure = true;
+  out.directions.clear();
+  out.faces_up = false;
+  setOnly(sensor, why, out);
+}
+
 // Thinned clouds have lost their densities, which leaves who hides whom. That there is one layer
 // over the ground says less.
 bool trySuggestedShadows(PreparedCloud& cloud, const detail::FlatPoints& flat,
@@ -202,16 +218,30 @@ bool trySuggestedShadows(PreparedCloud& cloud, const detail::FlatPoints& flat,
     const std::array<float, 3> s = cloud.inUnit(suggestion);
     const detail::Shadows shadows = detail::findShadows(flat, s, options.threads, true);
     if (!shadows.reveal()) continue;
-    seen.of_sensor = shadows;
-    FoundSensor sensor;
-    sensor.evidence = SensorEvidence::SHADOWS;
-    sensor.position = s;
-    sensor.suggested = true;
-    sensor.cost_ratio = shadows.coveredOfSteps();
-    sensor.sure = true;
-    out.directions.clear();
-    out.faces_up = false;
-    setOnly(sensor, "surfaces end at the shadows that the suggested place casts", out);
+    setRevealed(s, shadows, "surfaces end at the shadows that the suggested place casts", seen,
+                out);
+    out.sensors[0].suggested = true;
+    return true;
+  }
+  return false;
+}
+
+// Where the sides of an image meet.
+bool tryApexes(const detail::FlatPoints& flat, const SensorOptions& options,
+               detail::SeenShadows& seen, SensorReport& out) {
+  for (const std::array<float, 3>& apex : detail::findApexes(flat, options.threads)) {
+    const detail::Shadows shadows = detail::findShadows(flat, apex, options.threads, true);
+    if (!shadows.reveal()) continue;
+    setRevealed(apex, shadows, "the sides of an image meet where surfaces end at the shadows",
+                seen, out);
+    FoundSensor& camera = out.sensors[0];
+    camera.kind = SensorKind::CAMERA;
+    const std::array<float, 3> middle = flat.middle();
+    std::array<double, 3> gaze{};
+    for (std::size_t a = 0; a < 3; ++a) {
+      gaze[a] = static_cast<double>(middle[a]) - static_cast<double>(apex[a]);
+    }
+    unitVector(gaze, camera.axis.data());
     return true;
   }
   return false;
@@ -223,6 +253,7 @@ void lookForShadows(PreparedCloud& cloud, const SensorOptions& options, detail::
   const detail::FlatPoints flat(cloud.points(), options.threads);
   if (trySuggestedShadows(cloud, flat, options, seen, out)) return;
   if (!options.search || out.sure() || out.faces_up || !out.directions.empty()) return;
+  if (tryApexes(flat, options, seen, out)) return;
   out.directions = detail::directionsInARoom(cloud.points(), flat, options.threads);
   if (!out.directions.empty()) out.why += ", but surfaces end at shadows as seen from within";
 }
