@@ -195,8 +195,8 @@ SensorReport searchSensors(PreparedCloud& cloud, const SensorOptions& options) {
 }
 
 // A place that shadows reveal, in the cloud's unit.
-void setRevealed(const std::array<float, 3>& place, const detail::Shadows& shadows,
-                 const char* why, detail::SeenShadows& seen, SensorReport& out) {
+void setRevealed(const std::array<float, 3>& place, const detail::Shadows& shadows, const char* why,
+                 detail::SeenShadows& seen, SensorReport& out) {
   seen.of_sensor = shadows;
   FoundSensor sensor;
   sensor.evidence = SensorEvidence::SHADOWS;
@@ -226,25 +226,30 @@ bool trySuggestedShadows(PreparedCloud& cloud, const detail::FlatPoints& flat,
   return false;
 }
 
-// Where the sides of an image meet.
+// Where the sides of an image meet; of several such places the one that hides least.
 bool tryApexes(const detail::FlatPoints& flat, const SensorOptions& options,
                detail::SeenShadows& seen, SensorReport& out) {
+  std::optional<std::pair<detail::Shadows, std::array<float, 3>>> best;
   for (const std::array<float, 3>& apex : detail::findApexes(flat, options.threads)) {
     const detail::Shadows shadows = detail::findShadows(flat, apex, options.threads, true);
     if (!shadows.reveal()) continue;
-    setRevealed(apex, shadows, "the sides of an image meet where surfaces end at the shadows",
-                seen, out);
-    FoundSensor& camera = out.sensors[0];
-    camera.kind = SensorKind::CAMERA;
-    const std::array<float, 3> middle = flat.middle();
-    std::array<double, 3> gaze{};
-    for (std::size_t a = 0; a < 3; ++a) {
-      gaze[a] = static_cast<double>(middle[a]) - static_cast<double>(apex[a]);
+    if (!best || shadows.coveredOfSteps() < best->first.coveredOfSteps()) {
+      best = std::pair(shadows, apex);
     }
-    unitVector(gaze, camera.axis.data());
-    return true;
   }
-  return false;
+  if (!best) return false;
+  const auto& [shadows, apex] = *best;
+  setRevealed(apex, shadows, "the sides of an image meet where surfaces end at the shadows", seen,
+              out);
+  const std::array<float, 3> middle = flat.middle();
+  std::array<double, 3> gaze{};
+  for (std::size_t a = 0; a < 3; ++a) {
+    gaze[a] = static_cast<double>(middle[a]) - static_cast<double>(apex[a]);
+  }
+  FoundSensor& camera = out.sensors[0];
+  camera.kind = SensorKind::CAMERA;
+  unitVector(gaze, camera.axis.data());
+  return true;
 }
 
 void lookForShadows(PreparedCloud& cloud, const SensorOptions& options, detail::SeenShadows& seen,

@@ -9,8 +9,6 @@
 #include <cstddef>
 #include <limits>
 #include <numeric>
-#include <cstdio>
-#include <cstdlib>
 
 #include "common/every_nth.h"
 #include "common/median.h"
@@ -22,38 +20,48 @@ namespace {
 
 using Vector = Eigen::Vector3d;
 
-// Directions that bounding planes are looked for in, 4.6 degrees apart; of these the best are
-// followed.
+// Directions that bounding planes are looked for in: 4.6 degrees apart.
 constexpr std::size_t kDirections = 600;
+// Points that planes are fitted to, where the sides of an image have some hundred each, and that
+// they are looked for with.
 constexpr std::size_t kPoints = 8192;
-constexpr std::size_t kFollowed = 10;
-constexpr double kLongest = 4.0;
+constexpr std::size_t kFewPoints = 4096;
 constexpr int kEvaluations = 40;
 // Fewer points on a plane touch it by chance.
 constexpr std::size_t kFewest = 30;
-// Surfaces that a plane cuts come up to it with as many points in its first spacing as in the
-// next; faces that lie in it have many more, what it only touches has fewer.
-constexpr double kCut = 3.0;
-// Sides of an image meet at angles: three that do not say where.
-constexpr double kLeastVolume = 0.1;
-constexpr std::size_t kSides = 3;
+// What a plane cuts comes up to it with as many points in its last spacing as in the one before,
+// about; of what it only touches far fewer do.
+constexpr double kCut = 1.0 / 3.0;
+// In extents: where a plane cuts a view of the scene, there are so many points one behind the other
+// at most. Faces that lie in a plane have many more.
+constexpr double kLongest = 8.0;
+// Of the planes that cut, those with most points; of the places that three of them meet in, those
+// that most planes and points meet in.
+constexpr std::size_t kMostPlanes = 10;
 constexpr std::size_t kMostApexes = 8;
-// A camera sees no more than this far from its axis: 80 degrees.
+// Volume that the normals of three planes span: with less, they do not say where they meet.
+constexpr double kLeastVolume = 0.1;
+// Cosine: a camera sees no more than 80 degrees from the middle of its view.
 constexpr double kWidest = 0.17;
+// Cosines: planes that differ by 1 degree go on to the same one; found ones that differ by 3.6 are
+// the same but for what a few points tilt.
+constexpr double kAlike = 0.9998;
+constexpr double kSame = 0.998;
 
 /// A plane that has all points on one side: normal . p <= offset.
 struct Bound {
   Vector normal = Vector::Zero();
   double offset = 0.0;
   std::size_t touching = 0;  // points within a spacing
+  bool is_face = false;      // of which it touches far more than a cut would have
   bool cuts = false;
 };
 
 /// Some of the points, column by column, and what lies behind the plane that bounds all of them.
 class Columns {
  public:
-  explicit Columns(const FlatPoints& flat) {
-    const EveryNth some(flat.size(), kPoints);
+  Columns(const FlatPoints& flat, std::size_t most) {
+    const EveryNth some(flat.size(), most);
     const PointView points = flat.view();
     // Whole runs: those behind the last point repeat it.
     size_ = (some.size() + kLanes - 1) / kLanes * kLanes;
@@ -87,6 +95,7 @@ class Columns {
     for (std::size_t i = 0; i < size_; ++i) h[i] = highest_ - h[i];
   }
 
+  std::size_t size() const { return count_; }
   double highest() const { return static_cast<double>(highest_); }
   float farthest() const { return *std::max_element(behind_.begin(), behind_.end()); }
 
@@ -95,7 +104,8 @@ class Columns {
     const auto high = static_cast<float>(to);
     std::size_t count = 0;
     for (std::size_t i = 0; i < count_; ++i) {
-      count += static_cast<std::size_t>(behind_[i] >= low) & static_cast<std::size_t>(behind_[i] < high);
+      count +=
+          static_cast<std::size_t>(behind_[i] >= low) & static_cast<std::size_t>(behind_[i] < high);
     }
     return count;
   }
@@ -137,20 +147,21 @@ std::vector<Vector> directionsAllAround() {
 
 class BoundFinder {
  public:
-  BoundFinder(const FlatPoints& flat, int threads) : points_(flat), threads_(threads) {
+  BoundFinder(const FlatPoints& flat, int threads)
+      : few_(flat, kFewPoints), points_(flat, kPoints), threads_(threads) {
     std::vector<float> spacings;
     for (std::size_t i = 0; i < flat.size(); ++i) spacings.push_back(flat.spacing(i));
-    const EveryNth some(flat.size(), kPoints);
-    const double part = static_cast<double>(some.size()) / static_cast<double>(flat.size());
-    spacing_ = static_cast<double>(median(std::move(spacings))) / std::sqrt(part);
+    const auto all = static_cast<double>(flat.size());
+    const auto some = static_cast<double>(std::min(flat.size(), kPoints));
+    spacing_ = static_cast<double>(median(std::move(spacings))) * std::sqrt(all / some);
     double square = 0.0;
     for (int a = 0; a < 3; ++a) {
       points_.face(Vector::Unit(a));
       const auto side = static_cast<double>(points_.farthest());
       square += side * side;
     }
-    // What the next direction's plane is off by across half of the cloud.
     extent_ = std::sqrt(square);
+    // What the next direction's plane is off by across half of the cloud.
     coarse_ = std::max(spacing_, 0.02 * extent_);
   }
 
@@ -158,39 +169,36 @@ class BoundFinder {
 
   /// Planes that cut what they bound, those that most points touch first.
   std::vector<Bound> run() {
-    const std::vector<Vector> starts = startDirections();
-    std::vector<Bound> found(starts.size());
-    parallelFor(
-        starts.size(), threads_, 1e6, [&] { return points_; },
-        [&](std::size_t i, Columns& points) { found[i] = follow(starts[i], points); });
-    std::stable_sort(found.begin(), found.end(),
-                     [](const Bound& a, const Bound& b) { return a.touching > b.touching; });
-    if (std::getenv("APEX")) for (const Bound& b : found) std::fprintf(stderr,"B %.2f %.2f %.2f off %.4f t %zu cuts %d sp %g co %g\n",b.normal[0],b.normal[1],b.normal[2],b.offset,b.touching,b.cuts,spacing_,coarse_);
-    std::vector<Bound> out;
-    for (const Bound& b : found) {
-      if (b.cuts && !isKnown(b, out)) out.push_back(b);
+    std::vector<Bound> bounds;
+    for (const Vector& start : startDirections()) {
+      bounds.emplace_back();
+      bounds.back().normal = start;
     }
-    if (out.size() > kFollowed) out.resize(kFollowed);
-    return out;
+    for (const double reach : {coarse_, 0.5 * coarse_}) {
+      turnAll(std::max(reach, 2.0 * spacing_), few_, bounds);
+    }
+    bounds = different(bounds, kAlike);
+    for (int round = 0; round < 2; ++round) {
+      turnAll(2.0 * spacing_, points_, bounds);
+    }
+    bounds.erase(
+        std::remove_if(bounds.begin(), bounds.end(), [](const Bound& b) { return !b.cuts; }),
+        bounds.end());
+    bounds = different(bounds, kSame);
+    bounds.resize(std::min(bounds.size(), kMostPlanes));
+    return bounds;
   }
 
  private:
-  // The same plane, but for what a few spacings tilt it.
-  static bool isKnown(const Bound& b, const std::vector<Bound>& known) {
-    constexpr double kSame = 0.998;  // 3.6 degrees
-    return std::any_of(known.begin(), known.end(),
-                       [&](const Bound& k) { return k.normal.dot(b.normal) > kSame; });
-  }
-
   // Those that more points are near the bounding plane of than of all around.
   std::vector<Vector> startDirections() {
+    constexpr double kAround = 0.985;  // 10 degrees: twice as far as the next
     const std::vector<Vector> directions = directionsAllAround();
     std::vector<std::size_t> near(directions.size());
     for (std::size_t d = 0; d < directions.size(); ++d) {
-      points_.face(directions[d]);
-      near[d] = points_.countWithin(0.0, coarse_);
+      few_.face(directions[d]);
+      near[d] = few_.countWithin(0.0, coarse_);
     }
-    constexpr double kAround = 0.985;  // 10 degrees: twice as far as the next
     std::vector<Vector> out;
     for (std::size_t d = 0; d < directions.size(); ++d) {
       bool is_best = true;
@@ -203,40 +211,55 @@ class BoundFinder {
     return out;
   }
 
-  // How many more points are in the plane's first so much than in the next.
-  static double ratioAt(double width, const Columns& points) {
-    const std::size_t next = std::max<std::size_t>(1, points.countWithin(width, 2.0 * width));
-    return static_cast<double>(points.countWithin(0.0, width)) / static_cast<double>(next);
+  void turnAll(double reach, const Columns& by, std::vector<Bound>& bounds) const {
+    constexpr double kPointTime = 1.0;  // ns, see resolveThreads()
+    parallelFor(
+        bounds.size(), threads_, kPointTime * kEvaluations * kPoints, [&] { return by; },
+        [&](std::size_t i, Columns& points) { turn(reach, points, bounds[i]); });
   }
 
-  // Turns the plane until most points touch it.
-  Bound follow(Vector direction, Columns& points) const {
-    Bound out;
-    for (const double width : {0.5 * coarse_, 0.25 * coarse_, spacing_, spacing_}) {
-      const double reach = 2.0 * std::max(width, spacing_);
-      const Vector across = direction.unitOrthogonal();
-      const Vector along = direction.cross(across);
-      const auto turned = [&](const std::vector<double>& by) {
-        return (direction + by[0] * across + by[1] * along).normalized().eval();
-      };
-      const auto cost = [&](const std::vector<double>& by) {
-        points.face(turned(by));
-        return -points.nearness(reach);
-      };
-      const double step = 0.08 * std::min(1.0, reach / coarse_);
-      std::vector<double> by{0.0, 0.0};
-      minimize(cost, {step, step}, kEvaluations, by);
-      direction = turned(by);
+  // Turns the plane until most points are near it.
+  void turn(double reach, Columns& points, Bound& bound) const {
+    const Vector start = bound.normal;
+    const Vector across = start.unitOrthogonal();
+    const Vector along = start.cross(across);
+    const auto turned = [&](const std::vector<double>& by) {
+      return Vector((start + by[0] * across + by[1] * along).normalized());
+    };
+    const auto cost = [&](const std::vector<double>& by) {
+      points.face(turned(by));
+      return -points.nearness(reach);
+    };
+    // As far as the next start at first, then by what moves as much of the cloud.
+    const double step = 0.08 * std::min(1.0, reach / coarse_);
+    std::vector<double> by{0.0, 0.0};
+    minimize(cost, {step, step}, kEvaluations, by);
+    bound.normal = turned(by);
+    points.face(bound.normal);
+    bound.offset = points.highest();
+    bound.touching = points.countWithin(0.0, spacing_);
+    const auto touching = static_cast<double>(bound.touching);
+    const double each = static_cast<double>(points_.size()) / static_cast<double>(points.size());
+    bound.is_face = each * touching * spacing_ > kLongest * extent_;
+    bound.cuts =
+        !bound.is_face && bound.touching >= kFewest &&
+        touching >= kCut * static_cast<double>(points.countWithin(spacing_, 2.0 * spacing_));
+  }
+
+  // Those that most points touch first, each once, without faces.
+  static std::vector<Bound> different(std::vector<Bound> bounds, double same) {
+    std::stable_sort(bounds.begin(), bounds.end(),
+                     [](const Bound& a, const Bound& b) { return a.touching > b.touching; });
+    std::vector<Bound> out;
+    for (const Bound& b : bounds) {
+      const bool known = std::any_of(out.begin(), out.end(),
+                                     [&](const Bound& k) { return k.normal.dot(b.normal) > same; });
+      if (!known) out.push_back(b);
     }
-    points.face(direction);
-    out.normal = direction;
-    out.offset = points.highest();
-    out.touching = points.countWithin(0.0, spacing_);
-    const double ratio = ratioAt(spacing_, points);
-    out.cuts = out.touching >= kFewest && static_cast<double>(out.touching) * spacing_ <= kLongest * extent_ && ratio >= 1.0 / kCut;
     return out;
   }
 
+  Columns few_;
   Columns points_;
   int threads_;
   double spacing_ = 0.0;
@@ -250,21 +273,40 @@ struct Apex {
   std::size_t touching = 0;
 };
 
-// The place nearest to all planes that pass three of them's common point.
+// Where all planes meet that pass a place within a spacing.
 Apex meetAt(const Vector& place, const std::vector<Bound>& bounds, double spacing) {
-  // By how much planes that are known to a spacing miss a place that far from the cloud.
-  const double near = spacing;
   Apex out;
   Eigen::Matrix3d normals = Eigen::Matrix3d::Zero();
   Vector offsets = Vector::Zero();
   for (const Bound& b : bounds) {
-    if (std::fabs(b.normal.dot(place) - b.offset) > near) continue;
+    if (std::fabs(b.normal.dot(place) - b.offset) > spacing) continue;
     ++out.sides;
     out.touching += b.touching;
     normals += b.normal * b.normal.transpose();
     offsets += b.offset * b.normal;
   }
   out.place = normals.ldlt().solve(offsets);
+  return out;
+}
+
+// Of each three planes, those that most planes and points meet in first.
+std::vector<Apex> meetings(const std::vector<Bound>& bounds, double spacing) {
+  std::vector<Apex> out;
+  for (std::size_t a = 0; a < bounds.size(); ++a) {
+    for (std::size_t b = a + 1; b < bounds.size(); ++b) {
+      for (std::size_t c = b + 1; c < bounds.size(); ++c) {
+        Eigen::Matrix3d normals;
+        normals << bounds[a].normal.transpose(), bounds[b].normal.transpose(),
+            bounds[c].normal.transpose();
+        if (std::fabs(normals.determinant()) < kLeastVolume) continue;
+        const Vector offsets(bounds[a].offset, bounds[b].offset, bounds[c].offset);
+        out.push_back(meetAt(normals.inverse() * offsets, bounds, spacing));
+      }
+    }
+  }
+  std::stable_sort(out.begin(), out.end(), [](const Apex& a, const Apex& b) {
+    return a.sides != b.sides ? a.sides > b.sides : a.touching > b.touching;
+  });
   return out;
 }
 
@@ -283,40 +325,26 @@ bool seesAll(const FlatPoints& flat, const Vector& place, const Vector& middle) 
 }  // namespace
 
 std::vector<std::array<float, 3>> findApexes(const FlatPoints& flat, int threads) {
-  if (flat.size() < kPoints / 16) return {};
+  // With fewer points, few lie on a side.
+  constexpr std::size_t kLeastPoints = 500;
+  if (flat.size() < kLeastPoints) return {};
+  constexpr double kElsewhere = 0.1;  // of the distance
   BoundFinder finder(flat, threads);
   const std::vector<Bound> bounds = finder.run();
   const std::array<float, 3> m = flat.middle();
   const Vector middle = Eigen::Vector3f(m[0], m[1], m[2]).cast<double>();
-  std::vector<Apex> apexes;
-  for (std::size_t a = 0; a < bounds.size(); ++a) {
-    for (std::size_t b = a + 1; b < bounds.size(); ++b) {
-      for (std::size_t c = b + 1; c < bounds.size(); ++c) {
-        Eigen::Matrix3d normals;
-        normals << bounds[a].normal.transpose(), bounds[b].normal.transpose(),
-            bounds[c].normal.transpose();
-        if (std::fabs(normals.determinant()) < kLeastVolume) continue;
-        const Vector place = normals.inverse() *
-                             Vector(bounds[a].offset, bounds[b].offset, bounds[c].offset);
-        const Apex apex = meetAt(place, bounds, finder.spacing());
-        if (apex.sides >= kSides) apexes.push_back(apex);
-      }
-    }
-  }
-  std::stable_sort(apexes.begin(), apexes.end(), [](const Apex& a, const Apex& b) {
-    return a.sides != b.sides ? a.sides > b.sides : a.touching > b.touching;
-  });
-  std::vector<std::array<float, 3>> out;
   std::vector<Vector> places;
-  for (const Apex& apex : apexes) {
+  for (const Apex& apex : meetings(bounds, finder.spacing())) {
     const bool known = std::any_of(places.begin(), places.end(), [&](const Vector& p) {
-      return (p - apex.place).norm() < 0.1 * (apex.place - middle).norm();
+      return (p - apex.place).norm() < kElsewhere * (apex.place - middle).norm();
     });
     if (known || !seesAll(flat, apex.place, middle)) continue;
     places.push_back(apex.place);
-    const Eigen::Vector3f place = apex.place.cast<float>();
-    out.push_back({place[0], place[1], place[2]});
-    if (out.size() == kMostApexes) break;
+    if (places.size() == kMostApexes) break;
+  }
+  std::vector<std::array<float, 3>> out;
+  for (const Vector& p : places) {
+    out.push_back({static_cast<float>(p[0]), static_cast<float>(p[1]), static_cast<float>(p[2])});
   }
   return out;
 }
