@@ -50,6 +50,41 @@ FoundSensor describe(const FittedPlace& fitted, float constant, bool suggested) 
   return out;
 }
 
+// What steps of depth tell of, with what is looked for once.
+class Views {
+ public:
+  Views(const PreparedCloud& cloud, int threads) : cloud_(cloud), threads_(threads) {}
+
+  const detail::FlatPoints& flat() {
+    if (!flat_) flat_.emplace(cloud_.points(), threads_);
+    return *flat_;
+  }
+
+  struct Revealed {
+    std::array<float, 3> place;
+    detail::Shadows shadows;
+  };
+  // Where the sides of an image meet and shadows reveal a sensor, those that hide least first.
+  const std::vector<Revealed>& cameras() {
+    if (cameras_) return *cameras_;
+    cameras_.emplace();
+    for (const std::array<float, 3>& apex : detail::findApexes(flat(), threads_)) {
+      const detail::Shadows shadows = detail::findShadows(flat(), apex, threads_, true);
+      if (shadows.reveal()) cameras_->push_back({apex, shadows});
+    }
+    std::stable_sort(cameras_->begin(), cameras_->end(), [](const Revealed& a, const Revealed& b) {
+      return a.shadows.coveredOfSteps() < b.shadows.coveredOfSteps();
+    });
+    return *cameras_;
+  }
+
+ private:
+  const PreparedCloud& cloud_;
+  int threads_;
+  std::optional<detail::FlatPoints> flat_;
+  std::optional<std::vector<Revealed>> cameras_;
+};
+
 // The suggestion that fits best, if one does.
 std::optional<FittedPlace> trySuggestions(const DensityPatches& patches, float constant,
                                           const SensorOptions& options) {
@@ -72,6 +107,10 @@ void setOnly(const FoundSensor& sensor, const char* why, SensorReport& out) {
   out.why = why;
 }
 
+bool explainsFarMore(const FittedPlace& a, const FittedPlace& b, float constant) {
+  return a.cost <= detail::kMuchBetter * b.cost && a.cost <= b.cost - detail::kGain * constant;
+}
+
 // From afar many places explain much. A suggested one stands unless the best of all, which has to
 // be sure itself, explains far more, or more from the other side: of 58 true ones the best saw the
 // same sides, of 17 that were one to five extents off it saw the others, or left .6 of what they
@@ -79,24 +118,50 @@ void setOnly(const FoundSensor& sensor, const char* why, SensorReport& out) {
 bool betters(const FittedPlace& found, const FittedPlace& suggested, float constant,
              const DensityPatches& patches) {
   if (found.cost > detail::kSureFound * constant || found.cost >= suggested.cost) return false;
-  const bool explains_more = found.cost <= detail::kMuchBetter * suggested.cost &&
-                             found.cost <= suggested.cost - detail::kGain * constant;
-  return explains_more || 2 * detail::countTurned(patches, found, suggested) > patches.size();
+  return explainsFarMore(found, suggested, constant) ||
+         2 * detail::countTurned(patches, found, suggested) > patches.size();
 }
 
-FoundSensor findStation(const DensityPatches& patches, float constant,
-                        const SensorOptions& options) {
+// The camera that fits best, if densities are sure of one.
+std::optional<FittedPlace> tryCameras(const DensityPatches& patches, float constant,
+                                      const std::vector<Views::Revealed>& cameras) {
+  std::optional<FittedPlace> best;
+  for (const Views::Revealed& camera : cameras) {
+    const FittedPlace fitted = detail::fitAt(patches, inDouble(camera.place.data()));
+    if (fitted.cost > detail::kSureFound * constant) continue;
+    if (!best || fitted.cost < best->cost) best = fitted;
+  }
+  return best;
+}
+
+// The best of all places; of those that explain about as much, a camera that the sides of an image
+// and shadows tell of.
+std::optional<FittedPlace> searchAll(const DensityPatches& patches, float constant,
+                                     const std::optional<FittedPlace>& camera, int threads) {
+  const std::optional<FittedPlace> found = detail::searchStation(patches, constant, threads);
+  return camera && !(found && explainsFarMore(*found, *camera, constant)) ? camera : found;
+}
+
+// \param cameras of which an image tells; empty = none
+FoundSensor findStation(const DensityPatches& patches, float constant, const SensorOptions& options,
+                        const std::vector<Views::Revealed>& cameras) {
   const std::optional<FittedPlace> suggested = trySuggestions(patches, constant, options);
+  const std::optional<FittedPlace> camera = tryCameras(patches, constant, cameras);
   std::optional<FittedPlace> found;
   if (options.search) {
-    found = detail::searchStation(patches, constant, options.threads);
+    found = searchAll(patches, constant, camera, options.threads);
   } else if (suggested) {
     found = detail::fitBeside(patches, *suggested);
   }
   if (suggested && !(found && betters(*found, *suggested, constant, patches))) {
     return describe(*suggested, constant, true);
   }
-  return found && options.search ? describe(*found, constant, false) : FoundSensor{};
+  if (!found || !options.search) return {};
+  FoundSensor out = describe(*found, constant, false);
+  if (camera && found->place.position == camera->place.position) {
+    out.evidence = SensorEvidence::IMAGE;
+  }
+  return out;
 }
 
 // Whether a place is under the cloud's ground, about as far away as that is wide: of what a camera
@@ -126,8 +191,9 @@ void lookForUpperSide(PreparedCloud& cloud, const DensityPatches& patches,
 // \param has_axes whether the scene lies along the cloud's axes
 // \param out has the deviations
 void searchPlaces(const detail::SceneFrame& frame, bool has_axes, const DensityPatches& patches,
-                  PreparedCloud& cloud, const SensorOptions& options, SensorReport& out) {
-  FoundSensor sensor = findStation(frame.into(patches), out.deviation, options);
+                  PreparedCloud& cloud, const SensorOptions& options,
+                  const std::vector<Views::Revealed>& cameras, SensorReport& out) {
+  FoundSensor sensor = findStation(frame.into(patches), out.deviation, options, cameras);
   frame.back(sensor);
   // Several stations around a body, most points from one of them, look like one at some place, and
   // somewhat like one at many.
@@ -155,17 +221,19 @@ void searchPlaces(const detail::SceneFrame& frame, bool has_axes, const DensityP
 // What was found in the cloud's own coordinates, or in the scene's frame if that explains more. A
 // place that was suggested is exact, and one layer over the ground is one in upright clouds only.
 SensorReport searchUpright(const DensityPatches& patches, PreparedCloud& cloud,
-                           const SensorOptions& options, const SensorReport& empty) {
+                           const SensorOptions& options, Views& views, const SensorReport& empty) {
   const detail::SceneFrame frame(patches);
   SensorReport own = empty;
-  searchPlaces({}, frame.isOwn(), patches, cloud, options, own);
-  const bool stands =
-      own.sure() && (own.sensors[0].suggested || own.sensors[0].evidence == SensorEvidence::LAYERS);
+  const std::vector<Views::Revealed> none;
+  searchPlaces({}, frame.isOwn(), patches, cloud, options, options.search ? views.cameras() : none,
+               own);
+  const bool stands = own.sure() && (own.sensors[0].suggested ||
+                                     own.sensors[0].evidence != SensorEvidence::DENSITY);
   if (stands || frame.isOwn() || !options.search) return own;
   SensorOptions without = options;
   without.suggestions.clear();
   SensorReport turned = empty;
-  searchPlaces(frame, true, patches, cloud, without, turned);
+  searchPlaces(frame, true, patches, cloud, without, none, turned);
   const bool knows_side = own.sure() || !own.directions.empty();
   const bool is_better =
       turned.sure() ? !own.sure() || turned.sensors[0].cost_ratio < own.sensors[0].cost_ratio
@@ -174,7 +242,7 @@ SensorReport searchUpright(const DensityPatches& patches, PreparedCloud& cloud,
 }
 
 // By densities and layers; in the unit of the cloud, sensor_of by its points.
-SensorReport searchSensors(PreparedCloud& cloud, const SensorOptions& options) {
+SensorReport searchSensors(PreparedCloud& cloud, const SensorOptions& options, Views& views) {
   SensorReport out;
   out.sensor_of.assign(cloud.size(), -1);
   const DensityPatches patches =
@@ -191,7 +259,7 @@ SensorReport searchSensors(PreparedCloud& cloud, const SensorOptions& options) {
     lookForUpperSide(cloud, patches, options, out);
     return out;
   }
-  return searchUpright(patches, cloud, options, out);
+  return searchUpright(patches, cloud, options, views, out);
 }
 
 // A place that shadows reveal, in the cloud's unit.
@@ -226,39 +294,31 @@ bool trySuggestedShadows(PreparedCloud& cloud, const detail::FlatPoints& flat,
   return false;
 }
 
-// Where the sides of an image meet; of several such places the one that hides least.
-bool tryApexes(const detail::FlatPoints& flat, const SensorOptions& options,
-               detail::SeenShadows& seen, SensorReport& out) {
-  std::optional<std::pair<detail::Shadows, std::array<float, 3>>> best;
-  for (const std::array<float, 3>& apex : detail::findApexes(flat, options.threads)) {
-    const detail::Shadows shadows = detail::findShadows(flat, apex, options.threads, true);
-    if (!shadows.reveal()) continue;
-    if (!best || shadows.coveredOfSteps() < best->first.coveredOfSteps()) {
-      best = std::pair(shadows, apex);
-    }
-  }
-  if (!best) return false;
-  const auto& [shadows, apex] = *best;
-  setRevealed(apex, shadows, "the sides of an image meet where surfaces end at the shadows", seen,
-              out);
+// What looks at the middle of the cloud.
+void setCamera(const detail::FlatPoints& flat, FoundSensor& sensor) {
   const std::array<float, 3> middle = flat.middle();
   std::array<double, 3> gaze{};
   for (std::size_t a = 0; a < 3; ++a) {
-    gaze[a] = static_cast<double>(middle[a]) - static_cast<double>(apex[a]);
+    gaze[a] = static_cast<double>(middle[a]) - static_cast<double>(sensor.position[a]);
   }
-  FoundSensor& camera = out.sensors[0];
-  camera.kind = SensorKind::CAMERA;
-  unitVector(gaze, camera.axis.data());
-  return true;
+  sensor.kind = SensorKind::CAMERA;
+  sensor.evidence = SensorEvidence::IMAGE;
+  unitVector(gaze, sensor.axis.data());
 }
 
-void lookForShadows(PreparedCloud& cloud, const SensorOptions& options, detail::SeenShadows& seen,
-                    SensorReport& out) {
+void lookForShadows(PreparedCloud& cloud, const SensorOptions& options, Views& views,
+                    detail::SeenShadows& seen, SensorReport& out) {
   if (out.sure() && out.sensors[0].kind != SensorKind::ABOVE) return;
-  const detail::FlatPoints flat(cloud.points(), options.threads);
+  const detail::FlatPoints& flat = views.flat();
   if (trySuggestedShadows(cloud, flat, options, seen, out)) return;
   if (!options.search || out.sure() || out.faces_up || !out.directions.empty()) return;
-  if (tryApexes(flat, options, seen, out)) return;
+  if (!views.cameras().empty()) {
+    const auto& [apex, shadows] = views.cameras().front();
+    setRevealed(apex, shadows, "the sides of an image meet where surfaces end at the shadows", seen,
+                out);
+    setCamera(flat, out.sensors[0]);
+    return;
+  }
   out.directions = detail::directionsInARoom(cloud.points(), flat, options.threads);
   if (!out.directions.empty()) out.why += ", but surfaces end at shadows as seen from within";
 }
@@ -276,8 +336,9 @@ SensorReport detail::sensorsOf(const PointView& points, PreparedCloud& cloud,
   } else {
     SensorOptions scaled = options;
     for (std::array<float, 3>& s : scaled.suggestions) s = cloud.inUnit(s);
-    out = searchSensors(cloud, scaled);
-    lookForShadows(cloud, options, shadows, out);
+    Views views(cloud, options.threads);
+    out = searchSensors(cloud, scaled, views);
+    lookForShadows(cloud, options, views, shadows, out);
     for (FoundSensor& s : out.sensors) {
       for (float& v : s.position) v *= cloud.unit();
     }
