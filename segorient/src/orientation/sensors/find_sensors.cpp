@@ -9,6 +9,7 @@
 
 #include "common/in_double.h"
 #include "common/unit_vector.h"
+#include "orientation/sensors/camera_views.h"
 #include "orientation/sensors/height_field.h"
 #include "orientation/sensors/image_rays.h"
 #include "orientation/sensors/joint_sensors.h"
@@ -17,12 +18,13 @@
 #include "orientation/sensors/sensor_search.h"
 #include "orientation/sensors/shadows.h"
 #include "orientation/sensors/station_search.h"
-#include "orientation/sensors/view_pyramid.h"
 
 namespace segorient {
 
+using detail::CameraViews;
 using detail::DensityPatches;
 using detail::FittedPlace;
+using detail::RevealedPlace;
 using detail::SamplingLaw;
 using detail::toFloat;
 
@@ -49,41 +51,6 @@ FoundSensor describe(const FittedPlace& fitted, float constant, bool suggested) 
   out.sure = out.cost_ratio <= (suggested ? kSureSuggested : detail::kSureFound);
   return out;
 }
-
-// What steps of depth tell of, with what is looked for once.
-class Views {
- public:
-  Views(const PreparedCloud& cloud, int threads) : cloud_(cloud), threads_(threads) {}
-
-  const detail::FlatPoints& flat() {
-    if (!flat_) flat_.emplace(cloud_.points(), threads_);
-    return *flat_;
-  }
-
-  struct Revealed {
-    std::array<float, 3> place;
-    detail::Shadows shadows;
-  };
-  // Where the sides of an image meet and shadows reveal a sensor, those that hide least first.
-  const std::vector<Revealed>& cameras() {
-    if (cameras_) return *cameras_;
-    cameras_.emplace();
-    for (const std::array<float, 3>& apex : detail::findApexes(flat(), threads_)) {
-      const detail::Shadows shadows = detail::findShadows(flat(), apex, threads_, true);
-      if (shadows.reveal()) cameras_->push_back({apex, shadows});
-    }
-    std::stable_sort(cameras_->begin(), cameras_->end(), [](const Revealed& a, const Revealed& b) {
-      return a.shadows.coveredOfSteps() < b.shadows.coveredOfSteps();
-    });
-    return *cameras_;
-  }
-
- private:
-  const PreparedCloud& cloud_;
-  int threads_;
-  std::optional<detail::FlatPoints> flat_;
-  std::optional<std::vector<Revealed>> cameras_;
-};
 
 // The suggestion that fits best, if one does.
 std::optional<FittedPlace> trySuggestions(const DensityPatches& patches, float constant,
@@ -124,9 +91,9 @@ bool betters(const FittedPlace& found, const FittedPlace& suggested, float const
 
 // The camera that fits best, if densities are sure of one.
 std::optional<FittedPlace> tryCameras(const DensityPatches& patches, float constant,
-                                      const std::vector<Views::Revealed>& cameras) {
+                                      const std::vector<RevealedPlace>& cameras) {
   std::optional<FittedPlace> best;
-  for (const Views::Revealed& camera : cameras) {
+  for (const RevealedPlace& camera : cameras) {
     const FittedPlace fitted = detail::fitAt(patches, inDouble(camera.place.data()));
     if (fitted.cost > detail::kSureFound * constant) continue;
     if (!best || fitted.cost < best->cost) best = fitted;
@@ -143,8 +110,10 @@ std::optional<FittedPlace> searchAll(const DensityPatches& patches, float consta
 }
 
 // \param cameras of which an image tells; empty = none
+// \param[out] by_image whether it is one of these
 FoundSensor findStation(const DensityPatches& patches, float constant, const SensorOptions& options,
-                        const std::vector<Views::Revealed>& cameras) {
+                        const std::vector<RevealedPlace>& cameras, bool& by_image) {
+  by_image = false;
   const std::optional<FittedPlace> suggested = trySuggestions(patches, constant, options);
   const std::optional<FittedPlace> camera = tryCameras(patches, constant, cameras);
   std::optional<FittedPlace> found;
@@ -157,11 +126,8 @@ FoundSensor findStation(const DensityPatches& patches, float constant, const Sen
     return describe(*suggested, constant, true);
   }
   if (!found || !options.search) return {};
-  FoundSensor out = describe(*found, constant, false);
-  if (camera && found->place.position == camera->place.position) {
-    out.evidence = SensorEvidence::IMAGE;
-  }
-  return out;
+  by_image = camera && found->place.position == camera->place.position;
+  return describe(*found, constant, false);
 }
 
 // Whether a place is under the cloud's ground, about as far away as that is wide: of what a camera
@@ -190,14 +156,17 @@ void lookForUpperSide(PreparedCloud& cloud, const DensityPatches& patches,
 // \param frame in another one than the cloud's, nothing is to be suggested
 // \param has_axes whether the scene lies along the cloud's axes
 // \param out has the deviations
-void searchPlaces(const detail::SceneFrame& frame, bool has_axes, const DensityPatches& patches,
+// \return whether it is a place that is exact, as it was suggested or the sides of an image meet
+// there
+bool searchPlaces(const detail::SceneFrame& frame, bool has_axes, const DensityPatches& patches,
                   PreparedCloud& cloud, const SensorOptions& options,
-                  const std::vector<Views::Revealed>& cameras, SensorReport& out) {
-  FoundSensor sensor = findStation(frame.into(patches), out.deviation, options, cameras);
+                  const std::vector<RevealedPlace>& cameras, SensorReport& out) {
+  bool by_image = false;
+  FoundSensor sensor = findStation(frame.into(patches), out.deviation, options, cameras, by_image);
   frame.back(sensor);
   // Several stations around a body, most points from one of them, look like one at some place, and
   // somewhat like one at many.
-  const bool searched = sensor.kind == SensorKind::STATION && !sensor.suggested;
+  const bool searched = sensor.kind == SensorKind::STATION && !sensor.suggested && !by_image;
   const bool is_weak = sensor.suggested && sensor.cost_ratio > detail::kSureFound;
   if (sensor.sure && (searched || is_weak)) {
     sensor.sure = !detail::findShadows(cloud.points(), sensor.position, options.threads).deny();
@@ -205,31 +174,33 @@ void searchPlaces(const detail::SceneFrame& frame, bool has_axes, const DensityP
   if (sensor.sure) {
     setOnly(sensor,
             sensor.suggested ? "the suggested place explains the densities"
+            : by_image       ? "the place where the sides of an image meet explains the densities"
                              : "one place explains the densities",
             out);
-    return;
+    return sensor.suggested || by_image;
   }
   out.why = "no places explain the densities";
-  if (!options.search || out.deviation < kFarBeyondChance * out.chance) return;
+  if (!options.search || out.deviation < kFarBeyondChance * out.chance) return false;
   if (frame.isOwn()) {
     detail::findSeveral(cloud, patches, has_axes, options.threads, out);
   } else {
     detail::findSeveralTurned(frame, cloud, patches, options.threads, out);
   }
+  return false;
 }
 
-// What was found in the cloud's own coordinates, or in the scene's frame if that explains more. A
-// place that was suggested is exact, and one layer over the ground is one in upright clouds only.
+// What was found in the cloud's own coordinates, or in the scene's frame if that explains more. One
+// layer over the ground is one in upright clouds only.
 SensorReport searchUpright(const DensityPatches& patches, PreparedCloud& cloud,
-                           const SensorOptions& options, Views& views, const SensorReport& empty) {
+                           const SensorOptions& options, CameraViews& views,
+                           const SensorReport& empty) {
   const detail::SceneFrame frame(patches);
   SensorReport own = empty;
-  const std::vector<Views::Revealed> none;
-  searchPlaces({}, frame.isOwn(), patches, cloud, options, options.search ? views.cameras() : none,
-               own);
-  const bool stands = own.sure() && (own.sensors[0].suggested ||
-                                     own.sensors[0].evidence != SensorEvidence::DENSITY);
-  if (stands || frame.isOwn() || !options.search) return own;
+  const std::vector<RevealedPlace> none;
+  const bool exact = searchPlaces({}, frame.isOwn(), patches, cloud, options,
+                                  options.search ? views.cameras() : none, own);
+  const bool by_layers = own.sure() && own.sensors[0].evidence == SensorEvidence::LAYERS;
+  if (exact || by_layers || frame.isOwn() || !options.search) return own;
   SensorOptions without = options;
   without.suggestions.clear();
   SensorReport turned = empty;
@@ -242,7 +213,7 @@ SensorReport searchUpright(const DensityPatches& patches, PreparedCloud& cloud,
 }
 
 // By densities and layers; in the unit of the cloud, sensor_of by its points.
-SensorReport searchSensors(PreparedCloud& cloud, const SensorOptions& options, Views& views) {
+SensorReport searchSensors(PreparedCloud& cloud, const SensorOptions& options, CameraViews& views) {
   SensorReport out;
   out.sensor_of.assign(cloud.size(), -1);
   const DensityPatches patches =
@@ -263,38 +234,40 @@ SensorReport searchSensors(PreparedCloud& cloud, const SensorOptions& options, V
 }
 
 // A place that shadows reveal, in the cloud's unit.
-void setRevealed(const std::array<float, 3>& place, const detail::Shadows& shadows, const char* why,
-                 detail::SeenShadows& seen, SensorReport& out) {
-  seen.of_sensor = shadows;
+void setRevealed(const RevealedPlace& revealed, const char* why, detail::SeenShadows& seen,
+                 SensorReport& out) {
+  seen.of_sensor = revealed.shadows;
   FoundSensor sensor;
   sensor.evidence = SensorEvidence::SHADOWS;
-  sensor.position = place;
-  sensor.cost_ratio = shadows.coveredOfSteps();
+  sensor.position = revealed.place;
+  sensor.cost_ratio = revealed.shadows.coveredOfSteps();
   sensor.sure = true;
   out.directions.clear();
   out.faces_up = false;
   setOnly(sensor, why, out);
 }
 
-// Thinned clouds have lost their densities, which leaves who hides whom. That there is one layer
-// over the ground says less.
-bool trySuggestedShadows(PreparedCloud& cloud, const detail::FlatPoints& flat,
-                         const SensorOptions& options, detail::SeenShadows& seen,
-                         SensorReport& out) {
+// The first of the suggestions that they reveal.
+std::optional<RevealedPlace> trySuggestedShadows(const PreparedCloud& cloud,
+                                                 const SensorOptions& options, CameraViews& views,
+                                                 const detail::SeenShadows& seen) {
   for (const std::array<float, 3>& suggestion : options.suggestions) {
     if (suggestion == seen.nothing_at) continue;
     const std::array<float, 3> s = cloud.inUnit(suggestion);
-    const detail::Shadows shadows = detail::findShadows(flat, s, options.threads, true);
-    if (!shadows.reveal()) continue;
-    setRevealed(s, shadows, "surfaces end at the shadows that the suggested place casts", seen,
-                out);
-    out.sensors[0].suggested = true;
-    return true;
+    const detail::Shadows shadows = detail::findShadows(views.flat(), s, options.threads, true);
+    if (shadows.reveal()) return RevealedPlace{s, shadows};
   }
-  return false;
+  return std::nullopt;
 }
 
-// What looks at the middle of the cloud.
+// Whether a camera, which hides points as rarely as chance has it, shows that a suggested place
+// that hides some is no more than allowed.
+bool hidesFarLess(const std::vector<RevealedPlace>& cameras, const RevealedPlace& suggested) {
+  return !cameras.empty() && cameras.front().shadows.coveredOfSteps() <
+                                 detail::kMuchBetter * suggested.shadows.coveredOfSteps();
+}
+
+// A camera looks at the middle of the cloud.
 void setCamera(const detail::FlatPoints& flat, FoundSensor& sensor) {
   const std::array<float, 3> middle = flat.middle();
   std::array<double, 3> gaze{};
@@ -302,25 +275,31 @@ void setCamera(const detail::FlatPoints& flat, FoundSensor& sensor) {
     gaze[a] = static_cast<double>(middle[a]) - static_cast<double>(sensor.position[a]);
   }
   sensor.kind = SensorKind::CAMERA;
-  sensor.evidence = SensorEvidence::IMAGE;
   unitVector(gaze, sensor.axis.data());
 }
 
-void lookForShadows(PreparedCloud& cloud, const SensorOptions& options, Views& views,
+// Thinned clouds have lost their densities, which leaves who hides whom. That there is one layer
+// over the ground says less.
+void lookForShadows(const PreparedCloud& cloud, const SensorOptions& options, CameraViews& views,
                     detail::SeenShadows& seen, SensorReport& out) {
   if (out.sure() && out.sensors[0].kind != SensorKind::ABOVE) return;
-  const detail::FlatPoints& flat = views.flat();
-  if (trySuggestedShadows(cloud, flat, options, seen, out)) return;
-  if (!options.search || out.sure() || out.faces_up || !out.directions.empty()) return;
-  if (!views.cameras().empty()) {
-    const auto& [apex, shadows] = views.cameras().front();
-    setRevealed(apex, shadows, "the sides of an image meet where surfaces end at the shadows", seen,
+  const std::optional<RevealedPlace> suggested = trySuggestedShadows(cloud, options, views, seen);
+  const bool knows = out.sure() || out.faces_up || !out.directions.empty();
+  const bool asks = options.search && (suggested || !knows);
+  const std::vector<RevealedPlace> none;
+  const std::vector<RevealedPlace>& cameras = asks ? views.cameras() : none;
+  if (suggested && !hidesFarLess(cameras, *suggested)) {
+    setRevealed(*suggested, "surfaces end at the shadows that the suggested place casts", seen,
                 out);
-    setCamera(flat, out.sensors[0]);
-    return;
+    out.sensors[0].suggested = true;
+  } else if (!cameras.empty()) {
+    setRevealed(cameras.front(), "the sides of an image meet where surfaces end at the shadows",
+                seen, out);
+    setCamera(views.flat(), out.sensors[0]);
+  } else if (asks) {
+    out.directions = detail::directionsInARoom(cloud.points(), views.flat(), options.threads);
+    if (!out.directions.empty()) out.why += ", but surfaces end at shadows as seen from within";
   }
-  out.directions = detail::directionsInARoom(cloud.points(), flat, options.threads);
-  if (!out.directions.empty()) out.why += ", but surfaces end at shadows as seen from within";
 }
 
 }  // namespace
@@ -336,7 +315,7 @@ SensorReport detail::sensorsOf(const PointView& points, PreparedCloud& cloud,
   } else {
     SensorOptions scaled = options;
     for (std::array<float, 3>& s : scaled.suggestions) s = cloud.inUnit(s);
-    Views views(cloud, options.threads);
+    detail::CameraViews views(cloud, options.threads);
     out = searchSensors(cloud, scaled, views);
     lookForShadows(cloud, options, views, shadows, out);
     for (FoundSensor& s : out.sensors) {

@@ -53,7 +53,6 @@ struct Bound {
   Vector normal = Vector::Zero();
   double offset = 0.0;
   std::size_t touching = 0;  // points within a spacing
-  bool is_face = false;      // of which it touches far more than a cut would have
   bool cuts = false;
 };
 
@@ -240,13 +239,12 @@ class BoundFinder {
     bound.touching = points.countWithin(0.0, spacing_);
     const auto touching = static_cast<double>(bound.touching);
     const double each = static_cast<double>(points_.size()) / static_cast<double>(points.size());
-    bound.is_face = each * touching * spacing_ > kLongest * extent_;
     bound.cuts =
-        !bound.is_face && bound.touching >= kFewest &&
+        each * touching * spacing_ <= kLongest * extent_ && bound.touching >= kFewest &&
         touching >= kCut * static_cast<double>(points.countWithin(spacing_, 2.0 * spacing_));
   }
 
-  // Those that most points touch first, each once, without faces.
+  // Those that most points touch first, each once.
   static std::vector<Bound> different(std::vector<Bound> bounds, double same) {
     std::stable_sort(bounds.begin(), bounds.end(),
                      [](const Bound& a, const Bound& b) { return a.touching > b.touching; });
@@ -330,6 +328,7 @@ std::vector<std::array<float, 3>> findApexes(const FlatPoints& flat, int threads
   if (flat.size() < kLeastPoints) return {};
   constexpr double kElsewhere = 0.1;  // of the distance
   BoundFinder finder(flat, threads);
+  if (!(finder.spacing() > 0.0)) return {};
   const std::vector<Bound> bounds = finder.run();
   const std::array<float, 3> m = flat.middle();
   const Vector middle = Eigen::Vector3f(m[0], m[1], m[2]).cast<double>();

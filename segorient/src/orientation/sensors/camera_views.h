@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the segorient authors
+#pragma once
+
+#include <array>
+#include <optional>
+#include <vector>
+
+#include "orientation/sensors/flat_points.h"
+#include "orientation/sensors/shadows.h"
+#include "search/prepared_cloud.h"
+
+namespace segorient::detail {
+
+/// A place in the cloud's unit, and what shadows say of it.
+struct RevealedPlace {
+  std::array<float, 3> place;
+  Shadows shadows;
+};
+
+/// What steps of depth tell of a cloud, looked for once and only if somebody asks.
+class CameraViews {
+ public:
+  /// \param cloud must outlive this
+  CameraViews(const PreparedCloud& cloud, int threads) : cloud_(cloud), threads_(threads) {}
+
+  const FlatPoints& flat();
+  /// Where the sides of an image meet and shadows reveal a sensor, those that hide least first.
+  const std::vector<RevealedPlace>& cameras();
+
+ private:
+  const PreparedCloud& cloud_;
+  int threads_;
+  std::optional<FlatPoints> flat_;
+  std::optional<std::vector<RevealedPlace>> cameras_;
+};
+
+}  // namespace segorient::detail
