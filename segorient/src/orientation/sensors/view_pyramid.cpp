@@ -20,7 +20,7 @@ namespace {
 
 using Vector = Eigen::Vector3d;
 
-// Directions that bounding planes are looked for in: 4.6 degrees apart.
+// Directions that bounding planes are looked for in: 8 degrees apart.
 constexpr std::size_t kDirections = 600;
 // Points that planes are fitted to, where the sides of an image have some hundred each, and that
 // they are looked for with.
@@ -191,7 +191,7 @@ class BoundFinder {
  private:
   // Those that more points are near the bounding plane of than of all around.
   std::vector<Vector> startDirections() {
-    constexpr double kAround = 0.985;  // 10 degrees: twice as far as the next
+    constexpr double kAround = 0.985;  // 10 degrees: the next ones
     const std::vector<Vector> directions = directionsAllAround();
     std::vector<std::size_t> near(directions.size());
     for (std::size_t d = 0; d < directions.size(); ++d) {
