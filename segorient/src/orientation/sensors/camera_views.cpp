@@ -7,6 +7,10 @@
 #include "orientation/sensors/view_pyramid.h"
 
 namespace segorient::detail {
+namespace {
+
+
+}  // namespace
 
 const FlatPoints& CameraViews::flat() {
   if (!flat_) flat_.emplace(cloud_.points(), threads_);
@@ -18,7 +22,9 @@ const std::vector<RevealedPlace>& CameraViews::cameras() {
   cameras_.emplace();
   for (const std::array<float, 3>& apex : findApexes(flat(), threads_)) {
     const Shadows shadows = findShadows(flat(), apex, threads_, true);
-    if (shadows.reveal()) cameras_->push_back({apex, shadows});
+    if (shadows.reveal()) {
+      cameras_->push_back({apex, shadows});
+    }
   }
   std::stable_sort(cameras_->begin(), cameras_->end(),
                    [](const RevealedPlace& a, const RevealedPlace& b) {

@@ -79,7 +79,11 @@ PlaceChoice choosePlaces(const PointView& points, const OrientationHints& given,
   if (as_given.place.shadows.confirm()) return as_given;
   others.suggested.push_back(*place);
   PlaceChoice found = findOthers(points, std::move(others), cloud, threads, seen);
-  if (contradictsPlace(cloud, found.sensors, *place)) {
+  // What only shadows tell of turns nobody away whom they do not deny.
+  const bool by_shadows = found.sensors.sure() &&
+                          found.sensors.sensors[0].evidence == SensorEvidence::SHADOWS &&
+                          !as_given.place.shadows.deny();
+  if (!by_shadows && contradictsPlace(cloud, found.sensors, *place)) {
     found.refused = refusedPlace(*place, cloud);
     return found;
   }

@@ -41,8 +41,12 @@ constexpr std::size_t kMostPlanes = 10;
 constexpr std::size_t kMostApexes = 8;
 // Volume that the normals of three planes span: with less, they do not say where they meet.
 constexpr double kLeastVolume = 0.1;
-// Cosine: a camera sees no more than 80 degrees from the middle of its view.
-constexpr double kWidest = 0.17;
+// Cosine: no image is wider than 80 degrees, or reaches farther than 50 from the middle of what it
+// holds. Corners of what was cut to a box do.
+constexpr double kOpposite = -0.17;
+constexpr double kWidest = 0.64;
+// Of cosines: how far the middle of an image may be off its axis, seen from one of its sides.
+constexpr double kUneven = 0.06;
 // Cosines: planes that differ by 1 degree go on to the same one; found ones that differ by 3.6 are
 // the same but for what a few points tilt.
 constexpr double kAlike = 0.9998;
@@ -287,7 +291,17 @@ Apex meetAt(const Vector& place, const std::vector<Bound>& bounds, double spacin
   return out;
 }
 
-// Of each three planes, those that most planes and points meet in first.
+// Whether two planes are opposite sides of an image and the third lies between them: it is tilted
+// towards both alike, as an image is a rectangle, by the sine of half the width times that of half
+// the height.
+bool areSides(const Bound& left, const Bound& right, const Bound& between) {
+  const double to_left = between.normal.dot(left.normal);
+  const double to_right = between.normal.dot(right.normal);
+  return left.normal.dot(right.normal) < kOpposite && to_left > 0.0 && to_right > 0.0 &&
+         to_left < 0.5 && to_right < 0.5 && std::fabs(to_left - to_right) < kUneven;
+}
+
+// Of each three planes that are sides of an image, those that most planes and points meet in first.
 std::vector<Apex> meetings(const std::vector<Bound>& bounds, double spacing) {
   std::vector<Apex> out;
   for (std::size_t a = 0; a < bounds.size(); ++a) {
@@ -297,6 +311,11 @@ std::vector<Apex> meetings(const std::vector<Bound>& bounds, double spacing) {
         normals << bounds[a].normal.transpose(), bounds[b].normal.transpose(),
             bounds[c].normal.transpose();
         if (std::fabs(normals.determinant()) < kLeastVolume) continue;
+        if (!areSides(bounds[a], bounds[b], bounds[c]) &&
+            !areSides(bounds[b], bounds[c], bounds[a]) &&
+            !areSides(bounds[c], bounds[a], bounds[b])) {
+          continue;
+        }
         const Vector offsets(bounds[a].offset, bounds[b].offset, bounds[c].offset);
         out.push_back(meetAt(normals.inverse() * offsets, bounds, spacing));
       }
