@@ -122,7 +122,7 @@ TEST(Apexes, ThinnedViewsFaceTheirCamera) {
     const View view = thinnedView(by, {7.0, -4.0, 9.0});
     const auto apexes = detail::findApexes(detail::FlatPoints(viewOf(view.xyz), 1), 1);
     const bool meets = std::any_of(apexes.begin(), apexes.end(), [&](const auto& apex) {
-      return distanceTo(apex, view.eye) < 0.05;  // a cell, in a view 6 wide
+      return distanceTo(apex.place, view.eye) < 0.05;  // a cell, in a view 6 wide
     });
     met += meets ? 1 : 0;
     const OrientedCloud cloud = orientCloud(viewOf(view.xyz), nullptr, {});

@@ -7,11 +7,6 @@
 #include "orientation/sensors/view_pyramid.h"
 
 namespace segorient::detail {
-namespace {
-
-
-}  // namespace
-
 const FlatPoints& CameraViews::flat() {
   if (!flat_) flat_.emplace(cloud_.points(), threads_);
   return *flat_;
@@ -20,14 +15,15 @@ const FlatPoints& CameraViews::flat() {
 const std::vector<RevealedPlace>& CameraViews::cameras() {
   if (cameras_) return *cameras_;
   cameras_.emplace();
-  for (const std::array<float, 3>& apex : findApexes(flat(), threads_)) {
-    const Shadows shadows = findShadows(flat(), apex, threads_, true);
-    if (shadows.reveal()) {
-      cameras_->push_back({apex, shadows});
+  for (const Apex& apex : findApexes(flat(), threads_)) {
+    const Shadows shadows = findShadows(flat(), apex.place, threads_, !apex.whole);
+    if (apex.whole ? !shadows.deny() : shadows.reveal()) {
+      cameras_->push_back({apex.place, shadows, apex.whole});
     }
   }
   std::stable_sort(cameras_->begin(), cameras_->end(),
                    [](const RevealedPlace& a, const RevealedPlace& b) {
+                     if (a.whole_image != b.whole_image) return a.whole_image;
                      return a.shadows.coveredOfSteps() < b.shadows.coveredOfSteps();
                    });
   return *cameras_;

@@ -16,6 +16,7 @@ namespace segorient::detail {
 struct RevealedPlace {
   std::array<float, 3> place;
   Shadows shadows;
+  bool whole_image = false;  ///< all four sides of an image meet in it
 };
 
 /// What steps of depth tell of a cloud, looked for once and only if somebody asks.
@@ -25,7 +26,8 @@ class CameraViews {
   CameraViews(const PreparedCloud& cloud, int threads) : cloud_(cloud), threads_(threads) {}
 
   const FlatPoints& flat();
-  /// Where the sides of an image meet and shadows reveal a sensor, those that hide least first.
+  /// Where the sides of an image meet: all four, and shadows do not deny a sensor; or three, and
+  /// they reveal one. The former, and of either those that hide least first.
   const std::vector<RevealedPlace>& cameras();
 
  private:

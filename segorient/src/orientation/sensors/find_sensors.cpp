@@ -237,6 +237,7 @@ SensorReport searchSensors(PreparedCloud& cloud, const SensorOptions& options, C
 void setRevealed(const RevealedPlace& revealed, const char* why, detail::SeenShadows& seen,
                  SensorReport& out) {
   seen.of_sensor = revealed.shadows;
+  seen.whole_image = revealed.whole_image;
   FoundSensor sensor;
   sensor.evidence = SensorEvidence::SHADOWS;
   sensor.position = revealed.place;
@@ -302,6 +303,46 @@ void lookForShadows(const PreparedCloud& cloud, const SensorOptions& options, Ca
   }
 }
 
+// The suggestion that is in that place, as far as its sides tell.
+std::optional<std::array<float, 3>> suggestedAt(
+    const std::array<float, 3>& place, const std::vector<std::array<float, 3>>& suggestions,
+    const std::array<float, 3>& middle) {
+  constexpr double kSamePlace = 0.05;  // of the distance
+  const std::array<double, 3> apex = inDouble(place.data());
+  const double reach = kSamePlace * detail::distance(apex, inDouble(middle.data()));
+  for (const std::array<float, 3>& s : suggestions) {
+    if (detail::distance(apex, inDouble(s.data())) < reach) return s;
+  }
+  return std::nullopt;
+}
+
+// In the unit of the cloud. All four sides of an image tell of its camera, whatever else is there
+// to tell; of three, densities and shadows have to tell as well.
+SensorReport searchPositions(PreparedCloud& cloud, const SensorOptions& options,
+                             detail::SeenShadows& seen) {
+  SensorOptions scaled = options;
+  for (std::array<float, 3>& s : scaled.suggestions) s = cloud.inUnit(s);
+  CameraViews views(cloud, options.threads);
+  std::optional<RevealedPlace> whole;
+  if (options.search && !views.cameras().empty() && views.cameras().front().whole_image) {
+    whole = views.cameras().front();
+  }
+  std::optional<std::array<float, 3>> suggested;
+  if (whole) suggested = suggestedAt(whole->place, scaled.suggestions, views.flat().middle());
+  SensorReport out;
+  if (!whole || suggested) {
+    out = searchSensors(cloud, scaled, views);
+    lookForShadows(cloud, options, views, seen, out);
+    if (!whole || out.sure()) return out;
+    whole->place = *suggested;
+  }
+  out.sensor_of.assign(cloud.size(), 0);
+  setRevealed(*whole, "the sides of an image meet in one place", seen, out);
+  setCamera(views.flat(), out.sensors[0]);
+  out.sensors[0].suggested = suggested.has_value();
+  return out;
+}
+
 }  // namespace
 
 SensorReport detail::sensorsOf(const PointView& points, PreparedCloud& cloud,
@@ -313,11 +354,7 @@ SensorReport detail::sensorsOf(const PointView& points, PreparedCloud& cloud,
     out.sensor_of.resize(cloud.size());
     setOnly(*camera, "the rays of the image meet in one place", out);
   } else {
-    SensorOptions scaled = options;
-    for (std::array<float, 3>& s : scaled.suggestions) s = cloud.inUnit(s);
-    detail::CameraViews views(cloud, options.threads);
-    out = searchSensors(cloud, scaled, views);
-    lookForShadows(cloud, options, views, shadows, out);
+    out = searchPositions(cloud, options, shadows);
     for (FoundSensor& s : out.sensors) {
       for (float& v : s.position) v *= cloud.unit();
     }

@@ -149,7 +149,7 @@ class Finder {
     const bool denied =
         report.density > kDenied && density.constant > kVaries && std::isfinite(report.density);
     if (out_.one_place) {
-      out_.confirmed = hints_.place.shadows.reveal();
+      out_.confirmed = hints_.place.shadows.reveal() || hints_.place.whole_image;
       out_.allowed = hints_.place.shadows.allow();
       out_.hides = hides && !out_.allowed;
       out_.in_a_room = !hides && hints_.place.shadows.inARoom();

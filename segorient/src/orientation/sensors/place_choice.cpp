@@ -54,6 +54,7 @@ PlaceChoice findOthers(const PointView& points, OrientationHints hints, Prepared
   if (out.sensors.sensors.empty()) out.sensors.sensor_of = {};
   out.hints = std::move(hints);
   out.place.shadows = seen.of_sensor;
+  out.place.whole_image = seen.whole_image;
   return out;
 }
 
@@ -80,7 +81,7 @@ PlaceChoice choosePlaces(const PointView& points, const OrientationHints& given,
   others.suggested.push_back(*place);
   PlaceChoice found = findOthers(points, std::move(others), cloud, threads, seen);
   // What only shadows tell of turns nobody away whom they do not deny.
-  const bool by_shadows = found.sensors.sure() &&
+  const bool by_shadows = found.sensors.sure() && !found.place.whole_image &&
                           found.sensors.sensors[0].evidence == SensorEvidence::SHADOWS &&
                           !as_given.place.shadows.deny();
   if (!by_shadows && contradictsPlace(cloud, found.sensors, *place)) {

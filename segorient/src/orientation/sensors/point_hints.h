@@ -24,6 +24,8 @@ struct CloudPlace {
   bool found = false;
   /// Whether nobody knows a place, but all of it is one surface over the ground, see SensorReport.
   bool faces_up = false;
+  /// Whether all four sides of an image meet in it.
+  bool whole_image = false;
   /// Whether a search found places along a sensor's way, which are near the true ones only: what
   /// is hidden from them, and how dense their own points are, says little.
   bool along_way = false;

@@ -19,6 +19,8 @@ struct SeenShadows {
   std::optional<std::array<float, 3>> nothing_at;
   /// Found: those that told of a sensor; no steps where something else did.
   Shadows of_sensor;
+  /// Found: all four sides of an image meet in the sensor.
+  bool whole_image = false;
 };
 
 /// findSensors() of a cloud that is prepared.

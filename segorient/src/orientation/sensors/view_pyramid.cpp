@@ -35,8 +35,8 @@ constexpr double kCut = 1.0 / 3.0;
 // In extents: where a plane cuts a view of the scene, there are so many points one behind the other
 // at most. Faces that lie in a plane have many more.
 constexpr double kLongest = 8.0;
-// Of the planes that cut, those with most points; of the places that three of them meet in, those
-// that most planes and points meet in.
+// Of the planes that cut, those with most points; of the places that sides of an image meet
+// in, those that most planes and points meet in.
 constexpr std::size_t kMostPlanes = 10;
 constexpr std::size_t kMostApexes = 8;
 // Volume that the normals of three planes span: with less, they do not say where they meet.
@@ -269,27 +269,17 @@ class BoundFinder {
   double coarse_ = 0.0;
 };
 
-struct Apex {
+struct Meeting {
   Vector place = Vector::Zero();
+  bool whole = false;
   std::size_t sides = 0;
   std::size_t touching = 0;
-};
 
-// Where all planes meet that pass a place within a spacing.
-Apex meetAt(const Vector& place, const std::vector<Bound>& bounds, double spacing) {
-  Apex out;
-  Eigen::Matrix3d normals = Eigen::Matrix3d::Zero();
-  Vector offsets = Vector::Zero();
-  for (const Bound& b : bounds) {
-    if (std::fabs(b.normal.dot(place) - b.offset) > spacing) continue;
-    ++out.sides;
-    out.touching += b.touching;
-    normals += b.normal * b.normal.transpose();
-    offsets += b.offset * b.normal;
+  bool operator<(const Meeting& o) const {
+    if (whole != o.whole) return whole;
+    return sides != o.sides ? sides > o.sides : touching > o.touching;
   }
-  out.place = normals.ldlt().solve(offsets);
-  return out;
-}
+};
 
 // Whether two planes are opposite sides of an image and the third lies between them: it is tilted
 // towards both alike, as an image is a rectangle, by the sine of half the width times that of half
@@ -301,29 +291,58 @@ bool areSides(const Bound& left, const Bound& right, const Bound& between) {
          to_left < 0.5 && to_right < 0.5 && std::fabs(to_left - to_right) < kUneven;
 }
 
-// Of each three planes that are sides of an image, those that most planes and points meet in first.
-std::vector<Apex> meetings(const std::vector<Bound>& bounds, double spacing) {
-  std::vector<Apex> out;
+// Whether the side across from the one between two opposite ones is there as well.
+bool isWhole(const Bound& left, const Bound& right, const Bound& between,
+             const std::vector<Bound>& sides) {
+  return std::any_of(sides.begin(), sides.end(), [&](const Bound& other) {
+    return areSides(left, right, other) && areSides(between, other, left) &&
+           areSides(between, other, right);
+  });
+}
+
+// Where all planes meet that pass a place within a spacing.
+Meeting meetAt(const Vector& place, const std::vector<Bound>& bounds, double spacing,
+               std::vector<Bound>& sides) {
+  Meeting out;
+  sides.clear();
+  Eigen::Matrix3d normals = Eigen::Matrix3d::Zero();
+  Vector offsets = Vector::Zero();
+  for (const Bound& b : bounds) {
+    if (std::fabs(b.normal.dot(place) - b.offset) > spacing) continue;
+    sides.push_back(b);
+    out.touching += b.touching;
+    normals += b.normal * b.normal.transpose();
+    offsets += b.offset * b.normal;
+  }
+  out.sides = sides.size();
+  out.place = normals.ldlt().solve(offsets);
+  return out;
+}
+
+// Of each three planes that are sides of an image.
+std::vector<Meeting> meetings(const std::vector<Bound>& bounds, double spacing) {
+  std::vector<Meeting> out;
+  std::vector<Bound> sides;
+  // \param third between the other two
+  const auto add = [&](const Bound& first, const Bound& second, const Bound& third) {
+    if (!areSides(first, second, third)) return;
+    Eigen::Matrix3d normals;
+    normals << first.normal.transpose(), second.normal.transpose(), third.normal.transpose();
+    if (std::fabs(normals.determinant()) < kLeastVolume) return;
+    const Vector offsets(first.offset, second.offset, third.offset);
+    out.push_back(meetAt(normals.inverse() * offsets, bounds, spacing, sides));
+    out.back().whole = isWhole(first, second, third, sides);
+  };
   for (std::size_t a = 0; a < bounds.size(); ++a) {
     for (std::size_t b = a + 1; b < bounds.size(); ++b) {
       for (std::size_t c = b + 1; c < bounds.size(); ++c) {
-        Eigen::Matrix3d normals;
-        normals << bounds[a].normal.transpose(), bounds[b].normal.transpose(),
-            bounds[c].normal.transpose();
-        if (std::fabs(normals.determinant()) < kLeastVolume) continue;
-        if (!areSides(bounds[a], bounds[b], bounds[c]) &&
-            !areSides(bounds[b], bounds[c], bounds[a]) &&
-            !areSides(bounds[c], bounds[a], bounds[b])) {
-          continue;
-        }
-        const Vector offsets(bounds[a].offset, bounds[b].offset, bounds[c].offset);
-        out.push_back(meetAt(normals.inverse() * offsets, bounds, spacing));
+        add(bounds[a], bounds[b], bounds[c]);
+        add(bounds[b], bounds[c], bounds[a]);
+        add(bounds[c], bounds[a], bounds[b]);
       }
     }
   }
-  std::stable_sort(out.begin(), out.end(), [](const Apex& a, const Apex& b) {
-    return a.sides != b.sides ? a.sides > b.sides : a.touching > b.touching;
-  });
+  std::stable_sort(out.begin(), out.end());
   return out;
 }
 
@@ -341,7 +360,7 @@ bool seesAll(const FlatPoints& flat, const Vector& place, const Vector& middle) 
 
 }  // namespace
 
-std::vector<std::array<float, 3>> findApexes(const FlatPoints& flat, int threads) {
+std::vector<Apex> findApexes(const FlatPoints& flat, int threads) {
   // With fewer points, few lie on a side.
   constexpr std::size_t kLeastPoints = 500;
   if (flat.size() < kLeastPoints) return {};
@@ -352,17 +371,16 @@ std::vector<std::array<float, 3>> findApexes(const FlatPoints& flat, int threads
   const std::array<float, 3> m = flat.middle();
   const Vector middle = Eigen::Vector3f(m[0], m[1], m[2]).cast<double>();
   std::vector<Vector> places;
-  for (const Apex& apex : meetings(bounds, finder.spacing())) {
+  std::vector<Apex> out;
+  for (const Meeting& meeting : meetings(bounds, finder.spacing())) {
     const bool known = std::any_of(places.begin(), places.end(), [&](const Vector& p) {
-      return (p - apex.place).norm() < kElsewhere * (apex.place - middle).norm();
+      return (p - meeting.place).norm() < kElsewhere * (meeting.place - middle).norm();
     });
-    if (known || !seesAll(flat, apex.place, middle)) continue;
-    places.push_back(apex.place);
-    if (places.size() == kMostApexes) break;
-  }
-  std::vector<std::array<float, 3>> out;
-  for (const Vector& p : places) {
-    out.push_back({static_cast<float>(p[0]), static_cast<float>(p[1]), static_cast<float>(p[2])});
+    if (known || !seesAll(flat, meeting.place, middle)) continue;
+    places.push_back(meeting.place);
+    const Eigen::Vector3f place = meeting.place.cast<float>();
+    out.push_back({{place[0], place[1], place[2]}, meeting.whole});
+    if (out.size() == kMostApexes) break;
   }
   return out;
 }
