@@ -90,8 +90,8 @@ TEST(Shares, WhatEitherSideMayHaveSeenIsNotTold) {
     hints.sensors.insert(hints.sensors.end(), {i < n / 2 ? 1.F : 5.F, 3.F, 4.F});
   }
   EXPECT_EQ(know(rows, hints).scans[0].seen, n / 2);
-  hints.place.either_side.assign(n, 0);
-  for (std::size_t i = 0; i < n; i += 4) hints.place.either_side[i] = 1;
+  hints.either_side.assign(n, 0);
+  for (std::size_t i = 0; i < n; i += 4) hints.either_side[i] = 1;
   const detail::KnownSensors known = know(rows, hints);
   ASSERT_EQ(known.scans.size(), 2U);
   EXPECT_EQ(known.scans[0].points, n / 2);
@@ -107,11 +107,11 @@ TEST(Shares, WhatIsNotToldIsEvidenceAgainstPlacesAllTheSame) {
   const std::vector<float> rows = grid();
   const std::size_t n = rows.size() / 3;
   PointHints hints;
-  hints.place.either_side.assign(n, 0);
+  hints.either_side.assign(n, 0);
   for (std::size_t i = 0; i < n; ++i) {
     const bool from_below = i % 7 == 0;
     hints.sensors.insert(hints.sensors.end(), {3.F, 3.F, from_below ? -4.F : 4.F});
-    if (from_below) hints.place.either_side[i] = 1;
+    if (from_below) hints.either_side[i] = 1;
   }
   EXPECT_TRUE(detail::seeBothSides(know(rows, hints).scans));
 }

@@ -106,6 +106,7 @@ class AutomaticRun {
     PlaceChoice choice = choose(hints);
     PointHints known = resolveHints(choice.hints ? *choice.hints : hints, cloud_);
     known.place = choice.place;
+    known.either_side = std::move(choice.either_side);
     if (choice.refused) report_.known_sensors.push_back(*choice.refused);
     if (choice.hiding) hiding_ = std::move(choice.hiding);
     report_.sensors = std::move(choice.sensors);

@@ -56,8 +56,8 @@ class Finder {
     for (std::size_t s = 0; s < out_.scans.size(); ++s) look(s);
     if (!out_.allowed && (out_.scans.size() > 1 || !out_.common)) compare();
     // Last, as places that were found by chance contradict themselves most there.
-    for (std::size_t i = 0; i < hints_.place.either_side.size(); ++i) {
-      if (hints_.place.either_side[i] != 0) std::fill_n(&out_.toward[3 * i], 3, 0.F);
+    for (std::size_t i = 0; i < hints_.either_side.size(); ++i) {
+      if (hints_.either_side[i] != 0) std::fill_n(&out_.toward[3 * i], 3, 0.F);
     }
     out_.countSeen();
     return std::move(out_);

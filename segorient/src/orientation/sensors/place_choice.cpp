@@ -44,7 +44,7 @@ PlaceChoice findOthers(const PointView& points, OrientationHints hints, Prepared
   // What one layer told is not to be told by others again, which know nothing of trees.
   out.place.found = out.sensors.sure() && out.sensors.sensors[0].evidence == SensorEvidence::LAYERS;
   out.place.along_way = out.sensors.sure() && out.sensors.sensors[0].kind == SensorKind::MOVING;
-  out.place.either_side = ofPoints(out.sensors.either_side, cloud);
+  out.either_side = ofPoints(out.sensors.either_side, cloud);
   // Whoever names a side of a sheet means it.
   if (out.sensors.faces_up && !hints.seeds.empty()) {
     out.sensors.faces_up = false;

@@ -6,7 +6,9 @@
 #include <segorient/common/point_view.h>
 #include <segorient/orientation/sensors.h>
 
+#include <cstdint>
 #include <optional>
+#include <vector>
 
 #include "orientation/sensors/hiding_place.h"
 #include "orientation/sensors/point_hints.h"
@@ -17,7 +19,8 @@ namespace segorient::detail {
 struct PlaceChoice {
   /// What is followed in the place of what was given; none = that as it is.
   std::optional<OrientationHints> hints;
-  CloudPlace place;  ///< the one that is followed
+  CloudPlace place;                       ///< the one that is followed
+  std::vector<std::uint8_t> either_side;  ///< as PointHints has it
   /// Of a search that nobody's knowledge made needless.
   SensorReport sensors;
   std::optional<KnownSensor> refused;  ///< a place that others were found instead of

@@ -29,8 +29,6 @@ struct CloudPlace {
   /// Whether a search found places along a sensor's way, which are near the true ones only: what
   /// is hidden from them, and how dense their own points are, says little.
   bool along_way = false;
-  /// By distinct point: see SensorReport::either_side.
-  std::vector<std::uint8_t> either_side;
 };
 
 /// OrientationHints by distinct point, in the unit of a PreparedCloud.
@@ -46,6 +44,8 @@ struct PointHints {
   CloudPlace place;
   /// 3 floats a point: where it was seen from, NaN = unknown; empty = none
   std::vector<float> sensors;
+  /// One a point: see SensorReport::either_side; empty = none
+  std::vector<std::uint8_t> either_side;
   /// Whether the points are an even sample of those that were seen: density tells nothing.
   bool even_sample = false;
   /// The scan that each point is of, -1 = unknown; empty unless places are given by point.
