@@ -40,6 +40,7 @@ void forEachNumber(P& p, const Visit& visit) {
   visit(p.place.found);
   visit(p.place.faces_up);
   visit(p.place.along_way);
+  visit(p.place.whole_image);
   visit(p.place_refused);
   visit(p.memory);
   visit(p.keep_orientation);

@@ -316,8 +316,8 @@ std::optional<std::array<float, 3>> suggestedAt(
   return std::nullopt;
 }
 
-// In the unit of the cloud. All four sides of an image tell of its camera, whatever else is there
-// to tell; of three, densities and shadows have to tell as well.
+// In the unit of the cloud. All four sides of an image tell of its camera, unless that is where
+// somebody suggested; of three, densities and shadows have to tell as well.
 SensorReport searchPositions(PreparedCloud& cloud, const SensorOptions& options,
                              detail::SeenShadows& seen) {
   SensorOptions scaled = options;
@@ -332,7 +332,7 @@ SensorReport searchPositions(PreparedCloud& cloud, const SensorOptions& options,
   SensorReport out;
   if (!whole || suggested) {
     out = searchSensors(cloud, scaled, views);
-    lookForShadows(cloud, options, views, seen, out);
+    if (!whole) lookForShadows(cloud, options, views, seen, out);
     if (!whole || out.sure()) return out;
     whole->place = *suggested;
   }

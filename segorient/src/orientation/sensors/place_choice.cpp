@@ -81,7 +81,7 @@ PlaceChoice choosePlaces(const PointView& points, const OrientationHints& given,
   others.suggested.push_back(*place);
   PlaceChoice found = findOthers(points, std::move(others), cloud, threads, seen);
   // What only shadows tell of turns nobody away whom they do not deny.
-  const bool by_shadows = found.sensors.sure() && !found.place.whole_image &&
+  const bool by_shadows = found.sensors.sure() &&
                           found.sensors.sensors[0].evidence == SensorEvidence::SHADOWS &&
                           !as_given.place.shadows.deny();
   if (!by_shadows && contradictsPlace(cloud, found.sensors, *place)) {

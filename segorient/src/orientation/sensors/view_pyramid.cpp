@@ -95,12 +95,17 @@ class Columns {
       }
     }
     highest_ = *std::max_element(most, most + kLanes);
-    for (std::size_t i = 0; i < size_; ++i) h[i] = highest_ - h[i];
+    for (std::size_t i = 0; i < count_; ++i) h[i] = highest_ - h[i];
+    std::fill(behind_.begin() + static_cast<std::ptrdiff_t>(count_), behind_.end(),
+              std::numeric_limits<float>::max());
   }
 
   std::size_t size() const { return count_; }
   double highest() const { return static_cast<double>(highest_); }
-  float farthest() const { return *std::max_element(behind_.begin(), behind_.end()); }
+  float farthest() const {
+    return *std::max_element(behind_.begin(),
+                             behind_.begin() + static_cast<std::ptrdiff_t>(count_));
+  }
 
   std::size_t countWithin(double from, double to) const {
     const auto low = static_cast<float>(from);
@@ -155,7 +160,7 @@ class BoundFinder {
     std::vector<float> spacings;
     for (std::size_t i = 0; i < flat.size(); ++i) spacings.push_back(flat.spacing(i));
     const auto all = static_cast<double>(flat.size());
-    const auto some = static_cast<double>(std::min(flat.size(), kPoints));
+    const auto some = static_cast<double>(points_.size());
     spacing_ = static_cast<double>(median(std::move(spacings))) * std::sqrt(all / some);
     double square = 0.0;
     for (int a = 0; a < 3; ++a) {

@@ -14,7 +14,7 @@ namespace segorient::detail {
 /// Where sides of a camera's image meet.
 struct Apex {
   std::array<float, 3> place{0.F, 0.F, 0.F};  ///< in the points' unit
-  bool whole = false;                         ///< all four sides do
+  bool whole = false;                         ///< all four sides meet here
 };
 
 /// Places that one camera may have seen all points from: the sides of its image are planes through
