@@ -7,6 +7,7 @@
 #include "orientation/sensors/view_pyramid.h"
 
 namespace segorient::detail {
+
 const FlatPoints& CameraViews::flat() {
   if (!flat_) flat_.emplace(cloud_.points(), threads_);
   return *flat_;

@@ -52,19 +52,32 @@ FoundSensor describe(const FittedPlace& fitted, float constant, bool suggested) 
   return out;
 }
 
-// The suggestion that fits best, if one does.
+// Of some places the one that fits best, if one leaves no more than `most`.
+class BestFit {
+ public:
+  BestFit(const DensityPatches& patches, float most) : patches_(patches), most_(most) {}
+  void add(const std::array<double, 3>& position) {
+    const FittedPlace fitted = detail::fitAt(patches_, position);
+    if (fitted.cost > most_) return;
+    if (!best_ || fitted.cost < best_->cost) best_ = fitted;
+  }
+  const std::optional<FittedPlace>& get() const { return best_; }
+
+ private:
+  const DensityPatches& patches_;
+  float most_;
+  std::optional<FittedPlace> best_;
+};
+
 std::optional<FittedPlace> trySuggestions(const DensityPatches& patches, float constant,
                                           const SensorOptions& options) {
   const detail::Extent extent = detail::extentOf(patches);
-  std::optional<FittedPlace> best;
+  BestFit best(patches, kSureSuggested * constant);
   for (const std::array<float, 3>& s : options.suggestions) {
     const std::array<double, 3> position = inDouble(s.data());
-    if (!extent.holds(position, kFarthest * extent.diagonal())) continue;
-    const FittedPlace fitted = detail::fitAt(patches, position);
-    if (fitted.cost > kSureSuggested * constant) continue;
-    if (!best || fitted.cost < best->cost) best = fitted;
+    if (extent.holds(position, kFarthest * extent.diagonal())) best.add(position);
   }
-  return best;
+  return best.get();
 }
 
 // The one that saw all points.
@@ -89,45 +102,39 @@ bool betters(const FittedPlace& found, const FittedPlace& suggested, float const
          2 * detail::countTurned(patches, found, suggested) > patches.size();
 }
 
-// The camera that fits best, if densities are sure of one.
+// Cameras of which densities are sure.
 std::optional<FittedPlace> tryCameras(const DensityPatches& patches, float constant,
                                       const std::vector<RevealedPlace>& cameras) {
-  std::optional<FittedPlace> best;
-  for (const RevealedPlace& camera : cameras) {
-    const FittedPlace fitted = detail::fitAt(patches, inDouble(camera.place.data()));
-    if (fitted.cost > detail::kSureFound * constant) continue;
-    if (!best || fitted.cost < best->cost) best = fitted;
-  }
-  return best;
+  BestFit best(patches, detail::kSureFound * constant);
+  for (const RevealedPlace& camera : cameras) best.add(inDouble(camera.place.data()));
+  return best.get();
 }
 
-// The best of all places; of those that explain about as much, a camera that the sides of an image
-// and shadows tell of.
-std::optional<FittedPlace> searchAll(const DensityPatches& patches, float constant,
-                                     const std::optional<FittedPlace>& camera, int threads) {
-  const std::optional<FittedPlace> found = detail::searchStation(patches, constant, threads);
-  return camera && !(found && explainsFarMore(*found, *camera, constant)) ? camera : found;
-}
+struct FoundPlace {
+  FoundSensor sensor;
+  bool by_image = false;  // it is where the sides of an image meet
+};
 
-// \param cameras of which an image tells; empty = none
-// \param[out] by_image whether it is one of these
-FoundSensor findStation(const DensityPatches& patches, float constant, const SensorOptions& options,
-                        const std::vector<RevealedPlace>& cameras, bool& by_image) {
-  by_image = false;
+// \param cameras that the sides of an image and shadows tell of: where they explain densities about
+//        as well as the best of all places, they are that
+FoundPlace findStation(const DensityPatches& patches, float constant, const SensorOptions& options,
+                       const std::vector<RevealedPlace>& cameras) {
   const std::optional<FittedPlace> suggested = trySuggestions(patches, constant, options);
   const std::optional<FittedPlace> camera = tryCameras(patches, constant, cameras);
   std::optional<FittedPlace> found;
+  bool by_image = false;
   if (options.search) {
-    found = searchAll(patches, constant, camera, options.threads);
+    found = detail::searchStation(patches, constant, options.threads);
+    by_image = camera && !(found && explainsFarMore(*found, *camera, constant));
+    if (by_image) found = camera;
   } else if (suggested) {
     found = detail::fitBeside(patches, *suggested);
   }
   if (suggested && !(found && betters(*found, *suggested, constant, patches))) {
-    return describe(*suggested, constant, true);
+    return {describe(*suggested, constant, true), false};
   }
   if (!found || !options.search) return {};
-  by_image = camera && found->place.position == camera->place.position;
-  return describe(*found, constant, false);
+  return {describe(*found, constant, false), by_image};
 }
 
 // Whether a place is under the cloud's ground, about as far away as that is wide: of what a camera
@@ -161,8 +168,7 @@ void lookForUpperSide(PreparedCloud& cloud, const DensityPatches& patches,
 bool searchPlaces(const detail::SceneFrame& frame, bool has_axes, const DensityPatches& patches,
                   PreparedCloud& cloud, const SensorOptions& options,
                   const std::vector<RevealedPlace>& cameras, SensorReport& out) {
-  bool by_image = false;
-  FoundSensor sensor = findStation(frame.into(patches), out.deviation, options, cameras, by_image);
+  auto [sensor, by_image] = findStation(frame.into(patches), out.deviation, options, cameras);
   frame.back(sensor);
   // Several stations around a body, most points from one of them, look like one at some place, and
   // somewhat like one at many.
@@ -233,7 +239,7 @@ SensorReport searchSensors(PreparedCloud& cloud, const SensorOptions& options, C
   return searchUpright(patches, cloud, options, views, out);
 }
 
-// A place that shadows reveal, in the cloud's unit.
+// A place in the cloud's unit that shadows reveal, or allow where a whole image tells of it.
 void setRevealed(const RevealedPlace& revealed, const char* why, detail::SeenShadows& seen,
                  SensorReport& out) {
   seen.of_sensor = revealed.shadows;
@@ -261,8 +267,7 @@ std::optional<RevealedPlace> trySuggestedShadows(const PreparedCloud& cloud,
   return std::nullopt;
 }
 
-// Whether a camera, which hides points as rarely as chance has it, shows that a suggested place
-// that hides some is no more than allowed.
+// Whether far fewer points go on behind shadows of a camera than behind those of a suggested place.
 bool hidesFarLess(const std::vector<RevealedPlace>& cameras, const RevealedPlace& suggested) {
   return !cameras.empty() && cameras.front().shadows.coveredOfSteps() <
                                  detail::kMuchBetter * suggested.shadows.coveredOfSteps();
@@ -316,8 +321,8 @@ std::optional<std::array<float, 3>> suggestedAt(
   return std::nullopt;
 }
 
-// In the unit of the cloud. All four sides of an image tell of its camera, unless that is where
-// somebody suggested; of three, densities and shadows have to tell as well.
+// In the unit of the cloud. All four sides of an image tell of its camera if shadows allow it.
+// Where that is a suggestion, densities are asked first, as they say more of it.
 SensorReport searchPositions(PreparedCloud& cloud, const SensorOptions& options,
                              detail::SeenShadows& seen) {
   SensorOptions scaled = options;

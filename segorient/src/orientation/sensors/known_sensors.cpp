@@ -55,7 +55,8 @@ class Finder {
     point(sensors);
     for (std::size_t s = 0; s < out_.scans.size(); ++s) look(s);
     if (!out_.allowed && (out_.scans.size() > 1 || !out_.common)) compare();
-    // Last, as places that were found by chance contradict themselves most there.
+    // After the scans were compared: of places that explain densities by chance only, it is such
+    // points that show it.
     for (std::size_t i = 0; i < hints_.either_side.size(); ++i) {
       if (hints_.either_side[i] != 0) std::fill_n(&out_.toward[3 * i], 3, 0.F);
     }
@@ -198,12 +199,12 @@ class Finder {
     }
     // Poses that were mixed up are wrong together: where one is refused, others need more than that
     // nothing contradicts them.
-    const bool mixed_up = std::any_of(out_.scans.begin(), out_.scans.end(),
-                                      [](const KnownSensor& scan) { return !scan.used; });
+    const bool mixed_up =
+        !hints_.place.along_way && std::any_of(out_.scans.begin(), out_.scans.end(),
+                                               [](const KnownSensor& scan) { return !scan.used; });
     for (std::size_t s = 0; mixed_up && s < n; ++s) {
       KnownSensor& scan = out_.scans[s];
       if (!scan.used || scan.moving || scan.density < kConfirmed) continue;
-      if (hints_.place.along_way) continue;
       const Shadows& shadows = shadowsOf(s);
       scan.used = hints_.even_sample ? !shadows.deny() : shadows.confirm();
     }
@@ -271,8 +272,7 @@ bool seeBothSides(PreparedCloud& cloud, const PointHints& hints, int threads) {
   const Neighborhoods& nb = cloud.neighborhoods();
   std::vector<float> spacing(cloud.size(), 0.F);
   for (std::size_t i = 0; i < spacing.size(); ++i) {
-    const int count = std::min(nb.count(i) - 1, kFirstRing);
-    spacing[i] = meanDistance(cloud.points(), i, nb.indices(i) + 1, count);
+    spacing[i] = meanDistance(cloud.points(), nb, i, kFirstRing);
   }
   return seeBothSides(findKnownSensors(cloud.points(), nb, spacing.data(), hints, threads).scans);
 }

@@ -32,8 +32,8 @@ constexpr std::size_t kFewest = 30;
 // What a plane cuts comes up to it with as many points in its last spacing as in the one before,
 // about; of what it only touches far fewer do.
 constexpr double kCut = 1.0 / 3.0;
-// In extents: where a plane cuts a view of the scene, there are so many points one behind the other
-// at most. Faces that lie in a plane have many more.
+// In extents: points that touch a plane would make a chain of that length, a spacing between two,
+// where it cuts a view of the scene. Faces that lie in a plane have many more.
 constexpr double kLongest = 8.0;
 // Of the planes that cut, those with most points; of the places that sides of an image meet
 // in, those that most planes and points meet in.
@@ -45,7 +45,8 @@ constexpr double kLeastVolume = 0.1;
 // holds. Corners of what was cut to a box do.
 constexpr double kOpposite = -0.17;
 constexpr double kWidest = 0.64;
-// Of cosines: how far the middle of an image may be off its axis, seen from one of its sides.
+// Of cosines: what a side between two others may be tilted more towards one of them, as the axis of
+// a camera need not be in the middle of its image.
 constexpr double kUneven = 0.06;
 // Cosines: planes that differ by 1 degree go on to the same one; found ones that differ by 3.6 are
 // the same but for what a few points tilt.
@@ -305,7 +306,7 @@ bool isWhole(const Bound& left, const Bound& right, const Bound& between,
   });
 }
 
-// Where all planes meet that pass a place within a spacing.
+// Where all planes meet that pass a place within a spacing. \param[out] sides these planes
 Meeting meetAt(const Vector& place, const std::vector<Bound>& bounds, double spacing,
                std::vector<Bound>& sides) {
   Meeting out;
