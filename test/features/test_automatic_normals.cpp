@@ -197,6 +197,32 @@ TEST(AutomaticNormals, ScanLines) {
   }
 }
 
+// A cylinder seen by lines around it, twelve times as far apart as their points, which scatter a
+// little across the line: the bend along the line turns planes and triangles of few neighbours.
+TEST(AutomaticNormals, NeighborsOfOneLineTellNoNormal) {
+  Sample sample;
+  std::mt19937 rng(8);
+  std::uniform_real_distribution<float> jitter(-0.001F, 0.001F);
+  for (int line = 0; line < 20; ++line) {
+    for (int i = 0; i < 500; ++i) {
+      const float angle =
+          6.2831853F * (static_cast<float>(i) + 0.1F * static_cast<float>(line)) / 500.F;
+      const Eigen::Vector3f out{std::cos(angle), std::sin(angle), 0.F};
+      sample.add({out.x(), out.y(), 0.15F * static_cast<float>(line) + jitter(rng)}, out);
+    }
+  }
+  search::MedianHashIndex index;
+  index.build(sample.view(), nullptr, {});
+  std::vector<float> found(4 * sample.normals.size());
+  for (const int k : {12, 32}) {
+    const AutomaticNormalReport report = estimateNormalsAutomatically(
+        sample.view(), index, neighborsOf(sample.view(), k), 0, found.data());
+    EXPECT_TRUE(report.traits.lines);
+    EXPECT_LT(rmsDegrees(sample, found), 1.0) << k;
+  }
+  EXPECT_FALSE(automatic(torus(6000, 6)).report.traits.lines);
+}
+
 TEST(AutomaticNormals, SeekMoreNeighborsWhereTheNoiseAsks) {
   for (const float noise : {0.F, 0.4F}) {
     const Sample sample = torus(6000, 6, noise * torusSpacing(6000));

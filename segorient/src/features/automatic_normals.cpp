@@ -144,7 +144,7 @@ AutomaticNormalReport estimateNormalsAutomatically(const PointView& points,
   const int wanted = neighborsFor(noise);
   const auto estimate = [&](const Neighborhoods& table) {
     const Surroundings of{points, points, table};
-    return SurfaceEstimation(of, noise, known, threads, normals, rows).run(unexplained);
+    return SurfaceEstimation(of, noise, known, threads, normals, rows, &index).run(unexplained);
   };
   const bool all = static_cast<std::size_t>(neighborhoods.k()) >= points.size;
   if (all || neighborhoods.k() > wanted) return estimate(neighborhoods);
@@ -171,6 +171,7 @@ std::string AutomaticNormalReport::text() const {
     out << planes << " of them by planes of " << detail::kPlaneNeighbors << " and the others ";
   const char* others = cubic ? "cubic surfaces" : "quadratic surfaces";
   out << "by " << (triangulated ? "local Delaunay triangulation" : others) << " of " << edge_k;
+  if (lined > 0) out << " or, along lines of a scan, planes across them";
   if (undefined > 0) out << ", " << undefined << " without a normal";
   return out.str();
 }

@@ -21,6 +21,7 @@ struct AutomaticNormalTraits {
   detail::CloudNoise noise;
   bool analytic = false;     ///< so smooth that cubic surfaces are nearer at most points
   bool cubic_edges = false;  ///< whether cubic surfaces fit most points at edges better
+  bool lines = false;        ///< whether points without noise lie on a scanner's lines
 };
 
 /// What estimateNormalsAutomatically() found out about a cloud, and what it chose.
@@ -32,6 +33,7 @@ struct AutomaticNormalReport {
   std::size_t at_edges = 0;      ///< the points left
   std::size_t planes = 0;        ///< of these, those that a plane of six neighbours does fit
   int edge_k = 0;                ///< neighbourhood used at the others
+  std::size_t lined = 0;         ///< the others' points that got planes across a scanner's lines
   bool triangulated = false;     ///< by local Delaunay triangulation, ...
   bool cubic = false;            ///< ... by cubic surfaces, else by the smallest quadratic ones
   std::size_t undefined = 0;     ///< points without a normal
@@ -51,7 +53,9 @@ constexpr int kMostAutomaticNeighbors = 64;
 /// without noise the surface follows the neighbours so much better than a plane that it is a bend
 /// between few points. At edges a clean cloud gets planes of six neighbours where these are all on
 /// one side, else local Delaunay triangulations, which smooth least, and a noisy one cubic surfaces
-/// if these fit most such points better, else the smallest quadratic ones.
+/// if these fit most such points better, else the smallest quadratic ones. In a clean cloud that a
+/// scanner saw by lines, neighbours that are all of one line tell no normal, however well something
+/// fits them: such points get the plane of as few neighbours as spread in two directions.
 ///
 /// \param points distinct points \param neighborhoods of them, the wider the table the better up to
 ///        kMostAutomaticNeighbors; with a narrow one noisy clouds are served less well

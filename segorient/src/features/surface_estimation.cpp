@@ -3,9 +3,12 @@
 #include "features/surface_estimation.h"
 
 #include <algorithm>
+#include <iterator>
 #include <limits>
 #include <numeric>
 
+#include "features/scan_scale.h"
+#include "features/spread_planes.h"
 #include "features/surface_sizes.h"
 
 namespace segorient::detail {
@@ -45,8 +48,10 @@ void EdgeCubics::takeIfBetter(const AutomaticNormalTraits* known, float* all,
 
 SurfaceEstimation::SurfaceEstimation(const Surroundings& surroundings, const CloudNoise& noise,
                                      const AutomaticNormalTraits* known, int threads,
-                                     float* normals, const std::vector<pcl::index_t>* rows)
+                                     float* normals, const std::vector<pcl::index_t>* rows,
+                                     const search::MedianHashIndex* index)
     : of_(surroundings),
+      index_(index),
       known_(known),
       noise_(noise.length),
       in_spacings_(std::max(kLeastNoise, noise.in_spacings)),
@@ -55,6 +60,18 @@ SurfaceEstimation::SurfaceEstimation(const Surroundings& surroundings, const Clo
       rows_(rows != nullptr ? *rows : allRows(of_.table.size())),
       open_(rows_) {
   report_.traits.noise = noise;
+  report_.traits.lines = known_ != nullptr ? known_->lines : fewTell(in_spacings_) && seesLines();
+}
+
+// Whether a scanner's lines are all that some of the points' neighbours are of.
+bool SurfaceEstimation::seesLines() const {
+  return index_ != nullptr ? showsScanLines(of_.points, *index_, threads_)
+                           : showsScanLines(of_.points, of_.table, threads_);
+}
+
+// Whether the k nearest of a row tell which way the surface faces: always without lines.
+bool SurfaceEstimation::showsTwoDirections(std::size_t row, int k) const {
+  return !report_.traits.lines || spreads(of_, row, k);
 }
 
 AutomaticNormalReport SurfaceEstimation::run(std::vector<pcl::index_t>* unexplained) {
@@ -102,18 +119,21 @@ std::size_t SurfaceEstimation::close(const Condition& condition) {
   return closed;
 }
 
-// Closes the points whose residuals noise explains. \return how many
+// Closes the points whose residuals noise explains, and whose neighbours tell a normal.
+// \param k neighbours that surfaces of so many coefficients are fitted to \return how many
 template <typename Residual>
-std::size_t SurfaceEstimation::closeExplained(int freedom, const Residual& residual) {
-  const Explained explained(of_, noise_, freedom);
-  return close([&](std::size_t row) { return explained(row, static_cast<double>(residual(row))); });
+std::size_t SurfaceEstimation::closeExplained(int k, int coefficients, const Residual& residual) {
+  const Explained explained(of_, noise_, k + 1 - coefficients);
+  return close([&](std::size_t row) {
+    return explained(row, static_cast<double>(residual(row))) && showsTwoDirections(row, k);
+  });
 }
 
 void SurfaceEstimation::takeQuadratics() {
   for (const int k : quadraticSizes(in_spacings_, available())) {
     quadratics_.fitInto(normals_, of_, k, threads_, open_);
     report_.surfaces.emplace_back(
-        k, closeExplained(k + 1 - 6, [&](std::size_t i) { return quadratics_.residuals[i]; }));
+        k, closeExplained(k, 6, [&](std::size_t i) { return quadratics_.residuals[i]; }));
     report_.edge_k = k;
   }
 }
@@ -133,7 +153,8 @@ void SurfaceEstimation::keepEdges() {
   const std::vector<pcl::index_t> rows = open_;
   report_.surfaces.back().second += close([&](std::size_t row) {
     const double plane = planeResidual(of_, row, options.k, normals_ + 4 * row);
-    return static_cast<double>(quadratics_.residuals[row]) < kBend * plane;
+    return static_cast<double>(quadratics_.residuals[row]) < kBend * plane &&
+           showsTwoDirections(row, options.k);
   });
   for (std::size_t r = 0; r < rows.size(); ++r)
     std::copy_n(&quadratic[4 * r], 4, normalOf(rows[r]));
@@ -175,7 +196,7 @@ void SurfaceEstimation::takeCubics() {
     const auto i = static_cast<std::size_t>(r);
     if (nearer(i)) cubics.copyNormal(i, normals_);
   }
-  report_.surfaces.back().second += closeExplained(kCubicNeighbors + 1 - 10, [&](std::size_t i) {
+  report_.surfaces.back().second += closeExplained(kCubicNeighbors, 10, [&](std::size_t i) {
     return nearer(i) ? cubics.residuals[i] : std::numeric_limits<float>::infinity();
   });
 }
@@ -186,7 +207,7 @@ void SurfaceEstimation::takePlanes() {
   options.k = kPlaneNeighbors;
   options.threads = threads_;
   estimateNormals(of_.at, of_.points, of_.table, options, normals_, nullptr, &open_);
-  report_.planes = closeExplained(kPlaneNeighbors + 1 - 3, [&](std::size_t row) {
+  report_.planes = closeExplained(kPlaneNeighbors, 3, [&](std::size_t row) {
     return planeResidual(of_, row, kPlaneNeighbors, normals_ + 4 * row);
   });
 }
@@ -197,6 +218,12 @@ void SurfaceEstimation::triangulate() {
   options.estimator = NormalEstimator::LDT;
   options.k = report_.edge_k = kTriangulationNeighbors;
   estimateNormals(of_.at, of_.points, of_.table, options, normals_, nullptr, &open_);
+  std::vector<pcl::index_t> lined;
+  std::copy_if(open_.begin(), open_.end(), std::back_inserter(lined), [&](pcl::index_t r) {
+    return !showsTwoDirections(static_cast<std::size_t>(r), kTriangulationNeighbors);
+  });
+  takeSpreadPlanes(of_, index_, lined, threads_, normals_);
+  report_.lined = lined.size();
 }
 
 // Cubic surfaces at what is open.

@@ -29,9 +29,11 @@ class SurfaceEstimation {
  public:
   /// \param normals 4 floats for each row of the table
   /// \param rows of the table; null = all
+  /// \param index of the points, for what the table does not have, or null
   SurfaceEstimation(const Surroundings& surroundings, const CloudNoise& noise,
                     const AutomaticNormalTraits* known, int threads, float* normals,
-                    const std::vector<pcl::index_t>* rows);
+                    const std::vector<pcl::index_t>* rows,
+                    const search::MedianHashIndex* index = nullptr);
 
   AutomaticNormalReport run(std::vector<pcl::index_t>* unexplained);
   /// Of a part of a noisy cloud: quadratic surfaces, and cubic ones at what these leave open, which
@@ -46,10 +48,12 @@ class SurfaceEstimation {
   template <typename Condition>
   std::size_t close(const Condition& condition);
   template <typename Residual>
-  std::size_t closeExplained(int freedom, const Residual& residual);
+  std::size_t closeExplained(int k, int coefficients, const Residual& residual);
   template <typename Residual>
   std::size_t countCubic(const std::vector<pcl::index_t>& rows, const Residual& cubic,
                          double share) const;
+  bool seesLines() const;
+  bool showsTwoDirections(std::size_t row, int k) const;
   void takeQuadratics();
   void keepEdges();
   bool isAnalytic();
@@ -60,6 +64,7 @@ class SurfaceEstimation {
   void countUndefined();
 
   const Surroundings of_;
+  const search::MedianHashIndex* index_;
   const AutomaticNormalTraits* known_;
   double noise_;
   double in_spacings_;

@@ -94,6 +94,7 @@ class Leaner {
     more_.index();
     leaned_ = normals_;
     tolerance_.assign(points_.size, 0.F);
+    doubt_.assign(points_.size, kLeast * kLeast);
     const std::size_t blocks = (points_.size + GrownPlanes::kRows - 1) / GrownPlanes::kRows;
     parallelFor(
         blocks, threads_, timeOfEach(blocks, points_.size, kFitTime),
@@ -227,6 +228,7 @@ class Leaner {
     if (!scaleToUnit(of_point.mean)) return;
     const float square =
         kLeast * kLeast + scatterOf(of_point.agreement) + 0.25F * scatterOf(of_point.around);
+    doubt_[i] = square;
     lean(toward(i), square, of_point.mean);
     if (scaleToUnit(of_point.mean)) store(of_point.mean, &leaned_[4 * i]);
   }
@@ -246,13 +248,24 @@ class Leaner {
     to.mean.add(p, dot(p, toward(to.i)) < 0.F ? -weight : weight);
   }
 
-  // What the neighbours say that the point lies in the plane of, in the second round: as much as it
-  // says itself.
+  // Of the variances around, which are more than noise where planes are of two faces, the least.
+  float noiseAround(std::size_t i, int count) const {
+    const pcl::index_t* row = nb_.indices(i);
+    float least = std::numeric_limits<float>::infinity();
+    for (int j = 0; j < count; ++j) {
+      const float t = tolerance_[static_cast<std::size_t>(row[j])];
+      if (t > 0.F) least = std::min(least, t);
+    }
+    return least;
+  }
+
+  // What the neighbours say that the point lies in the plane of, the surer ones more, in the second
+  // round: together as much as it says itself.
   void followAround(std::size_t i) {
     const pcl::index_t* row = nb_.indices(i);
     const int count = std::min(nb_.count(i), kNear + 1);
     const float* p = points_[i];
-    const float scale = tolerance_[i] > 0.F ? 0.5F / tolerance_[i] : 0.F;
+    const float scale = 0.5F / noiseAround(i, count);
     Vector around;
     float total = 0.F;
     for (int j = 1; j < count; ++j) {
@@ -261,7 +274,7 @@ class Leaner {
       if (!std::isfinite(n[0])) continue;
       const float* at = points_[q];
       const float off = (at[0] - p[0]) * n[0] + (at[1] - p[1]) * n[1] + (at[2] - p[2]) * n[2];
-      const float weight = std::exp(-scale * off * off);
+      const float weight = std::exp(-scale * off * off) / std::sqrt(doubt_[q]);
       around.add(n, weight);
       total += weight;
     }
@@ -295,7 +308,8 @@ class Leaner {
   int threads_;
   std::vector<float>& normals_;
   std::vector<float> leaned_;
-  std::vector<float> tolerance_;  // squares of distances
+  std::vector<float> tolerance_;  // squares of distances; 0 = not measured
+  std::vector<float> doubt_;      // squares of angles
 };
 
 }  // namespace
