@@ -283,7 +283,7 @@ class Leaner {
     float square = kLeast * kLeast;
     if (total > 1e-9F) {
       const float length = around.length() / total;
-      square += 0.5F * scatterOf(length);
+      square += scatterOf(length);
       const float* sum = &around.x;
       mean.add(sum, 1.F / total);
       if (!scaleToUnit(mean)) return;
