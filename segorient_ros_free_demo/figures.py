@@ -105,6 +105,44 @@ def scan(build, cloud):
         "--azimuth", 265, "--elevation", 65, "--quiet")
 
 
+def street(build, cloud):
+    """A street seen by a moving lidar, positions only: turned to the origin as PCL does, and by segorient orient,
+    which finds the way of the scanner; red turns its back to it."""
+    sys.path.insert(0, str(build / "python"))
+    import matplotlib
+
+    matplotlib.use("Agg")
+    import matplotlib.pyplot as plt
+    import numpy as np
+    import segorient
+
+    program = build / "bin/segorient"
+    points, _ = read_ply(cloud, np)
+    lines = segorient.normals(points, normals="plane", k=30).normals
+    to_origin = lines * np.where((points * lines).sum(axis=1) > 0.0, -1.0, 1.0)[:, None]
+    ours = segorient.orient(points).normals
+    figure, axes = plt.subplots(1, 2, figsize=(12, 4.8))
+    with tempfile.TemporaryDirectory() as directory:
+        places = Path(directory) / "sensors.json"
+        picture = Path(directory) / "picture.png"
+        for axis, title, normals in zip(axes, ("turned to the origin", "segorient orient"), (to_origin, ours)):
+            oriented = Path(directory) / "oriented.ply"
+            with open(oriented, "w") as file:
+                file.write(f"ply\nformat ascii 1.0\nelement vertex {len(points)}\n")
+                file.writelines(f"property float {name}\n" for name in ("x", "y", "z", "nx", "ny", "nz"))
+                file.write("end_header\n")
+                np.savetxt(file, np.hstack([points, normals]), fmt="%.7g")
+            if not places.exists():
+                run(program, "sensors", oriented, places, "--quiet")
+            run(program, "render", oriented, picture, "--sensors", places, "--single", "--elevation", 55,
+                "--width", 900, "--height", 720, "--quiet")
+            axis.imshow(plt.imread(picture))
+            axis.set_title(title)
+            axis.set_axis_off()
+    figure.tight_layout()
+    figure.savefig(PICTURES / "street.png", dpi=90, bbox_inches="tight")
+
+
 def missed(build, generator):
     """Worst places in thin and noisy clouds: shape, seed, sampling, noise as a share of the diagonal."""
     with tempfile.TemporaryDirectory() as directory:
@@ -178,6 +216,7 @@ def main():
         worst(build, [Path(sys.argv[2]) / f"{name}.ply" for name in names], PICTURES / "worst.png")
         missed(build, Path(sys.argv[2]) / "make_synthetic.py")
         scan(build, Path(sys.argv[2]) / "real_bunny10scans_60k.ply")
+        street(build, Path(sys.argv[2]) / "scans/street_32beams_4poses.ply")
         run(ROOT / "segorient_ros_free_demo/paper_figures.sh", sys.argv[2], build)
     if len(sys.argv) > 2 and (build / "bin/orientation_benchmark").exists():
         run(build / "bin/orientation_benchmark", sys.argv[2])
