@@ -166,7 +166,8 @@ std::string AutomaticNormalReport::text() const {
     out << ", " << count << " points by quadratic surfaces of " << k << " neighbours";
   }
   if (analytic) out << " or cubic ones of " << detail::kCubicNeighbors << " where these fit better";
-  out << ", " << at_edges << " that none of these fits, as at edges, ";
+  out << ", " << at_edges << " that none of these fits, as at edges"
+      << (traits.lines ? " and where neighbours are of one line, " : ", ");
   if (planes > 0)
     out << planes << " of them by planes of " << detail::kPlaneNeighbors << " and the others ";
   const char* others = cubic ? "cubic surfaces" : "quadratic surfaces";

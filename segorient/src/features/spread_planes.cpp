@@ -4,17 +4,22 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cmath>
 
 #include "common/parallel_for.h"
 #include "features/grown_planes.h"
 #include "features/more_neighbors.h"
+#include "features/sheet_fit.h"
 
 namespace segorient::detail {
 namespace {
 
 // Half as many again each time, up to where planes are nearly free of noise.
 constexpr std::array<int, 5> kSizes{12, 18, 27, 40, MoreNeighbors::kMost};
+// Of the variances across a plane and along its shorter side: 30 points on two faces of an edge
+// have .1 and more.
+constexpr float kFlat = 0.05F;
 // ns a point, see resolveThreads().
 constexpr double kQueryTime = 4000.0;
 
@@ -65,8 +70,9 @@ bool spreads(const Surroundings& of, std::size_t row, int k) {
       GrowingMoments(of.points, of.at[row], of.table.indices(row), count).planeOf(count));
 }
 
-void takeSpreadPlanes(const Surroundings& of, const search::MedianHashIndex* index,
-                      const std::vector<pcl::index_t>& rows, int threads, float* normals) {
+std::size_t takeSpreadPlanes(const Surroundings& of, const search::MedianHashIndex* index,
+                             const std::vector<pcl::index_t>& rows, int threads, float* normals) {
+  std::atomic<std::size_t> taken{0};
   parallelFor(rows.size(), threads, kQueryTime, [&](std::size_t r) {
     const auto row = static_cast<std::size_t>(rows[r]);
     std::array<pcl::index_t, MoreNeighbors::kMost + 1> more;
@@ -85,11 +91,13 @@ void takeSpreadPlanes(const Surroundings& of, const search::MedianHashIndex* ind
       plane = moments.planeOf(k + 1);
       if (isSpread(plane) || k + 1 >= count) break;
     }
-    if (!plane.valid) return;
+    if (!isSpread(plane) || plane.lambda[0] > kFlat * plane.lambda[1]) return;
     float* n = normals + 4 * row;
     std::copy_n(plane.normal.data(), 3, n);
     n[3] = plane.variation();
+    taken.fetch_add(1, std::memory_order_relaxed);
   });
+  return taken;
 }
 
 }  // namespace segorient::detail

@@ -2,8 +2,10 @@
 // Copyright (c) 2026, the segorient authors
 #pragma once
 
+#include <pcl/types.h>
 #include <segorient/search/median_hash_index.h>
 
+#include <cstddef>
 #include <vector>
 
 #include "features/cloud_noise.h"
@@ -16,10 +18,10 @@ namespace segorient::detail {
 bool spreads(const Surroundings& of, std::size_t row, int k);
 
 /// Gives rows the plane of their nearest neighbours, as few as spread in two directions: 12, half
-/// as many again each time, 60 at most; of those that there are where none do.
-/// \param index of the points, for more than the table has, or null
-/// \param normals 4 floats a row: unit normal, smallest variance in the sum of all; others stay
-void takeSpreadPlanes(const Surroundings& of, const search::MedianHashIndex* index,
-                      const std::vector<pcl::index_t>& rows, int threads, float* normals);
+/// as many again each time, 60 at most. Where none do, or that plane is of two faces, rows keep
+/// what they have. \param index of the points, for more than the table has, or null \param normals
+/// 4 floats a row: unit normal, smallest variance in the sum of all \return how many rows got one
+std::size_t takeSpreadPlanes(const Surroundings& of, const search::MedianHashIndex* index,
+                             const std::vector<pcl::index_t>& rows, int threads, float* normals);
 
 }  // namespace segorient::detail

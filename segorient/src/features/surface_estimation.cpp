@@ -7,7 +7,7 @@
 #include <limits>
 #include <numeric>
 
-#include "features/scan_scale.h"
+#include "common/parallel_for.h"
 #include "features/spread_planes.h"
 #include "features/surface_sizes.h"
 
@@ -25,6 +25,10 @@ constexpr double kBend = 0.2;
 // Cubic surfaces that leave less than this share of what quadratic ones do of most points have
 // found the next term of a series: noise alone makes one point in seven look so (F test).
 constexpr double kNextTerm = 0.5;
+// Of points at random, the nearest ten of one in sixty lie along a line.
+constexpr double kManyOfOneLine = 0.05;
+// ns a point, see resolveThreads().
+constexpr double kSpreadTime = 300.0;
 
 std::vector<pcl::index_t> allRows(std::size_t size) {
   std::vector<pcl::index_t> rows(size);
@@ -63,15 +67,27 @@ SurfaceEstimation::SurfaceEstimation(const Surroundings& surroundings, const Clo
   report_.traits.lines = known_ != nullptr ? known_->lines : fewTell(in_spacings_) && seesLines();
 }
 
-// Whether a scanner's lines are all that some of the points' neighbours are of.
+// Whether a scanner saw the cloud by lines: the neighbours of many points are of one.
 bool SurfaceEstimation::seesLines() const {
-  return index_ != nullptr ? showsScanLines(of_.points, *index_, threads_)
-                           : showsScanLines(of_.points, of_.table, threads_);
+  const std::vector<pcl::index_t> rows = sampleRows(of_.table.size());
+  const auto of_one_line = std::count_if(rows.begin(), rows.end(), [&](pcl::index_t r) {
+    return !spreads(of_, static_cast<std::size_t>(r), kTriangulationNeighbors);
+  });
+  return static_cast<double>(of_one_line) > kManyOfOneLine * static_cast<double>(rows.size());
 }
 
-// Whether the k nearest of a row tell which way the surface faces: always without lines.
-bool SurfaceEstimation::showsTwoDirections(std::size_t row, int k) const {
-  return !report_.traits.lines || spreads(of_, row, k);
+// Of the open rows, which of them k neighbours tell a normal of: without lines all.
+void SurfaceEstimation::findSpread(int k) {
+  if (!report_.traits.lines) return;
+  spread_.resize(of_.table.size());
+  parallelFor(open_.size(), threads_, kSpreadTime, [&](std::size_t o) {
+    const auto row = static_cast<std::size_t>(open_[o]);
+    spread_[row] = spreads(of_, row, k) ? 1 : 0;
+  });
+}
+
+bool SurfaceEstimation::isSpread(std::size_t row) const {
+  return spread_.empty() || spread_[row] != 0;
 }
 
 AutomaticNormalReport SurfaceEstimation::run(std::vector<pcl::index_t>* unexplained) {
@@ -124,8 +140,9 @@ std::size_t SurfaceEstimation::close(const Condition& condition) {
 template <typename Residual>
 std::size_t SurfaceEstimation::closeExplained(int k, int coefficients, const Residual& residual) {
   const Explained explained(of_, noise_, k + 1 - coefficients);
+  findSpread(k);
   return close([&](std::size_t row) {
-    return explained(row, static_cast<double>(residual(row))) && showsTwoDirections(row, k);
+    return explained(row, static_cast<double>(residual(row))) && isSpread(row);
   });
 }
 
@@ -153,8 +170,7 @@ void SurfaceEstimation::keepEdges() {
   const std::vector<pcl::index_t> rows = open_;
   report_.surfaces.back().second += close([&](std::size_t row) {
     const double plane = planeResidual(of_, row, options.k, normals_ + 4 * row);
-    return static_cast<double>(quadratics_.residuals[row]) < kBend * plane &&
-           showsTwoDirections(row, options.k);
+    return static_cast<double>(quadratics_.residuals[row]) < kBend * plane && isSpread(row);
   });
   for (std::size_t r = 0; r < rows.size(); ++r)
     std::copy_n(&quadratic[4 * r], 4, normalOf(rows[r]));
@@ -218,12 +234,11 @@ void SurfaceEstimation::triangulate() {
   options.estimator = NormalEstimator::LDT;
   options.k = report_.edge_k = kTriangulationNeighbors;
   estimateNormals(of_.at, of_.points, of_.table, options, normals_, nullptr, &open_);
+  findSpread(kTriangulationNeighbors);
   std::vector<pcl::index_t> lined;
-  std::copy_if(open_.begin(), open_.end(), std::back_inserter(lined), [&](pcl::index_t r) {
-    return !showsTwoDirections(static_cast<std::size_t>(r), kTriangulationNeighbors);
-  });
-  takeSpreadPlanes(of_, index_, lined, threads_, normals_);
-  report_.lined = lined.size();
+  std::copy_if(open_.begin(), open_.end(), std::back_inserter(lined),
+               [&](pcl::index_t r) { return !isSpread(static_cast<std::size_t>(r)); });
+  report_.lined = takeSpreadPlanes(of_, index_, lined, threads_, normals_);
 }
 
 // Cubic surfaces at what is open.

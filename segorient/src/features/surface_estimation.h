@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <vector>
 
 #include "features/automatic_normals.h"
@@ -53,7 +54,8 @@ class SurfaceEstimation {
   std::size_t countCubic(const std::vector<pcl::index_t>& rows, const Residual& cubic,
                          double share) const;
   bool seesLines() const;
-  bool showsTwoDirections(std::size_t row, int k) const;
+  void findSpread(int k);
+  bool isSpread(std::size_t row) const;
   void takeQuadratics();
   void keepEdges();
   bool isAnalytic();
@@ -74,6 +76,7 @@ class SurfaceEstimation {
   std::vector<pcl::index_t> rows_;
   std::vector<pcl::index_t> open_;
   Surfaces quadratics_;
+  std::vector<std::uint8_t> spread_;  ///< by row, of those that were open; empty = all are
 };
 
 }  // namespace segorient::detail
