@@ -25,7 +25,8 @@ constexpr double kBend = 0.2;
 // Cubic surfaces that leave less than this share of what quadratic ones do of most points have
 // found the next term of a series: noise alone makes one point in seven look so (F test).
 constexpr double kNextTerm = 0.5;
-// Of points at random, the nearest ten of one in sixty lie along a line.
+// Of one in sixty of points at random, by chance, the nearest ten are along a line: three times
+// that.
 constexpr double kManyOfOneLine = 0.05;
 // ns a point, see resolveThreads().
 constexpr double kSpreadTime = 300.0;
@@ -67,7 +68,7 @@ SurfaceEstimation::SurfaceEstimation(const Surroundings& surroundings, const Clo
   report_.traits.lines = known_ != nullptr ? known_->lines : fewTell(in_spacings_) && seesLines();
 }
 
-// Whether a scanner saw the cloud by lines: the neighbours of many points are of one.
+// Whether a scanner saw the cloud by lines: the neighbours of many points are of one line.
 bool SurfaceEstimation::seesLines() const {
   const std::vector<pcl::index_t> rows = sampleRows(of_.table.size());
   const auto of_one_line = std::count_if(rows.begin(), rows.end(), [&](pcl::index_t r) {

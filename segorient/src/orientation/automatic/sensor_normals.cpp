@@ -312,7 +312,7 @@ class Leaner {
   std::vector<float>& normals_;
   std::vector<float> leaned_;
   std::vector<float> tolerance_;  // squares of distances; 0 = not measured
-  std::vector<float> doubt_;      // squares of angles
+  std::vector<float> doubt_;      // squares of angles, known roughly: weights are of the angles
 };
 
 }  // namespace
