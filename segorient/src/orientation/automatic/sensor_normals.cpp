@@ -35,8 +35,6 @@ constexpr float kFlat = 0.05F;
 constexpr float kSameNoise = 2.F;
 // Radians: what is left where all agree.
 constexpr float kLeast = 0.02F;
-// Squared: what is left where nothing was compared.
-constexpr float kUnknown = 1.F;
 // A neighbour's plane counts while the point is within a tenth of a spacing of it, and noise.
 constexpr float kOffset = 0.1F;
 // Surfaces seen at a smaller cosine are sampled by a third of the density of what is seen face on:
@@ -96,7 +94,7 @@ class Leaner {
     more_.index();
     leaned_ = normals_;
     tolerance_.assign(points_.size, 0.F);
-    doubt_.assign(points_.size, kUnknown);
+    doubt_.assign(points_.size, kLeast * kLeast);
     const std::size_t blocks = (points_.size + GrownPlanes::kRows - 1) / GrownPlanes::kRows;
     parallelFor(
         blocks, threads_, timeOfEach(blocks, points_.size, kFitTime),
@@ -125,7 +123,6 @@ class Leaner {
     Vector mean{n[0], n[1], n[2]};
     lean(toward(i), kLeast * kLeast, mean);
     if (!scaleToUnit(mean)) return;
-    doubt_[i] = kLeast * kLeast;
     store(mean, &leaned_[4 * i]);
   }
 
