@@ -19,8 +19,10 @@ bool spreads(const Surroundings& of, std::size_t row, int k);
 
 /// Gives rows the plane of their nearest neighbours, as few as spread in two directions: 12, half
 /// as many again each time, 60 at most. Where none do, or that plane is of two faces, rows keep
-/// what they have. \param index of the points, for more than the table has, or null \param normals
-/// 4 floats a row: unit normal, smallest variance in the sum of all \return how many rows got one
+/// what they have.
+/// \param index of the points, for more than the table has, or null
+/// \param normals 4 floats a row: unit normal, smallest variance in the sum of all
+/// \return how many rows got one
 std::size_t takeSpreadPlanes(const Surroundings& of, const search::MedianHashIndex* index,
                              const std::vector<pcl::index_t>& rows, int threads, float* normals);
 

@@ -25,8 +25,7 @@ constexpr double kBend = 0.2;
 // Cubic surfaces that leave less than this share of what quadratic ones do of most points have
 // found the next term of a series: noise alone makes one point in seven look so (F test).
 constexpr double kNextTerm = 0.5;
-// Of one in sixty of points at random, by chance, the nearest ten are along a line: three times
-// that.
+// Three times what chance does: of one in sixty of points at random the nearest ten are on a line.
 constexpr double kManyOfOneLine = 0.05;
 // ns a point, see resolveThreads().
 constexpr double kSpreadTime = 300.0;
