@@ -113,6 +113,19 @@ TEST(FinalNormals, NoiseLeavesThemBetterThanEitherAndTurnsNone) {
   }
 }
 
+// Filtered normals are means over the edge, of which half would leave .91.
+TEST(FinalNormals, AreOfOneFaceAtSharpEdgesInNoise) {
+  double ratio = 0;
+  for (const std::vector<Face>& faces : {cube(), steppedSolid(), bracket()}) {
+    const LabelledCloud cloud = sample("solid", faces, 8000, 5, 0.1);
+    const OrientedCloud oriented = orient(cloud);
+    ratio +=
+        rms(oriented.normals, cloud.normals) / rms(orient(cloud, false).normals, cloud.normals) / 3;
+    EXPECT_GE(shareOutward(oriented.normals, cloud.normals), 0.999);
+  }
+  EXPECT_LT(ratio, 0.87);
+}
+
 TEST(FinalNormals, AreNoWorseWhereSensorsAreKnown) {
   // A ring of 1 and .15, some 14 spacings thick: planes of many points bend its normals.
   const LabelledCloud cloud = sample("ring", {torus(1, 0.15)}, 12000, 7, 0.15);

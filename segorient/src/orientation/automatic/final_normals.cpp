@@ -175,7 +175,7 @@ class FinalNormals {
     } else {
       const bool explained = fits_[i] == Fit::EXPLAINED && !has(i, ONE_PLANE);
       sure_[i] = explained && dot(f, result) > kConfirmed ? 1 : 0;
-      takeMean(f, result);
+      takeMean(f, fits_one_side ? noise_ / static_cast<float>(kCubicNoise) : 1.F, result);
     }
   }
 
@@ -184,7 +184,7 @@ class FinalNormals {
     if (fits_[i] == Fit::UNEXPLAINED && !edges_sampled_) {
       if (has(i, ON_A_FACE)) return;
       if (has_edges_) {
-        takeMean(f, result);
+        takeMean(f, 1.F, result);
         return;
       }
     }
@@ -202,9 +202,13 @@ class FinalNormals {
   }
 
   // The less the two agree, the more the filtered one counts, which knows its side.
-  static void takeMean(const float* f, float* result) {
+  // \param share of the filtered one. Beside an edge it is a mean over both faces, which the surface
+  //        of one face needs the more the nearer the noise comes to what hides that there are two
+  static void takeMean(const float* f, float share, float* result) {
     const float along = dot(f, result);
-    addUnit(f, along * along * along, result);
+    const float weight = 1.F - share + share * along * along * along;
+    for (std::size_t a = 0; a < 3; ++a) result[a] *= share;
+    addUnit(f, weight, result);
   }
 
   static void addUnit(const float* f, float weight, float* result) {
