@@ -6,7 +6,12 @@
 #include <array>
 #include <cstdlib>
 #include <iostream>
+#include <limits>
 #include <new>
+
+#if defined(__GLIBC__)
+#include <malloc.h>
+#endif
 
 #include "commands/commands.h"
 #include "io/errors.h"
@@ -76,6 +81,16 @@ int run(const std::vector<std::string>& words) {
   throw UsageError("there is no command '" + words[0] + "'; see segorient --help");
 }
 
+// Working arrays come and go, and the first write to each page of new memory costs as much as what
+// is worked out to fill it: what was freed stays with the program.
+void keepFreedMemory() {
+#if defined(__GLIBC__)
+  constexpr int kLargest = 32 << 20;  // bytes; glibc takes no more for this
+  mallopt(M_MMAP_THRESHOLD, kLargest);
+  mallopt(M_TRIM_THRESHOLD, std::numeric_limits<int>::max());
+#endif
+}
+
 int complain(const std::string& text, int status) {
   std::cerr << "segorient: " << text << "\n";
   return status;
@@ -86,6 +101,7 @@ int complain(const std::string& text, int status) {
 
 int main(int argc, char** argv) {
   using namespace segorient::program;
+  keepFreedMemory();
   installSignalHandlers();
   // The program says itself what was wrong; PCL's messages would be a second voice.
   pcl::console::setVerbosityLevel(pcl::console::L_ALWAYS);

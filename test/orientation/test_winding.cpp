@@ -68,7 +68,7 @@ TEST(WindingNumber, IsOneInsideAndZeroOutside) {
   Balls ball;
   addBall(ball, {1, 2, 3}, 1, 4000, 1.F);
   WindingNumber winding;
-  winding.build(viewOf(ball.xyz), ball.dipoles, {});
+  winding.build(viewOf(ball.xyz), ball.dipoles.data(), {});
   const float inside[3] = {1.2F, 2.1F, 2.7F};
   const float outside[3] = {3.F, 2.F, 3.F};
   EXPECT_NEAR(winding.evaluate(inside, 0.03F), 1.F, 0.01F);
@@ -89,9 +89,9 @@ TEST(WindingNumber, OfAnyNumberOfPointsIsNearTheSum) {
     std::vector<std::uint32_t> rows(count);
     std::iota(rows.begin(), rows.end(), 0U);
     WindingNumber winding;
-    winding.build(viewOf(ball.xyz), ball.dipoles, rows, 1);
+    winding.build(viewOf(ball.xyz), ball.dipoles.data(), rows, 1);
     WindingNumber by_four;
-    by_four.build(viewOf(ball.xyz), ball.dipoles, rows, 4);
+    by_four.build(viewOf(ball.xyz), ball.dipoles.data(), rows, 4);
     for (const float* x : {far, near}) {
       double sum = 0.0;
       double scale = 0.0;
@@ -127,7 +127,7 @@ TEST(WindingNumber, HoldsEachPointOnce) {
     WindingNumber winding;
     std::vector<std::uint32_t> rows(count);
     std::iota(rows.begin(), rows.end(), 0U);
-    winding.build(viewOf(ball.xyz), ball.dipoles, rows, 4);
+    winding.build(viewOf(ball.xyz), ball.dipoles.data(), rows, 4);
     DipoleList seen;
     const float center[3] = {0, 0, 0};
     winding.listDipoles(center, 100.F, points, seen);
@@ -148,7 +148,7 @@ TEST(WindingNumber, OfManyPlacesIsThatOfEach) {
   std::uniform_real_distribution<float> place(-2.F, 4.F);
   for (const std::vector<std::uint32_t>& rows : {std::vector<std::uint32_t>{}, part}) {
     WindingNumber winding;
-    winding.build(viewOf(balls.xyz), balls.dipoles, rows);
+    winding.build(viewOf(balls.xyz), balls.dipoles.data(), rows);
     for (const std::size_t count : {0U, 1U, 15U, 16U, 17U, 400U}) {
       std::vector<float> at;
       std::vector<float> radii;
@@ -187,7 +187,7 @@ TEST(WindingNumber, TreeIsNearTheSum) {
     for (std::size_t a = 0; a < 3; ++a) dipoles[4 * i + a] = cloud.normals[4 * row + a];
   }
   WindingNumber winding;
-  winding.build(compact.view(), dipoles, {});
+  winding.build(compact.view(), dipoles.data(), {});
   for (std::size_t k = 0; k < 50; ++k) {
     const float* x = compact.view()[k * 97];
     double sum = 0.0;
@@ -218,8 +218,8 @@ TEST(ComponentSigns, AlternateInNestedShellsWhateverTheyWere) {
     addBall(balls, {0, 0, 0}, 1, 3000, sign(0));
     addBall(balls, {0, 0, 0}, 0.8, 2000, sign(1));
     addBall(balls, {0.1, 0, 0}, 0.5, 1000, sign(2));
-    const auto result =
-        solveComponents(viewOf(balls.xyz), balls.dipoles, balls.spacing, balls.components, 3);
+    const auto result = solveComponents(viewOf(balls.xyz), balls.dipoles.data(),
+                                        balls.spacing.data(), balls.components, 3);
     ASSERT_EQ(result.size(), 3U);
     // Solid shell with a cavity, and a solid ball in it.
     EXPECT_EQ(static_cast<float>(result[0].sign) * sign(0), 1.F) << pattern;
@@ -235,8 +235,8 @@ TEST(ComponentSigns, TurnHundredsOfPartsOutward) {
   for (int i = 0; i < 300; ++i) {
     addBall(balls, {3.0 * (i % 20), 3.0 * (i / 20), 0.1 * i}, 1, 150, i % 3 == 0 ? -1.F : 1.F);
   }
-  const auto result =
-      solveComponents(viewOf(balls.xyz), balls.dipoles, balls.spacing, balls.components, 300);
+  const auto result = solveComponents(viewOf(balls.xyz), balls.dipoles.data(), balls.spacing.data(),
+                                      balls.components, 300);
   for (int i = 0; i < 300; ++i) {
     EXPECT_EQ(result[static_cast<std::size_t>(i)].sign, i % 3 == 0 ? -1 : 1) << i;
   }
@@ -253,7 +253,7 @@ TEST(ComponentSigns, APlaneHasNoEvidence) {
   }
   const std::vector<std::int32_t> components(1600, 0);
   const std::vector<float> spacing(1600, 1.F);
-  const auto result = solveComponents(viewOf(xyz), dipoles, spacing, components, 1);
+  const auto result = solveComponents(viewOf(xyz), dipoles.data(), spacing.data(), components, 1);
   EXPECT_LT(result[0].evidence, 0.01F);
   EXPECT_GT(result[0].residual, 0.2F);
 }
@@ -278,8 +278,8 @@ struct Bands {
 TEST(LooseParts, AreTurnedWhereTheWindingNumberWantsThem) {
   for (int pattern = 0; pattern < 3; ++pattern) {
     const Bands bands({1.F, pattern == 1 ? -1.F : 1.F, pattern == 2 ? -1.F : 1.F});
-    const auto turn =
-        turnParts(viewOf(bands.ball.xyz), bands.ball.dipoles, bands.ball.spacing, bands.band, 3, 1);
+    const auto turn = turnParts(viewOf(bands.ball.xyz), bands.ball.dipoles.data(),
+                                bands.ball.spacing.data(), bands.band, 3, 1);
     ASSERT_EQ(turn.size(), 3U);
     EXPECT_EQ(turn[0], 1);
     EXPECT_EQ(turn[1], pattern == 1 ? -1 : 1) << pattern;
@@ -294,27 +294,28 @@ TEST(LooseParts, OneAfterTheOtherWhereTwoAreWrong) {
   addBall(balls, {0, 0, 0}, 1, 800, 1.F);
   addBall(balls, {0, 0, 0}, 0.85F, 600, 1.F);
   addBall(balls, {0.1F, 0, 0}, 0.55F, 2000, -1.F);
-  EXPECT_EQ(turnParts(viewOf(balls.xyz), balls.dipoles, balls.spacing, balls.components, 3, 1),
+  EXPECT_EQ(turnParts(viewOf(balls.xyz), balls.dipoles.data(), balls.spacing.data(),
+                      balls.components, 3, 1),
             (std::vector<std::int8_t>{1, -1, -1}));
 }
 
 TEST(LooseParts, FixedOnesStay) {
   const Bands bands({1.F, 1.F, -1.F});
-  const auto turn =
-      turnParts(viewOf(bands.ball.xyz), bands.ball.dipoles, bands.ball.spacing, bands.band, 3, 3);
+  const auto turn = turnParts(viewOf(bands.ball.xyz), bands.ball.dipoles.data(),
+                              bands.ball.spacing.data(), bands.band, 3, 3);
   EXPECT_EQ(turn, (std::vector<std::int8_t>{1, 1, 1}));
 }
 
 TEST(LooseParts, ThoseWithoutPointsChangeNothing) {
   const Bands bands({1.F, 1.F, -1.F});
   const Balls& ball = bands.ball;
-  EXPECT_EQ(turnParts(viewOf(ball.xyz), ball.dipoles, ball.spacing, bands.band, 5, 1),
+  EXPECT_EQ(turnParts(viewOf(ball.xyz), ball.dipoles.data(), ball.spacing.data(), bands.band, 5, 1),
             (std::vector<std::int8_t>{1, 1, -1, 1, 1}));
   Balls alone;
   addBall(alone, {0, 0, 0}, 1, 1000, -1.F);
   const auto components = [&](std::size_t count) {
-    return solveComponents(viewOf(alone.xyz), alone.dipoles, alone.spacing, alone.components,
-                           count);
+    return solveComponents(viewOf(alone.xyz), alone.dipoles.data(), alone.spacing.data(),
+                           alone.components, count);
   };
   EXPECT_EQ(components(3)[0].sign, -1);
   EXPECT_EQ(components(3)[0].residual, components(1)[0].residual);
@@ -326,9 +327,9 @@ TEST(LooseParts, ThoseOfUnknownAreaStay) {
   for (std::size_t i = 0; i < bands.band.size(); i += 5) {
     bands.ball.dipoles[4 * i] = std::numeric_limits<float>::quiet_NaN();
   }
-  EXPECT_EQ(
-      turnParts(viewOf(bands.ball.xyz), bands.ball.dipoles, bands.ball.spacing, bands.band, 3, 1),
-      (std::vector<std::int8_t>{1, 1, 1}));
+  EXPECT_EQ(turnParts(viewOf(bands.ball.xyz), bands.ball.dipoles.data(), bands.ball.spacing.data(),
+                      bands.band, 3, 1),
+            (std::vector<std::int8_t>{1, 1, 1}));
 }
 
 TEST(LooseParts, HalvesOfAPlaneStayAsTheyAre) {
@@ -343,7 +344,7 @@ TEST(LooseParts, HalvesOfAPlaneStayAsTheyAre) {
     }
   }
   const std::vector<float> spacing(1600, 1.F);
-  EXPECT_EQ(turnParts(viewOf(xyz), dipoles, spacing, parts, 2, 1),
+  EXPECT_EQ(turnParts(viewOf(xyz), dipoles.data(), spacing.data(), parts, 2, 1),
             (std::vector<std::int8_t>{1, 1}));
 }
 

@@ -40,7 +40,7 @@ TEST(WindingNumber, FallsAsItsDefinitionDoes) {
                 &dipoles[4 * i]);
   }
   WindingNumber winding;
-  winding.build(compact.view(), dipoles, {});
+  winding.build(compact.view(), dipoles.data(), {});
   DipoleList points;
   for (std::size_t i = 0; i < compact.size(); ++i) points.add(compact.view()[i], &dipoles[4 * i]);
   const auto radius = static_cast<float>(cloud.spacing / static_cast<double>(compact.unit));

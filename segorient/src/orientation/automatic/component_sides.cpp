@@ -27,16 +27,15 @@ bool turnLooseParts(SheetSigns& sheets, const std::vector<std::int32_t>& part_of
   const LooseParts loose = findLooseParts(sheets.segmentation, sheets.votes, sheets.signs,
                                           sheets.component_of, part_of, looked_at);
   if (loose.none()) return false;
-  std::vector<float> dipoles = sheets.dipoles();
+  FastVector<float> dipoles = sheets.dipoles();
   for (std::size_t i = 0; i < sheets.points.size; ++i) {
     const std::int32_t c = sheets.componentOf(i);
     const auto sign = static_cast<float>(c < 0 ? 1 : sheets.windings[at(c)].sign);
     for (std::size_t a = 0; a < 3; ++a) dipoles[4 * i + a] *= sign;
   }
-  const std::vector<float> spacing(sheets.field.spacing, sheets.field.spacing + sheets.points.size);
   const std::vector<std::int8_t> turn =
-      turnParts(sheets.points, dipoles, spacing, sheets.ofPoints(loose.of), loose.count,
-                loose.components, rule, sheets.threads);
+      turnParts(sheets.points, dipoles.data(), sheets.field.spacing, sheets.ofPoints(loose.of),
+                loose.count, loose.components, rule, sheets.threads);
   for (std::size_t s = 0; s < sheets.signs.size(); ++s) {
     sheets.signs[s] = static_cast<std::int8_t>(sheets.signs[s] * turn[at(loose.of[s])]);
   }

@@ -2,6 +2,7 @@
 // Copyright (c) 2026, the segorient authors
 #include "orientation/automatic/sheet_signs.h"
 
+#include <algorithm>
 #include <utility>
 
 #include "common/by_size.h"
@@ -58,20 +59,24 @@ void SheetSigns::numberComponents() {
   ground.assign(roots.size(), false);
 }
 
-std::vector<float> SheetSigns::dipoles() const {
-  std::vector<float> out(4 * points.size, 0.F);
+FastVector<float> SheetSigns::dipoles() const {
+  FastVector<float> out(4 * points.size);
   // The mean distance to the 6 nearest of points of density 1/a is 0.977 sqrt(a). Noise of r
   // spacings takes two points sqrt(2) r apart across the surface, which adds about 2 r^2 to the
   // square.
   const float r = field.residual;
   const float per_square = 1.047F / (1.F + 2.F * r * r);
   parallelFor(points.size, threads, 10.0, [&](std::size_t i) {
+    float* dipole = &out[4 * i];
+    const float sign = pointSign(i);
+    if (sign == 0.F) {
+      std::fill_n(dipole, 4, 0.F);
+      return;
+    }
     const float h = field.spacing[i];
     const float area = per_square * h * h;
-    const float sign = pointSign(i);
-    if (sign == 0.F) return;
-    for (std::size_t a = 0; a < 3; ++a) out[4 * i + a] = sign * area * field.normals[4 * i + a];
-    out[4 * i + 3] = area;
+    for (std::size_t a = 0; a < 3; ++a) dipole[a] = sign * area * field.normals[4 * i + a];
+    dipole[3] = area;
   });
   return out;
 }
@@ -85,9 +90,8 @@ std::vector<std::int32_t> SheetSigns::ofPoints(const std::vector<std::int32_t>& 
 }
 
 void SheetSigns::windComponents() {
-  const std::vector<float> spacing(field.spacing, field.spacing + points.size);
-  windings =
-      solveComponents(points, dipoles(), spacing, ofPoints(component_of), windings.size(), threads);
+  windings = solveComponents(points, dipoles().data(), field.spacing, ofPoints(component_of),
+                             windings.size(), threads);
 }
 
 bool SheetSigns::isClosed(std::size_t component, float residual) const {

@@ -6,6 +6,7 @@
 #include <segorient/common/point_view.h>
 #include <segorient/orientation/orientation_options.h>
 #include <segorient/segmentation/segmentation.h>
+#include <segorient/common/impl/fast_vector.hpp>
 
 #include <cstddef>
 #include <cstdint>
@@ -62,7 +63,7 @@ struct SheetSigns {
     return s < 0 ? -1 : component_of[at(s)];
   }
   /// 4 floats a point: normal times area and area; 0 without one.
-  std::vector<float> dipoles() const;
+  FastVector<float> dipoles() const;
   /// What is known of segments, one a point; -1 without a segment.
   std::vector<std::int32_t> ofPoints(const std::vector<std::int32_t>& of_segments) const;
   /// Whether a component is told or known to be closed. \param residual most of the winding

@@ -120,7 +120,7 @@ SignEnergy SignJudge::judge(const std::vector<float>& normals) const {
   energy.pairs = opposedPairs(points_, neighborhoods_, normals, threads_);
   const std::vector<float> dipoles = dipolesOf(normals, areas_);
   WindingNumber winding;
-  winding.build(points_, dipoles, {}, threads_);
+  winding.build(points_, dipoles.data(), {}, threads_);
   std::vector<float> in_front;
   for (const std::size_t s : samples_) {
     const float* p = points_[s];

@@ -113,7 +113,7 @@ class Enclosure {
     }
     const PointView sources{places.data(), 3, chosen.size()};
     WindingNumber field;
-    field.build(sources, dipoles, {});
+    field.build(sources, dipoles.data(), {});
     float sum = 0.F;
     // The probes are points of another component, and none of these.
     for (const pcl::index_t probe : probes) {

@@ -63,7 +63,7 @@ void forEachPlace(const PointView& at, const DipoleCloud& from, const std::vecto
   WindingNumber tree;
   const std::vector<std::uint32_t> all;
   const std::vector<std::uint32_t>& rows = from.rows != nullptr ? *from.rows : all;
-  tree.build(from.points, from.dipoles, rows, threads);
+  tree.build(from.points, from.dipoles.data(), rows, threads);
   const DipoleList points = listOf(from, rows);
   parallelFor(
       runs.size(), threads, 30000.0, [] { return DipoleList(); },

@@ -29,9 +29,8 @@ struct Reach {
 
 class Solver {
  public:
-  Solver(const PointView& points, const std::vector<float>& dipoles,
-         const std::vector<float>& spacing, const std::vector<std::int32_t>& components,
-         std::size_t count, int threads)
+  Solver(const PointView& points, const float* dipoles, const float* spacing,
+         const std::vector<std::int32_t>& components, std::size_t count, int threads)
       : points_(points),
         dipoles_(dipoles),
         spacing_(spacing),
@@ -39,6 +38,11 @@ class Solver {
         rows_(count),
         boxes_(count),
         reach_(count) {
+    std::vector<std::size_t> sizes(count, 0);
+    for (const std::int32_t c : components) {
+      if (c >= 0) ++sizes[static_cast<std::size_t>(c)];
+    }
+    for (std::size_t c = 0; c < count; ++c) rows_[c].reserve(sizes[c]);
     for (std::size_t i = 0; i < components.size(); ++i) {
       if (components[i] < 0) continue;
       const auto c = static_cast<std::size_t>(components[i]);
@@ -247,8 +251,8 @@ class Solver {
   }
 
   const PointView& points_;
-  const std::vector<float>& dipoles_;
-  const std::vector<float>& spacing_;
+  const float* dipoles_;
+  const float* spacing_;
   int threads_;
   std::vector<std::vector<std::uint32_t>> rows_;
   std::vector<Box> boxes_;
@@ -263,17 +267,16 @@ class Solver {
 
 }  // namespace
 
-std::vector<std::int8_t> turnParts(const PointView& points, const std::vector<float>& dipoles,
-                                   const std::vector<float>& spacing,
-                                   const std::vector<std::int32_t>& parts, std::size_t count,
-                                   std::size_t fixed, const TurnRule& rule, int threads) {
+std::vector<std::int8_t> turnParts(const PointView& points, const float* dipoles,
+                                   const float* spacing, const std::vector<std::int32_t>& parts,
+                                   std::size_t count, std::size_t fixed, const TurnRule& rule,
+                                   int threads) {
   if (count == 0) return {};
   return Solver(points, dipoles, spacing, parts, count, threads).turnParts(fixed, rule);
 }
 
-std::vector<ComponentWinding> solveComponents(const PointView& points,
-                                              const std::vector<float>& dipoles,
-                                              const std::vector<float>& spacing,
+std::vector<ComponentWinding> solveComponents(const PointView& points, const float* dipoles,
+                                              const float* spacing,
                                               const std::vector<std::int32_t>& components,
                                               std::size_t count, int threads) {
   if (count == 0) return {};

@@ -32,9 +32,8 @@ struct ComponentWinding {
 /// \param dipoles 4 floats a point: normal times area, area; 0 where there is no normal
 /// \param spacing one a point: distance below which the field is smoothed
 /// \param components one a point: 0 to count - 1 by descending size, or -1
-std::vector<ComponentWinding> solveComponents(const PointView& points,
-                                              const std::vector<float>& dipoles,
-                                              const std::vector<float>& spacing,
+std::vector<ComponentWinding> solveComponents(const PointView& points, const float* dipoles,
+                                              const float* spacing,
                                               const std::vector<std::int32_t>& components,
                                               std::size_t count, int threads = 0);
 
@@ -54,9 +53,9 @@ struct TurnRule {
 /// \param parts one a point: 0 to count - 1, or -1
 /// \param fixed the first so many parts stay as they are
 /// \return one a part: -1 for those to be turned over, 1 for all others
-std::vector<std::int8_t> turnParts(const PointView& points, const std::vector<float>& dipoles,
-                                   const std::vector<float>& spacing,
-                                   const std::vector<std::int32_t>& parts, std::size_t count,
-                                   std::size_t fixed, const TurnRule& rule = {}, int threads = 0);
+std::vector<std::int8_t> turnParts(const PointView& points, const float* dipoles,
+                                   const float* spacing, const std::vector<std::int32_t>& parts,
+                                   std::size_t count, std::size_t fixed, const TurnRule& rule = {},
+                                   int threads = 0);
 
 }  // namespace segorient

@@ -70,10 +70,10 @@ struct WindingTree {
 #include "common/each_width.inl"
 #undef SEGORIENT_KERNELS
 
-void WindingNumber::build(const PointView& points, const std::vector<float>& dipoles,
+void WindingNumber::build(const PointView& points, const float* dipoles,
                           const std::vector<std::uint32_t>& rows, int threads) {
   points_ = points;
-  dipoles_ = dipoles.data();
+  dipoles_ = dipoles;
   rows_ = rows.empty() ? nullptr : rows.data();
   const std::size_t count = rows.empty() ? points.size : rows.size();
   nodes_.clear();

@@ -35,8 +35,8 @@ class WindingNumber {
   /// \param dipoles 4 floats a point: area-weighted normal, area
   /// \param rows points to use, ascending; empty = all. All three must outlive this object's use
   /// \param threads see resolveThreads()
-  void build(const PointView& points, const std::vector<float>& dipoles,
-             const std::vector<std::uint32_t>& rows, int threads = 1);
+  void build(const PointView& points, const float* dipoles, const std::vector<std::uint32_t>& rows,
+             int threads = 1);
 
   /// \param x where \param radius below which points are smoothed, usually the spacing
   float evaluate(const float* x, float radius) const;
