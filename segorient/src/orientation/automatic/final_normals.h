@@ -19,8 +19,8 @@ namespace segorient::detail {
 /// filtered one, which err in different ways: the one by noise, the other by what the surface
 /// bends; beside sharp edges, where the filtered one is a mean over both faces, with the less of
 /// it the less noise there is. The filtered normal stays where neighbours are of another wall, at
-/// what cannot be fitted beside sharp edges, and on scans whose noise only many neighbours show, see
-/// SheetTraits.
+/// what cannot be fitted beside sharp edges, and on scans whose noise only many neighbours show,
+/// see SheetTraits.
 ///
 /// \param cloud whose neighbours are known
 /// \param more of the same points, which are sought where the noise asks for them, unless
