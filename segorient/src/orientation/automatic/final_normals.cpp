@@ -202,19 +202,18 @@ class FinalNormals {
   }
 
   // The less the two agree, the more the filtered one counts, which knows its side.
-  // \param share of the filtered one. Beside an edge it is a mean over both faces, which the surface
-  //        of one face needs the more the nearer the noise comes to what hides that there are two
+  // \param share of the filtered one where they are at right angles. Beside an edge, where it is a
+  //        mean over both faces, it is how near the noise comes to what hides that there are two
   static void takeMean(const float* f, float share, float* result) {
     const float along = dot(f, result);
-    const float weight = 1.F - share + share * along * along * along;
-    for (std::size_t a = 0; a < 3; ++a) result[a] *= share;
-    addUnit(f, weight, result);
+    addUnit(f, (1.F - share) / share + along * along * along, result);
   }
 
   static void addUnit(const float* f, float weight, float* result) {
     std::array<float, 3> sum;
     for (std::size_t a = 0; a < 3; ++a) sum[a] = result[a] + weight * f[a];
     const float length = std::sqrt(dot(sum.data(), sum.data()));
+    if (!(length > 0.F)) return;  // opposite to the last bit
     for (std::size_t a = 0; a < 3; ++a) result[a] = sum[a] / length;
   }
 
