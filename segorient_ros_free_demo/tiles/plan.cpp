@@ -31,7 +31,6 @@ void forEachNumber(P& p, const Visit& visit) {
   visit(p.open);
   visit(p.find_sensors);
   visit(p.found_sensors);
-  visit(p.seen_within);
   visit(p.place.shadows.steps);
   visit(p.place.shadows.covered);
   visit(p.place.shadows.hidden);
@@ -41,6 +40,7 @@ void forEachNumber(P& p, const Visit& visit) {
   visit(p.place.faces_up);
   visit(p.place.along_way);
   visit(p.place.whole_image);
+  visit(p.place.seen_within);
   visit(p.place_refused);
   visit(p.memory);
   visit(p.keep_orientation);

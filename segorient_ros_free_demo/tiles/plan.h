@@ -88,8 +88,6 @@ struct Plan {
   bool open = false;
   bool find_sensors = true;
   bool keep_orientation = false;
-  /// Whether no sensor was found, but that the scene was seen from within.
-  bool seen_within = false;
   bool adds_scans = false;       ///< whether outputs get a field scan: the number of the input
   bool adds_viewpoints = false;  ///< whether they get fields vp_x, vp_y, vp_z
   float alpha = 0.F;
@@ -105,7 +103,7 @@ struct Plan {
   std::size_t tiles() const { return tile_points.size(); }
   /// Whether points carry to which side their normals are: as they were in the input, or the mean
   /// direction to where they were seen from.
-  bool hasNormals() const { return keep_orientation || seen_within; }
+  bool hasNormals() const { return keep_orientation || place.seen_within; }
 };
 
 /// Called with the share of a step that is done, 0 to 1.

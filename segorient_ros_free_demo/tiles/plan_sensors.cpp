@@ -48,7 +48,7 @@ PlanSensors::PlanSensors(const Plan& plan, const PointSample& sample, const Plac
   choose(given, threads);
   // Whoever names a side of a sheet means it; and a thinner cloud hides the sides of a plate.
   place_.faces_up = place_.faces_up && by_row_ && plan.seeds.empty();
-  if (by_row_ || (sure_ == 0 && !seenWithin())) return;
+  if (by_row_ || (sure_ == 0 && !place_.seen_within)) return;
   search::MedianHashIndex::Options search_options;
   search_options.threads = threads;
   index_.build({points_.data(), 3, size}, nullptr, search_options);

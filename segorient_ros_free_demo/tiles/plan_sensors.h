@@ -62,7 +62,6 @@ class PlanSensors {
   std::size_t found() const { return sure_; }
   /// Whether what is found is for points that do not know their own place.
   bool completesGiven() const { return completes_given_; }
-  bool seenWithin() const { return !directions_.empty(); }
   /// Where a point was seen from, relative to the plan's origin; NaN where no sensor is sure.
   std::array<float, 3> of(std::uint64_t row, const std::array<float, 3>& place) const;
   /// Where the scene was seen from within: the mean direction to where; 0 = unknown.

@@ -191,7 +191,7 @@ void distribute(const std::string& folder, const StepProgress& progress, const P
         }
         if (plan.keep_orientation) {
           point.normal = near(block.triple(block.normals(), i), {0.0, 0.0, 0.0});
-        } else if (plan.seen_within) {
+        } else if (plan.place.seen_within) {
           point.normal = sensors.directionOf(row, near(place, plan.origin));
         }
         if (wanted[i] != 0) {
@@ -246,7 +246,6 @@ void followSensors(const PlanSensors& sensors, Plan& plan) {
   }
   plan.place = sensors.place();
   plan.found_sensors = sensors.completesGiven() ? 0 : static_cast<std::uint32_t>(sensors.found());
-  plan.seen_within = sensors.seenWithin();
   plan.has_viewpoints = plan.has_viewpoints || sensors.found() > 0;
 }
 

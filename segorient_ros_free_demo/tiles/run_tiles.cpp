@@ -79,7 +79,7 @@ std::string reportText(const TilesRun& run) {
   json.field("pieces", joined.pieces);
   json.field("segments", run.segments);
   json.field("sensors_found", joined.sensors_dropped ? 0U : plan.found_sensors);
-  json.field("seen_within", plan.seen_within);
+  json.field("seen_within", plan.place.seen_within);
   json.field("faces_up", plan.place.faces_up);
   json.field("viewpoint_left_aside", leavesPlaceAside(plan, joined));
   json.field("noise_in_spacings", plan.traits.noise);
@@ -150,7 +150,7 @@ void printSummary(const TilesRun& run) {
     std::printf("sensors found   %u%s\n", plan.found_sensors,
                 joined.sensors_dropped ? ", but see surfaces from both sides" : "");
   }
-  if (plan.seen_within) std::printf("sensors found   none, but it was seen from within\n");
+  if (plan.place.seen_within) std::printf("sensors found   none, but it was seen from within\n");
   if (plan.place.faces_up) {
     std::printf("sensors found   none, but it is one surface, which faces up\n");
   }

@@ -118,6 +118,7 @@ void saveSigns(const SignsFile& signs, const std::string& path, std::uint64_t ru
   file.value(signs.again);
   file.value(signs.field);
   file.list(signs.signs.pieces);
+  file.list(signs.signs.inside_out);
   // Without sensors, patches are turned as their pieces are.
   file.list(signs.signs.toward.empty() ? std::vector<std::int8_t>() : signs.signs.patches);
   file.list(signs.signs.toward);
@@ -130,6 +131,7 @@ SignsFile loadSigns(const std::string& path, std::uint64_t run, std::uint32_t ti
   signs.again = file.value<bool>();
   signs.field = file.value<bool>();
   signs.signs.pieces = file.list<std::int8_t>();
+  signs.signs.inside_out = file.list<std::uint8_t>();
   signs.signs.patches = file.list<std::int8_t>();
   signs.signs.toward = file.list<float>();
   file.end();

@@ -279,11 +279,13 @@ TEST(PatchSigns, LeaveAloneWhatIsNotInContact) {
     found.normals = bodies.normals;
     found.confidences.assign(bodies.is_in_contact.size(), 1.F);
     found.spacing = .012F;
-    ComponentOrientationResult component;
-    component.points = bodies.is_in_contact.size();
-    component.residual = .2F;  // so that it is looked at
+    AutoOrientation orientation;
+    orientation.result.components.resize(1);
+    orientation.result.components[0].points = bodies.is_in_contact.size();
+    orientation.result.components[0].residual = .2F;  // so that it is looked at
+    orientation.ground.resize(1);
     const detail::CellSigns signs = detail::findCellSigns(viewOf(bodies.xyz), found.normals,
-                                                          found.spacing, {component}, false, 1);
+                                                          found.spacing, orientation, false, 1);
     EXPECT_TRUE(signs.empty());
     detail::takeCellSigns(viewOf(bodies.xyz), signs, found);
     EXPECT_EQ(found.normals, bodies.normals);

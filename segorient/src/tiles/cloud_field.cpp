@@ -120,11 +120,10 @@ CloudField findFine(const PointView& places, const std::vector<float>& normals,
 }
 
 CloudField findSigns(const PreparedCloud& cloud, const std::vector<float>& normals, float spacing,
-                     const std::vector<ComponentOrientationResult>& components, bool noisy,
-                     int threads) {
+                     const AutoOrientation& orientation, bool noisy, int threads) {
   CloudField out;
   const CellSigns signs =
-      findCellSigns(cloud.points(), normals, spacing, components, noisy, threads);
+      findCellSigns(cloud.points(), normals, spacing, orientation, noisy, threads);
   if (signs.empty()) return out;
   out.radius = cloud.unit() * spacing;
   addCells(signs.cells.places, cloud.unit(), signs.cells.normals, 1.F, out);

@@ -33,8 +33,7 @@ SEGORIENT_TILES_EXPORT CloudField findFine(const PointView& places,
 /// \param normals 4 floats a point of the cloud, oriented \param spacing in the cloud's unit
 /// \param noisy see findCellSigns()
 CloudField findSigns(const PreparedCloud& cloud, const std::vector<float>& normals, float spacing,
-                     const std::vector<ComponentOrientationResult>& components, bool noisy,
-                     int threads);
+                     const AutoOrientation& orientation, bool noisy, int threads);
 
 /// Gives a tile's points what the field tells of them. \param points of the tile, with neighbours
 /// \param unit theirs \param field relative to the tile's origin

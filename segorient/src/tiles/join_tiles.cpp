@@ -63,6 +63,12 @@ PointHints hintsOf(const OrientationHints& hints, const CloudPlace& place, Prepa
   return out;
 }
 
+// Whether a piece is of a component that hints turned inside out.
+bool isInsideOut(const AutoOrientation& orientation, std::size_t piece) {
+  const std::int32_t component = orientation.result.segments[piece].component;
+  return component >= 0 && orientation.inside_out[at(component)] != 0;
+}
+
 }  // namespace
 
 struct TileJoiner::Impl {
@@ -122,16 +128,16 @@ CloudField TileJoiner::Impl::findField(const AutoOrientation& orientation, const
                                        const JoinOptions& options) const {
   std::vector<float> normals = cloud.normals;
   for (std::size_t i = 0; i < cloud.cloud.size(); ++i) {
-    const auto sign = static_cast<float>(orientation.result.point_signs[i]);
-    for (std::size_t a = 0; a < 3; ++a) normals[4 * i + a] *= sign;
+    const std::size_t piece = at(cloud.segmentation.labels[i]);
+    const int sign = orientation.result.point_signs[i] * (isInsideOut(orientation, piece) ? -1 : 1);
+    for (std::size_t a = 0; a < 3; ++a) normals[4 * i + a] *= static_cast<float>(sign);
   }
   const bool fine = !options.traits.hasField();
   const bool alone = orientation.toward.empty();
   if (fine && !alone) return {};
   if (alone && !(options.traits.level > 0.F)) {
-    CloudField signs = detail::findSigns(cloud.cloud, normals, median(cloud.spacing),
-                                         orientation.result.components, options.traits.noisy != 0,
-                                         options.threads);
+    CloudField signs = detail::findSigns(cloud.cloud, normals, median(cloud.spacing), orientation,
+                                         options.traits.noisy != 0, options.threads);
     if (!signs.cells.empty()) return signs;
   }
   if (field_points.empty()) return {};  // tiles whose sensors were known did not ask
@@ -139,8 +145,11 @@ CloudField TileJoiner::Impl::findField(const AutoOrientation& orientation, const
   std::vector<float> of_rows;
   std::vector<float> confidences;
   for (const FieldPoint& p : field_points) {
-    const auto sign =
-        p.piece < 0 ? 0.F : static_cast<float>(orientation.result.segments[at(p.piece)].sign);
+    float sign = 0.F;
+    if (p.piece >= 0) {
+      sign = static_cast<float>(orientation.result.segments[at(p.piece)].sign);
+      if (isInsideOut(orientation, at(p.piece))) sign = -sign;
+    }
     places.insert(places.end(), p.position, p.position + 3);
     for (const float n : p.normal) of_rows.push_back(sign * n);
     of_rows.push_back(0.F);
@@ -163,6 +172,7 @@ void TileJoiner::Impl::distribute(const AutoOrientation& orientation, const Patc
     TileSigns& tile = out.tiles[t];
     for (std::int32_t s = first[t].piece; s < first[t + 1].piece; ++s) {
       tile.pieces.push_back(orientation.result.segments[at(s)].sign);
+      tile.inside_out.push_back(isInsideOut(orientation, at(s)) ? 1 : 0);
     }
     for (std::size_t p = first[t].patch; p < first[t + 1].patch; ++p) {
       // Patches in one place have one point, which is of one of their pieces.
@@ -268,7 +278,7 @@ JoinedTiles TileJoiner::join(const JoinOptions& options) {
     out.sensors_dropped = true;
   }
   i.distribute(orientation, patches, out);
-  if (hints.nothing()) out.field = i.findField(orientation, patches, options);
+  if (hints.leaveSidesToField()) out.field = i.findField(orientation, patches, options);
   out.components = std::move(orientation.result.components);
   return out;
 }

@@ -60,7 +60,9 @@ void TileScale::list(std::uint32_t patch_points, TileShare& out) {
 AutoOrientation TileScale::orientAsKnown(const Segmentation& pieces, const TileSigns& signs,
                                          const PointHints& hints) const {
   AutoOrientation out;
-  out.result.components.resize(1);
+  // As they are to be turned for the field: as they are, and inside out.
+  out.result.components.resize(2);
+  out.inside_out = {0, 1};
   out.result.point_signs.assign(points.size, 0);
   out.result.point_confidences.assign(points.size, 0.F);
   out.result.point_components.assign(points.size, -1);
@@ -77,7 +79,7 @@ AutoOrientation TileScale::orientAsKnown(const Segmentation& pieces, const TileS
       towardSensor(points[i], i, hints, &out.toward[3 * i]);
     }
     out.result.point_signs[i] = static_cast<std::int8_t>(sign * pieces.signs[i]);
-    out.result.point_components[i] = 0;
+    out.result.point_components[i] = signs.inside_out[at(piece)];
   }
   return out;
 }

@@ -44,7 +44,8 @@ class Tile {
     std::vector<float> filtered;
     std::vector<float> confidences;
     fine_.record.field = [&](const PointView&, const detail::AutoNormals& found) {
-      if (!options_.traits.wantsFieldPoints(options_.patch_points) || !hints_.nothing()) return;
+      if (!options_.traits.wantsFieldPoints(options_.patch_points) || !hints_.leaveSidesToField())
+        return;
       filtered = found.normals;
       confidences = found.confidences;
     };

@@ -139,8 +139,9 @@ struct TileShare {
 
 /// What the whole cloud says of a tile.
 struct TileSigns {
-  std::vector<std::int8_t> pieces;   ///< what the normals of each piece are to be multiplied by
-  std::vector<std::int8_t> patches;  ///< the same where sensors know single patches better
+  std::vector<std::int8_t> pieces;       ///< what the normals of each piece are to be multiplied by
+  std::vector<std::uint8_t> inside_out;  ///< one a piece, see AutoOrientation::inside_out
+  std::vector<std::int8_t> patches;      ///< the same where sensors know single patches better
   std::vector<float> toward;  ///< 3 a patch: unit vector to its sensor, 0 = unknown; or empty
 };
 

@@ -41,6 +41,7 @@ PointHints hintsOfSubset(const PointHints& hints, const std::vector<float>& towa
   const std::size_t size = level.cloud.size();
   out.surface = hints.surface;
   out.place.faces_up = hints.place.faces_up;
+  out.place.seen_within = hints.place.seen_within;
   out.has_viewpoint = hints.has_viewpoint;
   for (std::size_t a = 0; a < 3; ++a) out.viewpoint[a] = hints.viewpoint[a] / level.cloud.unit();
   if (!hints.directions.empty()) {

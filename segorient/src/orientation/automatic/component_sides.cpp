@@ -132,8 +132,14 @@ void turnComponentsOut(SheetSigns& sheets) {
     hinted[at(sheets.component_of[s])].add(sheets.hint_votes[s], sheets.signs[s]);
   }
   std::vector<ComponentOrientationResult>& components = sheets.found.result.components;
+  sheets.found.ground.assign(sheets.ground.begin(), sheets.ground.end());
+  sheets.found.inside_out.assign(components.size(), 0);
   for (std::size_t c = 0; c < components.size(); ++c) {
     components[c] = sideOf(sheets, c, conventional[c], hinted[c]);
+    // The winding number knows no side of the others.
+    const bool closed = !sheets.ground[c] && components[c].evidence >= kNoEvidence;
+    const bool turned = components[c].sign != sheets.windings[c].sign;
+    sheets.found.inside_out[c] = closed && turned ? 1 : 0;
   }
   for (std::size_t s = 0; s < sheets.signs.size(); ++s) {
     const std::int8_t turn = components[at(sheets.component_of[s])].sign;

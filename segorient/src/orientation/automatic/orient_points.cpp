@@ -7,6 +7,7 @@
 #include <limits>
 #include <utility>
 
+#include "common/at.h"
 #include "common/dot.h"
 #include "common/median.h"
 #include "common/parallel_for.h"
@@ -171,6 +172,16 @@ AutoNormals orientAtOneScale(MoreNeighbors& more, const Neighborhoods& neighborh
 
 }  // namespace
 
+void turnInsideOut(AutoNormals& found) {
+  const std::vector<std::uint8_t>& turned = found.orientation.inside_out;
+  if (std::find(turned.begin(), turned.end(), 1) == turned.end()) return;
+  for (std::size_t i = 0; i < found.components.size(); ++i) {
+    if (found.components[i] < 0 || turned[at(found.components[i])] == 0) continue;
+    float* n = &found.normals[4 * i];
+    for (std::size_t a = 0; a < 3; ++a) n[a] = -n[a];
+  }
+}
+
 AutoNormals orientPoints(MoreNeighbors& more, const Neighborhoods& neighborhoods,
                          const AutomaticOptions& settings, const PointHints& hints, int threads,
                          const std::function<void(const char*, double)>& begin, SheetRecord* record,
@@ -184,7 +195,10 @@ AutoNormals orientPoints(MoreNeighbors& more, const Neighborhoods& neighborhoods
   const auto orient = [&](const PointView& subset, const Neighborhoods& table,
                           const PointHints& of_subset) {
     MoreNeighbors of_level(subset, threads);
-    return orientAtOneScale(of_level, table, settings, of_subset, threads, {}, nullptr, nullptr);
+    AutoNormals found =
+        orientAtOneScale(of_level, table, settings, of_subset, threads, {}, nullptr, nullptr);
+    turnInsideOut(found);
+    return found;
   };
   // A coarser level knows nothing of what is around each point.
   const std::vector<std::uint8_t> around = out.around;
@@ -192,7 +206,9 @@ AutoNormals orientPoints(MoreNeighbors& more, const Neighborhoods& neighborhoods
   if (part) {
     record->coarser(more.points(), out);
   } else {
+    turnInsideOut(out);
     out.level = followCoarserLevels(more.points(), neighborhoods, hints, orient, threads, out);
+    turnInsideOut(out);
   }
   if (out.level > 0.F) out.level_sheets = out.sheets;
   out.around = around;

@@ -28,6 +28,10 @@ struct AutoOrientation : detail::SeenPoints {
   std::vector<Contradiction> contradictions;       ///< by descending weight
   bool place_idle = false;                         ///< the one place for all points decided nothing
   std::vector<KnownSensor> sensors;                ///< positions in the points' unit
+  /// One a component, whether it is open ground with what stands on it.
+  std::vector<std::uint8_t> ground;
+  /// The same, whether hints turned it to the side that the winding number takes for inside.
+  std::vector<std::uint8_t> inside_out;
 
   /// Whether places were given, and they decided nothing: none is believed, or the surface knows
   /// better everywhere.

@@ -54,12 +54,12 @@ bool isClosed(const std::vector<ComponentOrientationResult>& components) {
 
 // Whether most of it is open ground with what stands on it, whose side is a convention whatever the
 // winding number says: it bounds no bodies.
-bool isGround(const std::vector<ComponentOrientationResult>& components) {
+bool isGround(const AutoOrientation& orientation) {
   std::size_t ground = 0;
   std::size_t points = 0;
-  for (const ComponentOrientationResult& component : components) {
-    const bool conventional = component.by == DecidedBy::NOTHING;
-    if (conventional && component.evidence >= kNoEvidence) ground += component.points;
+  for (std::size_t c = 0; c < orientation.ground.size(); ++c) {
+    const ComponentOrientationResult& component = orientation.result.components[c];
+    if (orientation.ground[c] != 0 && component.evidence >= kNoEvidence) ground += component.points;
     points += component.points;
   }
   return 2 * ground > points;
@@ -159,9 +159,8 @@ CellSigns findAtScale(const PointView& points, const std::vector<float>& normals
 }  // namespace
 
 CellSigns findCellSigns(const PointView& points, const std::vector<float>& normals, float spacing,
-                        const std::vector<ComponentOrientationResult>& components, bool noisy,
-                        int threads) {
-  if (isClosed(components) || isGround(components)) return {};
+                        const AutoOrientation& orientation, bool noisy, int threads) {
+  if (isClosed(orientation.result.components) || isGround(orientation)) return {};
   if (!mayBoundBodies(points, normals, spacing, noisy, threads)) return {};
   CellSigns out = findAtScale(points, normals, spacing, kClean, threads);
   if (noisy && out.empty()) out = findAtScale(points, normals, spacing, kNoisy, threads);

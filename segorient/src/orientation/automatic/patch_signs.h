@@ -39,11 +39,13 @@ struct CellSigns {
 /// ground.
 ///
 /// \param points finite, near ones side by side \param normals 4 floats a point, oriented
-/// \param spacing of the points, median \param components as they were oriented
+/// \param spacing of the points, median \param orientation that they have
 /// \param noisy whether noise leaves few neighbours no say: cells are larger then, if they have to
-SEGORIENT_ORIENTATION_EXPORT CellSigns
-findCellSigns(const PointView& points, const std::vector<float>& normals, float spacing,
-              const std::vector<ComponentOrientationResult>& components, bool noisy, int threads);
+SEGORIENT_ORIENTATION_EXPORT CellSigns findCellSigns(const PointView& points,
+                                                     const std::vector<float>& normals,
+                                                     float spacing,
+                                                     const AutoOrientation& orientation, bool noisy,
+                                                     int threads);
 
 /// Each point takes the sign of the nearest cell whose normal is alike.
 /// \param points those that the cells are about, see EvenCells::cell_of

@@ -94,8 +94,7 @@ void askField(const PreparedCloud& cloud, const PointView& points, const Neighbo
   const bool alone = out.orientation.toward.empty();
   CellSigns bodies;
   if (alone && !at_level) {
-    bodies = findCellSigns(points, out.normals, out.spacing, out.orientation.result.components,
-                           noisy, threads);
+    bodies = findCellSigns(points, out.normals, out.spacing, out.orientation, noisy, threads);
   }
   takeCellSigns(points, bodies, out);
   if (noisy || at_level) {
@@ -150,11 +149,17 @@ AutoStages runAutoStages(PreparedCloud& cloud, const PipelineOptions& options,
       orientPoints(more, table, settings, hints, options.threads, begin, record, &finished);
   out.segmentation = std::move(finished.segmentation);
   out.typical_offset = finished.typical_offset;
-  // What sensors or the user know is better than what the field tells.
-  if (record != nullptr) {
+  if (record != nullptr && !record->known) {
     if (record->field) record->field(points, out);
-  } else if (settings.winding_normals && hints.nothing()) {
-    askField(cloud, points, table, options.threads, out);
+  } else {
+    // The field knows the outside of closed surfaces only.
+    turnInsideOut(out);
+    if (record != nullptr) {
+      if (record->field) record->field(points, out);
+    } else if (settings.winding_normals && hints.leaveSidesToField()) {
+      askField(cloud, points, table, options.threads, out);
+    }
+    turnInsideOut(out);
   }
   if (settings.winding_normals) askFieldForLines(cloud, options.threads, out);
   labelTheRest(table, out.normals, out.segmentation);

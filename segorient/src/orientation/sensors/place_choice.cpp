@@ -51,6 +51,7 @@ PlaceChoice findOthers(const PointView& points, OrientationHints hints, Prepared
     out.sensors.why += ", unless seeds say otherwise";
   }
   out.place.faces_up = out.sensors.faces_up;
+  out.place.seen_within = !hints.normals.empty();
   if (out.sensors.sensors.empty()) out.sensors.sensor_of = {};
   out.hints = std::move(hints);
   out.place.shadows = seen.of_sensor;

@@ -29,6 +29,9 @@ struct CloudPlace {
   /// Whether a search found places along a sensor's way, which are near the true ones only: what
   /// is hidden from them, and how dense their own points are, says little.
   bool along_way = false;
+  /// Whether a search found no place, but that all was seen from within: each point's direction is
+  /// then that to where it was seen from.
+  bool seen_within = false;
 };
 
 /// OrientationHints by distinct point, in the unit of a PreparedCloud.
@@ -57,10 +60,10 @@ struct PointHints {
   /// already known which sensors are to be believed. Then `sensors` is empty.
   std::vector<float> toward;
 
-  /// Whether there is nothing that knows sides better than the points themselves.
-  bool nothing() const {
-    return surface != SurfaceKind::OPEN && !has_viewpoint && !place.faces_up && sensors.empty() &&
-           directions.empty() && seeds.empty() && toward.empty();
+  /// Whether nothing knows the side of each point, so that the field of all of them may tell it.
+  bool leaveSidesToField() const {
+    return surface != SurfaceKind::OPEN && !has_viewpoint && !place.faces_up &&
+           !place.seen_within && sensors.empty() && toward.empty();
   }
 };
 
