@@ -11,6 +11,7 @@
 #include <cmath>
 #include <cstddef>
 #include <limits>
+#include <memory>
 #include <random>
 #include <vector>
 
@@ -291,6 +292,38 @@ TEST(NoiseField, ThinPartsAreToldApart) {
   }
   // It gains .007; coarser scales find the most of what is left.
   EXPECT_GT(with, without + 0.004) << without;
+}
+
+// Share of normals on the side that is told, by few points or by all of them.
+// \param side 1 = outward, -1 = inward
+double rightByHints(const Noisy& cloud, bool few, float side) {
+  OrientationHints hints;
+  hints.normals.assign(3 * cloud.normals.size() / 4, 0.F);
+  for (std::size_t i = 0; i < cloud.normals.size() / 4; ++i) {
+    const float* n = &cloud.normals[4 * i];
+    const float* p = &cloud.xyz[4 * i];
+    for (std::size_t a = 0; a < 3; ++a) hints.normals[3 * i + a] = side * n[a];
+    if (i % 500 != 0) continue;
+    hints.seeds.push_back({{p[0], p[1], p[2]}, {side * n[0], side * n[1], side * n[2]}});
+  }
+  few ? hints.normals.clear() : hints.seeds.clear();
+  PipelineOptions options;
+  options.orientation.hints = std::make_shared<OrientationHints>(hints);
+  const double outward =
+      shareOutward(orientCloud(viewOf(cloud.xyz), nullptr, options).normals, cloud.normals);
+  return side > 0.F ? outward : 1.0 - outward;
+}
+
+// The field knows more of single points than what is said of parts, whichever side that wants.
+TEST(NoiseField, IsAskedWhereSeedsOrNormalsAreKnownToo) {
+  const Noisy cloud = winged(8000, 0.6, 1);
+  const double best = right(cloud, true);
+  ASSERT_GT(best, right(cloud, false) + 0.004);
+  for (const bool few : {true, false}) {
+    for (const float side : {1.F, -1.F}) {
+      EXPECT_GT(rightByHints(cloud, few, side), best - 0.001) << few << side;
+    }
+  }
 }
 
 TEST(NoiseField, CleanCloudsAreNotTouched) {

@@ -63,6 +63,36 @@ TEST_F(Hints, SeedsTurnASheet) {
   EXPECT_EQ(facingDown(out), 2500U);
 }
 
+// Normals of the lowest points that face up, as a share.
+double shareUpAtTheBottom(const std::string& path) {
+  const program::CloudTable cloud = program::readCloud(path);
+  std::size_t bottom = 0;
+  std::size_t up = 0;
+  for (std::size_t i = 0; i < cloud.size; ++i) {
+    if (cloud.triple(cloud.xyz(), i)[2] > 0.0) continue;
+    ++bottom;
+    up += cloud.triple(cloud.normals(), i)[2] > 0.0 ? 1 : 0;
+  }
+  return static_cast<double>(up) / static_cast<double>(bottom);
+}
+
+// What the field of all points tells of touching bodies, their outside, is not what a seed says.
+TEST_F(Hints, ASeedOnTouchingBodiesIsHeededAsInMemory) {
+  const std::vector<double> xyz = stackOfBoxes(4, 2000);
+  const std::string in = writeDoubles(scratch.file("in.ply"), xyz);
+  const std::string whole = scratch.file("whole.ply");
+  for (const double side : {-1.0, 1.0}) {
+    const std::string seed =
+        writeFields(scratch.file("seed.ply"), {"x", "y", "z", "nx", "ny", "nz"},
+                    {0.3, 0.3, 0.0, 0.0, 0.0, side});
+    ASSERT_EQ(runProgram({"orient", in, whole, "-q", "--seeds", seed}).status, 0);
+    expectRuns({"orient", in, out, "--seeds", seed});
+    const double up = shareUpAtTheBottom(whole);
+    EXPECT_GT(side > 0.0 ? up : 1.0 - up, 0.99) << side;
+    EXPECT_GE(sameSides(whole, out), xyz.size() / 3 - xyz.size() / 3000) << side;
+  }
+}
+
 TEST_F(Hints, NormalsOfTheInputTurnASheet) {
   const std::string in = writeFields(scratch.file("in.ply"), {"x", "y", "z", "nx", "ny", "nz"},
                                      sheet({0.1, 0.0, -1.0}));

@@ -120,11 +120,16 @@ CloudField findFine(const PointView& places, const std::vector<float>& normals,
 }
 
 CloudField findSigns(const PreparedCloud& cloud, const std::vector<float>& normals, float spacing,
-                     const AutoOrientation& orientation, bool noisy, int threads) {
+                     const AutoOrientation& orientation, const PointHints& hints, bool noisy,
+                     int threads) {
   CloudField out;
   const CellSigns signs =
       findCellSigns(cloud.points(), normals, spacing, orientation, noisy, threads);
-  if (signs.empty()) return out;
+  if (signs.empty() ||
+      contradictHints(cloud.points(), signs, normals, orientation.result.point_components,
+                      orientation.inside_out, hints)) {
+    return out;
+  }
   out.radius = cloud.unit() * spacing;
   addCells(signs.cells.places, cloud.unit(), signs.cells.normals, 1.F, out);
   for (std::size_t c = 0; c < out.cells.size(); ++c) out.cells[c].value = signs.signs[c];

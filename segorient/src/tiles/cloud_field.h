@@ -31,9 +31,10 @@ SEGORIENT_TILES_EXPORT CloudField findFine(const PointView& places,
 
 /// What the field says of bodies that touch, see findCellSigns(); often nothing.
 /// \param normals 4 floats a point of the cloud, oriented \param spacing in the cloud's unit
-/// \param noisy see findCellSigns()
+/// \param noisy see findCellSigns() \param hints see contradictHints()
 CloudField findSigns(const PreparedCloud& cloud, const std::vector<float>& normals, float spacing,
-                     const AutoOrientation& orientation, bool noisy, int threads);
+                     const AutoOrientation& orientation, const PointHints& hints, bool noisy,
+                     int threads);
 
 /// Gives a tile's points what the field tells of them. \param points of the tile, with neighbours
 /// \param unit theirs \param field relative to the tile's origin

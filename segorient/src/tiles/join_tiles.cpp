@@ -93,7 +93,7 @@ struct TileJoiner::Impl {
   };
   PatchCloud makeCloud(const PointView& places, int threads) const;
   CloudField findField(const AutoOrientation& orientation, const PatchCloud& cloud,
-                       const JoinOptions& options) const;
+                       const PointHints& hints, const JoinOptions& options) const;
   void distribute(const AutoOrientation& orientation, const PatchCloud& cloud,
                   JoinedTiles& out) const;
 };
@@ -125,7 +125,7 @@ TileJoiner::Impl::PatchCloud TileJoiner::Impl::makeCloud(const PointView& places
 
 // As runAutoStages() does of a cloud in memory.
 CloudField TileJoiner::Impl::findField(const AutoOrientation& orientation, const PatchCloud& cloud,
-                                       const JoinOptions& options) const {
+                                       const PointHints& hints, const JoinOptions& options) const {
   std::vector<float> normals = cloud.normals;
   for (std::size_t i = 0; i < cloud.cloud.size(); ++i) {
     const std::size_t piece = at(cloud.segmentation.labels[i]);
@@ -137,7 +137,7 @@ CloudField TileJoiner::Impl::findField(const AutoOrientation& orientation, const
   if (fine && !alone) return {};
   if (alone && !(options.traits.level > 0.F)) {
     CloudField signs = detail::findSigns(cloud.cloud, normals, median(cloud.spacing), orientation,
-                                         options.traits.noisy != 0, options.threads);
+                                         hints, options.traits.noisy != 0, options.threads);
     if (!signs.cells.empty()) return signs;
   }
   if (field_points.empty()) return {};  // tiles whose sensors were known did not ask
@@ -278,7 +278,7 @@ JoinedTiles TileJoiner::join(const JoinOptions& options) {
     out.sensors_dropped = true;
   }
   i.distribute(orientation, patches, out);
-  if (hints.leaveSidesToField()) out.field = i.findField(orientation, patches, options);
+  if (hints.leaveSidesToField()) out.field = i.findField(orientation, patches, hints, options);
   out.components = std::move(orientation.result.components);
   return out;
 }

@@ -71,7 +71,9 @@ class Tile {
     signs_ = &signs;
     fine_.record.field = [&](const PointView& points, detail::AutoNormals& found) {
       const PointView& at = field.noise != 0 ? cloud_.points() : points;
+      detail::turnInsideOut(found);
       detail::takeField(at, cloud_.neighborhoods(), cloud_.unit(), field, options_.threads, found);
+      detail::turnInsideOut(found);
     };
     run();
     followed_.assign(cloud_.size(), -1);

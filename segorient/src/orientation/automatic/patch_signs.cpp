@@ -9,6 +9,7 @@
 #include <limits>
 #include <vector>
 
+#include "common/at.h"
 #include "common/dot.h"
 #include "orientation/automatic/even_cells.h"
 #include "orientation/automatic/patch_equations.h"
@@ -165,6 +166,28 @@ CellSigns findCellSigns(const PointView& points, const std::vector<float>& norma
   CellSigns out = findAtScale(points, normals, spacing, kClean, threads);
   if (noisy && out.empty()) out = findAtScale(points, normals, spacing, kNoisy, threads);
   return out;
+}
+
+bool contradictHints(const PointView& points, const CellSigns& cells,
+                     const std::vector<float>& normals, const std::vector<std::int32_t>& components,
+                     const std::vector<std::uint8_t>& inside_out, const PointHints& hints) {
+  if (cells.empty() || (hints.seeds.empty() && hints.directions.empty())) return false;
+  AutoNormals turned;
+  turned.normals = normals;
+  turned.confidences.assign(points.size, 1.F);
+  takeCellSigns(points, cells, turned);
+  double change = 0.0;
+  const auto hear = [&](std::size_t i, const float* direction) {
+    if (components[i] < 0) return;
+    const float side = inside_out[at(components[i])] != 0 ? -1.F : 1.F;
+    const float* n = &turned.normals[4 * i];
+    change += static_cast<double>(side * (dot(n, direction) - dot(&normals[4 * i], direction)));
+  };
+  for (const PointHints::Seed& seed : hints.seeds) hear(seed.point, seed.normal.data());
+  for (std::size_t i = 0; hints.seeds.empty() && i < points.size; ++i) {
+    hear(i, &hints.directions[3 * i]);
+  }
+  return change < 0.0;
 }
 
 void takeCellSigns(const PointView& points, const CellSigns& cells, AutoNormals& found) {

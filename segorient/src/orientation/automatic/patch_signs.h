@@ -47,6 +47,15 @@ SEGORIENT_ORIENTATION_EXPORT CellSigns findCellSigns(const PointView& points,
                                                      const AutoOrientation& orientation, bool noisy,
                                                      int threads);
 
+/// Whether seeds, or else directions, agree less with these signs than with the normals as they
+/// are. \param normals of the points, turned for the field (turnInsideOut()) \param components of
+/// the points \param inside_out which of them were turned for it
+SEGORIENT_ORIENTATION_EXPORT bool contradictHints(const PointView& points, const CellSigns& cells,
+                                                  const std::vector<float>& normals,
+                                                  const std::vector<std::int32_t>& components,
+                                                  const std::vector<std::uint8_t>& inside_out,
+                                                  const PointHints& hints);
+
 /// Each point takes the sign of the nearest cell whose normal is alike.
 /// \param points those that the cells are about, see EvenCells::cell_of
 /// \param found normals and their confidences may change

@@ -85,16 +85,20 @@ void turnSegments(int threads, AutoStages& out) {
   });
 }
 
-// What the winding number says of the signs, where nothing is known of sensors or sides.
+// What the winding number says of the signs, where nothing is known of sensors.
 // \param points of the cloud, smoothed or not \param table of their neighbours
 void askField(const PreparedCloud& cloud, const PointView& points, const Neighborhoods& table,
-              int threads, AutoStages& out) {
+              const PointHints& hints, int threads, AutoStages& out) {
   const bool noisy = out.noise >= kFewTellNothing;
   const bool at_level = out.level > 0.F;
   const bool alone = out.orientation.toward.empty();
   CellSigns bodies;
   if (alone && !at_level) {
     bodies = findCellSigns(points, out.normals, out.spacing, out.orientation, noisy, threads);
+  }
+  if (contradictHints(points, bodies, out.normals, out.components, out.orientation.inside_out,
+                      hints)) {
+    bodies = {};
   }
   takeCellSigns(points, bodies, out);
   if (noisy || at_level) {
@@ -149,16 +153,11 @@ AutoStages runAutoStages(PreparedCloud& cloud, const PipelineOptions& options,
       orientPoints(more, table, settings, hints, options.threads, begin, record, &finished);
   out.segmentation = std::move(finished.segmentation);
   out.typical_offset = finished.typical_offset;
-  if (record != nullptr && !record->known) {
+  if (record != nullptr) {
     if (record->field) record->field(points, out);
-  } else {
-    // The field knows the outside of closed surfaces only.
+  } else if (settings.winding_normals && hints.leaveSidesToField()) {
     turnInsideOut(out);
-    if (record != nullptr) {
-      if (record->field) record->field(points, out);
-    } else if (settings.winding_normals && hints.leaveSidesToField()) {
-      askField(cloud, points, table, options.threads, out);
-    }
+    askField(cloud, points, table, hints, options.threads, out);
     turnInsideOut(out);
   }
   if (settings.winding_normals) askFieldForLines(cloud, options.threads, out);
