@@ -168,6 +168,18 @@ TEST(Hints, ClosedSurfacesKnowTheirOutsideBetterThanAViewpoint) {
   EXPECT_GE(shareOutward(orient(cube.xyz, near_face).normals, cube.normals), 0.999);
 }
 
+// Noise adds to what the winding number leaves of a closed surface. The middle sees all of a cube
+// from within, but evenly.
+TEST(Hints, SolidsInNoiseKnowTheirOutsideBetterThanAPlaceWithin) {
+  for (const double noise : {0.2, 0.35, 0.5}) {
+    const LabelledCloud cube = sample("cube", test::cube(), 6000, 65, noise);
+    for (const OrientationHints& within :
+         {seenFrom(0.5F, 0.5F, 0.5F), seenFrom(0.5F, 0.5F, 0.8F)}) {
+      EXPECT_GE(shareOutward(orient(cube.xyz, within).normals, cube.normals), 0.995) << noise;
+    }
+  }
+}
+
 TEST(Hints, SeedsAndNormalsTurnClosedSurfacesInward) {
   const LabelledCloud cube = sample("cube", test::cube(), 6000, 66, 0.0);
   OrientationHints seeds;

@@ -43,7 +43,7 @@ void weighOnePlace(SheetSigns& sheets, const std::vector<Ballot>& ballots) {
     by_component[at(sheets.component_of[s])].add(ballots[s], sheets.signs[s]);
   }
   // A room seen from within all but closes, too.
-  const float residual = sheets.sensors.hides ? kOpenResidual : kClosedResidual;
+  const float residual = sheets.sensors.hides ? kOpenResidual : sheets.closedResidual();
   std::vector<bool> own(sheets.windings.size(), false);
   std::size_t believed = 0;
   for (std::size_t c = 0; c < own.size(); ++c) {
@@ -92,7 +92,7 @@ void followHints(SheetSigns& sheets) {
   // What hides points from a doubtful place goes on behind them, as closed surfaces do.
   const KnownSensors& known_sensors = sheets.sensors;
   const bool hides = known_sensors.doubtful && known_sensors.scans[0].hidden > kFewHidden;
-  const float residual = hides ? kOpenResidual : kClosedResidual;
+  const float residual = hides ? kOpenResidual : sheets.closedResidual();
   std::vector<Ballot> seen(sheets.clusters.size());
   std::vector<Ballot> known(sheets.clusters.size());
   for (std::size_t c = 0; c < sheets.clusters.size(); ++c) {

@@ -99,6 +99,10 @@ bool SheetSigns::isClosed(std::size_t component, float residual) const {
   return !ground[component] && windings[component].residual <= residual;
 }
 
+float SheetSigns::closedResidual() const {
+  return std::min(kOpenResidual, kClosedResidual + kResidualOfNoise * field.residual);
+}
+
 std::vector<bool> SheetSigns::outvoted(const std::vector<Ballot>& ballots,
                                        float sure_borders) const {
   const std::vector<float> agreement = agreementOf(clusters.of(), votes, signs, 0.F);

@@ -29,6 +29,8 @@ constexpr float kClosedResidual = 0.03F;
 /// Noise of half a spacing adds .045 on a plane of even points and .06 on one of random points,
 /// more noise .07 at most.
 constexpr float kOpenResidual = 0.1F;
+/// For a spacing of noise, up to half a one: as it adds to planes.
+constexpr float kResidualOfNoise = 0.1F;
 /// Evidence of less is that of a plane, or of an isolated point: nothing tells in from out.
 constexpr float kNoEvidence = 0.01F;
 constexpr float kClearly = 0.6F;  ///< four of five votes
@@ -69,6 +71,8 @@ struct SheetSigns {
   /// Whether a component is told or known to be closed. \param residual most of the winding
   /// number's
   bool isClosed(std::size_t component, float residual) const;
+  /// What that is where everything is closed, in this noise.
+  float closedResidual() const;
   /// Clusters that nearly all of the ballot is against, unless their borders know better.
   std::vector<bool> outvoted(const std::vector<Ballot>& ballots, float sure_borders) const;
   void turnClusters(const std::vector<bool>& chosen);
