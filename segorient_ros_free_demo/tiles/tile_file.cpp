@@ -7,7 +7,7 @@
 namespace segorient::program {
 namespace {
 
-constexpr std::array<char, 8> kMagic{'s', 'e', 'g', 't', 'i', 'l', 'e', '1'};
+constexpr std::array<char, 8> kMagic{'s', 'e', 'g', 't', 'i', 'l', 'e', '2'};
 
 }  // namespace
 

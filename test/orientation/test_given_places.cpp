@@ -271,13 +271,6 @@ TEST(TurnToSensors, TheSurestBorderDecidesFirst) {
   three = {1, 1, 1};
   detail::turnToSensors(two, both, three);
   EXPECT_EQ(three[2], -1);
-  // Borders longer than what any of them knows, as of pieces of one surface that overlap.
-  const std::vector<BorderVote> longest{border(0, 1, 200.F, 200.F), border(1, 2, 200.F, 200.F)};
-  const std::vector<detail::Ballot> clear{{-50.F, 50.F}, {-60.F, 60.F}, {-2.F, 2.F}};
-  three = {1, 1, 1};
-  const std::vector<bool> surest = detail::turnToSensors(clear, longest, three);
-  EXPECT_EQ(surest, (std::vector<bool>{true, false, false}));
-  EXPECT_EQ(three, (std::vector<std::int8_t>{-1, -1, -1}));
 }
 
 }  // namespace

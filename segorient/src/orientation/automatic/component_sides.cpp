@@ -91,14 +91,18 @@ std::vector<std::int8_t> conventions(const SheetSigns& sheets, const std::vector
   return out;
 }
 
+// Of open ground the winding number tells bulge from hollow, not outside from inside.
+bool isUnknown(const SheetSigns& sheets, std::size_t component) {
+  return sheets.ground[component] || sheets.windings[component].evidence < kNoEvidence;
+}
+
 // What decides the side of a component: the winding number, or what is known beforehand, or else
 // convention.
 ComponentOrientationResult sideOf(const SheetSigns& sheets, std::size_t component,
                                   std::int8_t convention, const HintVotes& hints) {
   const ComponentWinding& winding = sheets.windings[component];
   ComponentOrientationResult out = sheets.found.result.components[component];
-  // Of open ground the winding number tells bulge from hollow, not outside from inside.
-  const bool unknown = sheets.ground[component] || winding.evidence < kNoEvidence;
+  const bool unknown = isUnknown(sheets, component);
   out.sign = unknown ? convention : winding.sign;
   out.by = unknown ? DecidedBy::NOTHING : DecidedBy::GLOBAL;
   out.evidence = winding.evidence;
@@ -136,10 +140,8 @@ void turnComponentsOut(SheetSigns& sheets) {
   sheets.found.inside_out.assign(components.size(), 0);
   for (std::size_t c = 0; c < components.size(); ++c) {
     components[c] = sideOf(sheets, c, conventional[c], hinted[c]);
-    // The winding number knows no side of the others.
-    const bool closed = !sheets.ground[c] && components[c].evidence >= kNoEvidence;
-    const bool turned = components[c].sign != sheets.windings[c].sign;
-    sheets.found.inside_out[c] = closed && turned ? 1 : 0;
+    const std::int8_t by_itself = isUnknown(sheets, c) ? conventional[c] : sheets.windings[c].sign;
+    sheets.found.inside_out[c] = components[c].sign != by_itself ? 1 : 0;
   }
   for (std::size_t s = 0; s < sheets.signs.size(); ++s) {
     const std::int8_t turn = components[at(sheets.component_of[s])].sign;

@@ -80,6 +80,25 @@ void weighOnePlace(SheetSigns& sheets, const std::vector<Ballot>& ballots) {
   sheets.facing.assign(sheets.points.size, 0.F);
 }
 
+// Where no segment's points say more than its borders could, as of pieces of one surface that tiles
+// overlap on, those of all segments of the component do.
+void turnWhatNoSegmentDecides(SheetSigns& sheets, const std::vector<Ballot>& ballots,
+                              std::vector<bool>& decided) {
+  std::vector<Ballot> all(sheets.windings.size());
+  std::vector<bool> has_decided(all.size(), false);
+  for (std::size_t s = 0; s < decided.size(); ++s) {
+    const std::size_t c = at(sheets.component_of[s]);
+    all[c].add(ballots[s], sheets.signs[s]);
+    if (decided[s]) has_decided[c] = true;
+  }
+  for (std::size_t s = 0; s < decided.size(); ++s) {
+    const std::size_t c = at(sheets.component_of[s]);
+    if (has_decided[c] || !isClear(all[c].balance)) continue;
+    decided[s] = true;
+    if (all[c].balance < 0.F) sheets.signs[s] = static_cast<std::int8_t>(-sheets.signs[s]);
+  }
+}
+
 }  // namespace
 
 void followHints(SheetSigns& sheets) {
@@ -112,7 +131,8 @@ void followSensors(SheetSigns& sheets) {
   sheets.facing = facingOf(sheets.field, sheets.points.size, sheets.sensors);
   weighOnePlace(sheets, facingBySegment(sheets.facing, sheets.segmentation));
   const std::vector<Ballot> ballots = facingBySegment(sheets.facing, sheets.segmentation);
-  const std::vector<bool> decided = turnToSensors(ballots, sheets.votes, sheets.signs);
+  std::vector<bool> decided = turnToSensors(ballots, sheets.votes, sheets.signs);
+  turnWhatNoSegmentDecides(sheets, ballots, decided);
   std::vector<Ballot> seen(sheets.windings.size());
   for (std::size_t s = 0; s < sheets.signs.size(); ++s) {
     if (decided[s]) seen[at(sheets.component_of[s])].add(ballots[s], sheets.signs[s]);

@@ -43,8 +43,8 @@ struct AutoNormals {
   SheetTraits level_sheets;         ///< of the level's subset, where there is one
 };
 
-/// For what takes the side that the winding number has for the outside: turns the components over
-/// that hints turned to the other one (AutoOrientation::inside_out), and a second time back again.
+/// For what takes the outside to be where the winding number has it: turns the components over that
+/// hints turned (AutoOrientation::inside_out), and a second time back again.
 SEGORIENT_ORIENTATION_EXPORT void turnInsideOut(AutoNormals& found);
 
 /// What fitFinalNormals() measures of a whole cloud; for a part of one it is told.

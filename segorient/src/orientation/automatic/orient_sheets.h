@@ -30,7 +30,7 @@ struct AutoOrientation : detail::SeenPoints {
   std::vector<KnownSensor> sensors;                ///< positions in the points' unit
   /// One a component, whether it is open ground with what stands on it.
   std::vector<std::uint8_t> ground;
-  /// The same, whether hints turned it to the side that the winding number takes for inside.
+  /// The same, whether hints turned it to the other side than it has without them.
   std::vector<std::uint8_t> inside_out;
 
   /// Whether places were given, and they decided nothing: none is believed, or the surface knows

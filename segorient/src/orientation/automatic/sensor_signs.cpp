@@ -18,56 +18,22 @@ constexpr float kClear = 3.F;  // standard deviations
 
 // What borders tie to segments that sensors decided, the surest of the rest first: as its borders
 // to decided ones and its own points say together, of all that these could say.
-class SurestFirst {
- public:
-  SurestFirst(const std::vector<Ballot>& ballots, const std::vector<BorderVote>& votes,
-              std::vector<std::int8_t>& signs)
-      : votes_(votes), signs_(signs), decided_(signs.size(), false), borders_(signs.size()) {
-    for (const Ballot& b : ballots) {
-      balance_.push_back(b.balance);
-      all_.push_back(b.total);
-    }
-    for (std::size_t v = 0; v < votes.size(); ++v) {
-      for (const std::int32_t s : {votes[v].a, votes[v].b}) {
-        borders_[at(s)].push_back(static_cast<std::uint32_t>(v));
-        all_[at(s)] += votes[v].absolute;
-      }
-    }
+void followDecided(const std::vector<Ballot>& ballots, const std::vector<BorderVote>& votes,
+                   std::vector<bool> decided, std::vector<std::int8_t>& signs) {
+  const std::size_t n = signs.size();
+  std::vector<std::vector<std::uint32_t>> borders(n);
+  std::vector<float> balance(n);
+  std::vector<float> all(n);
+  for (std::size_t s = 0; s < n; ++s) {
+    balance[s] = ballots[s].balance;
+    all[s] = ballots[s].total;
   }
-
-  bool isDecided(std::size_t s) const { return decided_[s]; }
-
-  /// Of all that is said of a segment, what one side has more than the other.
-  float sureness(std::size_t s) const { return std::fabs(balance_[s]) / all_[s]; }
-
-  /// As what is known of it by now says.
-  void decide(std::size_t s) {
-    signs_[s] = balance_[s] < 0.F ? std::int8_t{-1} : std::int8_t{1};
-    decided_[s] = true;
-  }
-
-  void tellNeighbors(std::size_t s) {
-    for (const std::uint32_t v : borders_[s]) {
-      const std::size_t other = at(at(votes_[v].a) == s ? votes_[v].b : votes_[v].a);
-      if (decided_[other] || votes_[v].weight == 0.F) continue;
-      balance_[other] += votes_[v].weight * static_cast<float>(signs_[s]);
-      queue_.push({sureness(other), other});
+  for (std::size_t v = 0; v < votes.size(); ++v) {
+    for (const std::int32_t s : {votes[v].a, votes[v].b}) {
+      borders[at(s)].push_back(static_cast<std::uint32_t>(v));
+      all[at(s)] += votes[v].absolute;
     }
   }
-
-  void followDecided() {
-    while (!queue_.empty()) {
-      const Candidate next = queue_.top();
-      queue_.pop();
-      const std::size_t s = next.segment;
-      // What has heard more since is in the queue again.
-      if (decided_[s] || next.sureness != sureness(s) || balance_[s] == 0.F) continue;
-      decide(s);
-      tellNeighbors(s);
-    }
-  }
-
- private:
   struct Candidate {
     float sureness;
     std::size_t segment;
@@ -75,15 +41,30 @@ class SurestFirst {
       return sureness != o.sureness ? sureness < o.sureness : segment > o.segment;
     }
   };
-
-  const std::vector<BorderVote>& votes_;
-  std::vector<std::int8_t>& signs_;
-  std::vector<bool> decided_;
-  std::vector<std::vector<std::uint32_t>> borders_;
-  std::vector<float> balance_;
-  std::vector<float> all_;
-  std::priority_queue<Candidate> queue_;
-};
+  std::priority_queue<Candidate> queue;
+  const auto surenessOf = [&](std::size_t s) { return std::fabs(balance[s]) / all[s]; };
+  const auto tellNeighbors = [&](std::size_t s) {
+    for (const std::uint32_t v : borders[s]) {
+      const std::size_t other = at(at(votes[v].a) == s ? votes[v].b : votes[v].a);
+      if (decided[other] || votes[v].weight == 0.F) continue;
+      balance[other] += votes[v].weight * static_cast<float>(signs[s]);
+      queue.push({surenessOf(other), other});
+    }
+  };
+  for (std::size_t s = 0; s < n; ++s) {
+    if (decided[s]) tellNeighbors(s);
+  }
+  while (!queue.empty()) {
+    const Candidate next = queue.top();
+    queue.pop();
+    const std::size_t s = next.segment;
+    // What has heard more since is in the queue again.
+    if (decided[s] || next.sureness != surenessOf(s) || balance[s] == 0.F) continue;
+    signs[s] = balance[s] < 0.F ? std::int8_t{-1} : std::int8_t{1};
+    decided[s] = true;
+    tellNeighbors(s);
+  }
+}
 
 }  // namespace
 
@@ -133,32 +114,12 @@ std::vector<bool> turnToSensors(const std::vector<Ballot>& ballots,
     borders[static_cast<std::size_t>(v.a)] += v.absolute;
     borders[static_cast<std::size_t>(v.b)] += v.absolute;
   }
-  SurestFirst sides(ballots, votes, signs);
-  std::vector<std::size_t> left;
   for (std::size_t s = 0; s < signs.size(); ++s) {
-    if (!isClear(ballots[s].balance)) continue;
-    by_sensors[s] = std::fabs(ballots[s].balance) >= borders[s];
-    if (by_sensors[s]) {
-      sides.decide(s);
-    } else {
-      left.push_back(s);
-    }
-  }
-  for (std::size_t s = 0; s < signs.size(); ++s) {
-    if (by_sensors[s]) sides.tellNeighbors(s);
-  }
-  sides.followDecided();
-  // Where the borders of all are longer, as of pieces that tiles overlap on, none knows better.
-  std::stable_sort(left.begin(), left.end(), [&](std::size_t a, std::size_t b) {
-    return sides.sureness(a) > sides.sureness(b);
-  });
-  for (const std::size_t s : left) {
-    if (sides.isDecided(s)) continue;
+    if (!isClear(ballots[s].balance) || std::fabs(ballots[s].balance) < borders[s]) continue;
     by_sensors[s] = true;
-    sides.decide(s);
-    sides.tellNeighbors(s);
-    sides.followDecided();
+    signs[s] = ballots[s].balance < 0.F ? std::int8_t{-1} : std::int8_t{1};
   }
+  followDecided(ballots, votes, by_sensors, signs);
   return by_sensors;
 }
 
