@@ -201,11 +201,10 @@ class FinalNormals {
     }
   }
 
-  // The less the two agree, the more the filtered one counts, which knows its side, but for edges.
+  // The less the two agree, the more the filtered one counts, which knows its side. Beside an edge
+  // in little noise, that is for the face to say.
   // \param share of the filtered one where they are at right angles: all. Beside an edge, where it
-  // is
-  //        a mean over both faces, it is how near the noise comes to what hides that there are two;
-  //        in little noise the side is that of the face
+  //        is a mean over both faces, how near the noise comes to what hides that there are two
   static void takeMean(const float* f, float share, float* result) {
     const float along = dot(f, result);
     addUnit(f, (1.F - share) / share + along * along * along, result);
