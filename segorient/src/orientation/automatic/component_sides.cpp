@@ -96,6 +96,11 @@ bool isUnknown(const SheetSigns& sheets, std::size_t component) {
   return sheets.ground[component] || sheets.windings[component].evidence < kNoEvidence;
 }
 
+std::int8_t signWithoutHints(const SheetSigns& sheets, std::size_t component,
+                             std::int8_t convention) {
+  return isUnknown(sheets, component) ? convention : sheets.windings[component].sign;
+}
+
 // What decides the side of a component: the winding number, or what is known beforehand, or else
 // convention.
 ComponentOrientationResult sideOf(const SheetSigns& sheets, std::size_t component,
@@ -103,7 +108,7 @@ ComponentOrientationResult sideOf(const SheetSigns& sheets, std::size_t componen
   const ComponentWinding& winding = sheets.windings[component];
   ComponentOrientationResult out = sheets.found.result.components[component];
   const bool unknown = isUnknown(sheets, component);
-  out.sign = unknown ? convention : winding.sign;
+  out.sign = signWithoutHints(sheets, component, convention);
   out.by = unknown ? DecidedBy::NOTHING : DecidedBy::GLOBAL;
   out.evidence = winding.evidence;
   out.confidence = unknown ? 0.F : winding.evidence;
@@ -140,8 +145,8 @@ void turnComponentsOut(SheetSigns& sheets) {
   sheets.found.inside_out.assign(components.size(), 0);
   for (std::size_t c = 0; c < components.size(); ++c) {
     components[c] = sideOf(sheets, c, conventional[c], hinted[c]);
-    const std::int8_t by_itself = isUnknown(sheets, c) ? conventional[c] : sheets.windings[c].sign;
-    sheets.found.inside_out[c] = components[c].sign != by_itself ? 1 : 0;
+    const bool turned = components[c].sign != signWithoutHints(sheets, c, conventional[c]);
+    sheets.found.inside_out[c] = turned ? 1 : 0;
   }
   for (std::size_t s = 0; s < sheets.signs.size(); ++s) {
     const std::int8_t turn = components[at(sheets.component_of[s])].sign;
