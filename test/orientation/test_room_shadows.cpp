@@ -80,22 +80,25 @@ TEST(RoomShadows, AThinnedRoomFacesWhoWasInIt) {
 }
 
 // The faces of boxes, all of them, evenly.
-std::vector<float> wholeBoxes(const std::vector<Room>& boxes) {
+// \param noise standard deviation, along each axis
+std::vector<float> wholeBoxes(const std::vector<Room>& boxes, double per_area = 150.0,
+                              double noise = 0.0) {
   std::mt19937 random(11);
   std::uniform_real_distribution<double> unit(0.0, 1.0);
+  std::normal_distribution<double> error(0.0, noise);
   std::vector<float> xyz;
   for (const Room& box : boxes) {
     for (std::size_t a = 0; a < 3; ++a) {
       const std::size_t b = (a + 1) % 3;
       const std::size_t c = (a + 2) % 3;
       const double area = (box.high[b] - box.low[b]) * (box.high[c] - box.low[c]);
-      for (int i = 0; i < static_cast<int>(150.0 * area); ++i) {
+      for (int i = 0; i < static_cast<int>(per_area * area); ++i) {
         for (const double at : {box.low[a], box.high[a]}) {
           Vector p{};
           p[a] = at;
           p[b] = box.low[b] + unit(random) * (box.high[b] - box.low[b]);
           p[c] = box.low[c] + unit(random) * (box.high[c] - box.low[c]);
-          for (const double v : p) xyz.push_back(static_cast<float>(v));
+          for (const double v : p) xyz.push_back(static_cast<float>(v + error(random)));
           xyz.push_back(0.F);
         }
       }
@@ -127,6 +130,19 @@ TEST(RoomShadows, BodiesInNoiseAreNoRooms) {
   for (const double noise : {0.0, 0.01, 0.02}) {
     EXPECT_FALSE(isRoom(sample("bracket", bracket(), 12000, 71, noise).xyz)) << noise;
     EXPECT_FALSE(isRoom(sample("cube", test::cube(), 6000, 70, noise).xyz)) << noise;
+  }
+}
+
+// From a place in one of them the others are there, but noise takes what covers them off surfaces.
+TEST(RoomShadows, StackedBoxesInNoiseAreNoRooms) {
+  constexpr double kPerArea = 417.0;
+  const double spacing = 1.0 / std::sqrt(kPerArea);
+  for (const double noise : {0.2, 0.3, 0.4}) {
+    std::vector<Room> boxes;
+    for (const double level : {0.0, 1.0, 2.0}) {
+      boxes.push_back(boxOf({0.0, 0.0, level}, {1.0, 1.0, level + 1.0}));
+    }
+    EXPECT_FALSE(isRoom(wholeBoxes(boxes, kPerArea, noise * spacing))) << noise;
   }
 }
 

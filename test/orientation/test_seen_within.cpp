@@ -97,5 +97,37 @@ TEST(SeenWithin, ABodyWasNotSeenFromItsInside) {
   EXPECT_GT(static_cast<double>(outward), 0.99 * static_cast<double>(points.size));
 }
 
+// Boxes that stand one on another, each sampled at random all over: there are two layers where they
+// touch, so that density is uneven without a sensor.
+std::vector<float> stackedBoxes(int count, int per_box, double noise) {
+  std::mt19937 random(5);
+  std::uniform_real_distribution<double> unit(0.0, 1.0);
+  std::uniform_int_distribution<std::size_t> face(0, 5);
+  std::normal_distribution<double> error(0.0, noise * std::sqrt(6.0 / per_box));
+  std::vector<float> xyz;
+  for (int box = 0; box < count; ++box) {
+    for (int i = 0; i < per_box; ++i) {
+      const std::size_t on = face(random);
+      Vector p{unit(random), unit(random), unit(random)};
+      p[on / 2] = static_cast<double>(on % 2);
+      p[2] += static_cast<double>(box);
+      for (const double v : p) xyz.push_back(static_cast<float>(v + error(random)));
+    }
+  }
+  return xyz;
+}
+
+TEST(SeenWithin, LayersInContactAreNoSensorsDensity) {
+  for (const double noise : {0.1, 0.3, 0.4}) {
+    for (const int count : {3, 5}) {
+      const std::vector<float> xyz = stackedBoxes(count, 8000, noise);
+      const SensorReport report = findSensors({xyz.data(), 3, xyz.size() / 3});
+      EXPECT_TRUE(report.sensors.empty()) << report.why;
+      EXPECT_TRUE(report.directions.empty()) << count << " boxes, noise " << noise << ": "
+                                             << report.why;
+    }
+  }
+}
+
 }  // namespace
 }  // namespace segorient

@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <numeric>
 #include <utility>
 
 #include "orientation/sensors/sampling_law.h"
@@ -27,6 +28,24 @@ constexpr double kOneSided = 0.73;
 // body that was seen all around looks like that as well.
 constexpr double kConvex = 0.995;
 
+// What the same density everywhere loses against the densities there, as a mean logarithm: where
+// bodies touch two layers lie in one place, which is .06 at most, and chance .02 more. Scans that
+// were seen from within lose .17 and more.
+constexpr double kTwoLayers = 0.1;
+
+// Densities over those there, to their logarithms without what all have in common.
+void toLogs(std::vector<double>& densities) {
+  double mean = 0.0;
+  for (const double v : densities) mean += v / static_cast<double>(densities.size());
+  for (double& v : densities) v = std::log(v / mean);
+}
+
+double lossOfConstant(const DensityPatches& patches) {
+  std::vector<double> logs(patches.sparsity.begin(), patches.sparsity.end());
+  toLogs(logs);
+  return -std::accumulate(logs.begin(), logs.end(), 0.0) / static_cast<double>(logs.size());
+}
+
 // A mixture of places whose rays nothing is known of.
 struct Explained {
   std::vector<Position> places;
@@ -45,9 +64,7 @@ struct Explained {
         logs[i] += weight * static_cast<double>(row[i]);
       }
     }
-    double mean = 0.0;
-    for (const double v : logs) mean += v / static_cast<double>(logs.size());
-    for (double& v : logs) v = std::log(v / mean);
+    toLogs(logs);
   }
 };
 
@@ -111,6 +128,7 @@ Sides sidesOf(const DensityPatches& patches, const Explained& within) {
 
 std::vector<float> directionsWithin(const DensityPatches& patches, const Occupancy& occupancy,
                                     const Extent& extent, int threads) {
+  if (lossOfConstant(patches) < kTwoLayers) return {};
   const Explained within(patches, occupancy, placesInside(extent, kMixedInside), threads);
   Sides sides = sidesOf(patches, within);
   if (sides.one_sided < kOneSided || sides.one_sided > kConvex) return {};
