@@ -59,56 +59,76 @@ float DepthSteps::openShare() const {
   return static_cast<float>(open) / static_cast<float>(kDirections);
 }
 
-DepthSteps::Step DepthSteps::at(std::size_t i) const {
-  constexpr std::size_t kTwo = 2;  // a single point that floats before the others hides nothing
+// What is nearer or farther by a step: at least `margin`.
+struct DepthSteps::Across {
+  std::vector<std::size_t> all;
+  std::vector<std::size_t> on_surfaces;
+  float widest = 0.F;  ///< square of the chord to the last of them
+};
+
+DepthSteps::Step DepthSteps::at(std::size_t i, Side side) const {
+  constexpr std::size_t kTwo = 2;  // a single one that floats is no surface
   const float* u = &seen_.direction[4 * i];
-  const float d = seen_.distance[i];
   const float incidence = std::fabs(dot(flat_.normal(i), u));
   // A place in the plane of a face sees nothing of it, only holes in it.
   if (incidence < kLeastIncidence) return Step::NONE;
-  const float steps = kStepDepth * std::min(d, seen_.depth);
+  const float steps = kStepDepth * std::min(seen_.distance[i], seen_.depth);
   const float margin = std::max(kStepSpacings * flat_.spacing(i) / incidence, steps);
-  std::array<pcl::index_t, kAround> around;
+  std::array<pcl::index_t, kAround> rows;
   std::array<float, kAround> squares;
-  const int found = directions_.nearestK(u, kAround, around.data(), squares.data());
-  std::vector<std::size_t> before;
-  std::vector<std::size_t> nearer;  // of these, those on surfaces
-  float widest = 0.F;
-  for (int j = 0; j < found; ++j) {
-    const auto at = static_cast<std::size_t>(j);
-    const auto q = static_cast<std::size_t>(around[at]);
-    if (!(flat_.spacing(q) > 0.F) || seen_.distance[q] >= d - margin) continue;
-    if (seen_.distance[q] < kNearest * flat_.spacing(q)) continue;
-    const float reach = kReach * flat_.spacing(q) / seen_.distance[q];
-    if (!(squares[at] < reach * reach)) continue;
-    before.push_back(q);
+  const int found = directions_.nearestK(u, kAround, rows.data(), squares.data());
+  const Around around{rows.data(), squares.data(), static_cast<std::size_t>(std::max(found, 0))};
+  const Across across = lookAcross(i, side, margin, around);
+  if (across.on_surfaces.size() < kTwo) return Step::NONE;
+  std::vector<float> widths;
+  for (const std::size_t q : across.on_surfaces) widths.push_back(flat_.spacing(q));
+  const float width = std::max(median(widths), flat_.spacing(i));
+  const float gap = gapOf(i, side, across.widest, around);
+  if (!(gap > std::max(kStepSpacings * width, steps))) return Step::NONE;
+  if (isWithin(i, across.on_surfaces)) return Step::COVERED;
+  return isWithin(i, across.all) ? Step::HIDDEN : Step::BESIDE;
+}
+
+DepthSteps::Across DepthSteps::lookAcross(std::size_t i, Side side, float margin,
+                                          const Around& around) const {
+  const float d = seen_.distance[i];
+  Across out;
+  for (std::size_t j = 0; j < around.size; ++j) {
+    const auto q = static_cast<std::size_t>(around.rows[j]);
+    const float step = side == Side::BEFORE ? d - seen_.distance[q] : seen_.distance[q] - d;
+    if (!(flat_.spacing(q) > 0.F) || !(step > margin)) continue;
+    const std::size_t nearer = side == Side::BEFORE ? q : i;
+    if (seen_.distance[nearer] < kNearest * flat_.spacing(nearer)) continue;
+    const float reach = kReach * flat_.spacing(nearer) / seen_.distance[nearer];
+    if (!(around.squares[j] < reach * reach)) continue;
+    out.all.push_back(q);
     if (!flat_.isOnSurface(q)) continue;
-    nearer.push_back(q);
-    widest = squares[at];
+    out.on_surfaces.push_back(q);
+    out.widest = around.squares[j];
   }
-  if (nearer.size() < kTwo) return Step::NONE;
-  // A surface that rises steeply has points at all depths.
+  return out;
+}
+
+// The largest in depth: a surface that rises steeply has points at all depths.
+float DepthSteps::gapOf(std::size_t i, Side side, float widest, const Around& around) const {
+  const float d = seen_.distance[i];
   std::vector<float> depth;
-  for (int j = 0; j < found && squares[static_cast<std::size_t>(j)] <= widest; ++j) {
-    const float at = seen_.distance[static_cast<std::size_t>(around[static_cast<std::size_t>(j)])];
-    if (at <= d) depth.push_back(at);
+  for (std::size_t j = 0; j < around.size && around.squares[j] <= widest; ++j) {
+    const float at = seen_.distance[static_cast<std::size_t>(around.rows[j])];
+    if (side == Side::BEFORE ? at <= d : at >= d) depth.push_back(at);
   }
   std::sort(depth.begin(), depth.end());
   float gap = 0.F;
   for (std::size_t k = 1; k < depth.size(); ++k) gap = std::max(gap, depth[k] - depth[k - 1]);
-  std::vector<float> widths;
-  for (const std::size_t q : nearer) widths.push_back(flat_.spacing(q));
-  const float width = std::max(median(widths), flat_.spacing(i));
-  if (!(gap > std::max(kStepSpacings * width, steps))) return Step::NONE;
-  if (isWithin(i, nearer)) return Step::COVERED;
-  return isWithin(i, before) ? Step::HIDDEN : Step::BESIDE;
+  return gap;
 }
 
-std::vector<DepthSteps::Step> DepthSteps::of(const EveryNth& some, int threads) const {
+std::vector<DepthSteps::Step> DepthSteps::of(const std::vector<std::size_t>& points, Side side,
+                                             int threads) const {
   constexpr double kStepTime = 50000.0;  // ns, see resolveThreads()
-  std::vector<Step> out(some.size(), Step::NONE);
-  parallelFor(some.size(), threads, kStepTime,
-              [&](std::size_t s) { out[s] = at(flat_.onSurfaces()[some[s]]); });
+  std::vector<Step> out(points.size(), Step::NONE);
+  parallelFor(points.size(), threads, kStepTime,
+              [&](std::size_t s) { out[s] = at(points[s], side); });
   return out;
 }
 

@@ -53,6 +53,12 @@ FlatPoints::FlatPoints(const PointView& points, int threads) {
   }
 }
 
+std::vector<std::size_t> FlatPoints::someOnSurfaces(std::size_t count) const {
+  std::vector<std::size_t> out;
+  for (const std::size_t k : EveryNth(on_surfaces_.size(), count)) out.push_back(on_surfaces_[k]);
+  return out;
+}
+
 std::array<float, 3> FlatPoints::middle() const {
   std::array<double, 3> sum{0.0, 0.0, 0.0};
   for (std::size_t i = 0; i < size(); ++i) {

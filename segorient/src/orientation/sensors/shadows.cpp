@@ -6,7 +6,6 @@
 #include <cstddef>
 #include <vector>
 
-#include "common/every_nth.h"
 #include "orientation/sensors/depth_steps.h"
 #include "orientation/sensors/seen_from.h"
 
@@ -47,7 +46,7 @@ bool isOutside(const FlatPoints& flat, const Place& place, const Place& middle, 
 // All but what is open.
 void countSteps(const FlatPoints& flat, const DepthSteps& depth, int threads, Shadows& out) {
   const std::vector<DepthSteps::Step> found =
-      depth.of(EveryNth(flat.onSurfaces().size(), kSamples), threads);
+      depth.of(flat.someOnSurfaces(kSamples), DepthSteps::Side::BEFORE, threads);
   const auto share = [&](DepthSteps::Step what) {
     return static_cast<float>(std::count(found.begin(), found.end(), what));
   };
