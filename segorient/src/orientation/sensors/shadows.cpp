@@ -22,7 +22,9 @@ constexpr float kFewest = 15.F;
 // Of these, with nearer ones all around. True places of 12 virtual and 15 real scans, as they were
 // and thinned in seven ways, leave .00 to .17, among trees up to .40 and in noise of depth .46. In
 // and around 30 closed bodies it is .46 and more (of one with clumps of outliers .415), nearly
-// always above .5; in the middle of several stations .24 and more.
+// always above .5; in the middle of several stations .24 and more. Of 143 stations that densities
+// told of rightly, in whole, thinned and cut scans, .00 to .33; of four that they told of wrongly
+// .48 to .99.
 constexpr float kMostCovered = 0.2F;
 constexpr float kAllowed = 0.41F;
 constexpr float kDenied = 0.5F;
@@ -86,6 +88,10 @@ bool Shadows::inARoom() const {
 
 bool Shadows::deny() const {
   return steps > kFewSteps && covered > kDenied * steps;
+}
+
+bool Shadows::contradict() const {
+  return steps > 0.F && covered > kAllowed * steps;
 }
 
 bool Shadows::allow() const {

@@ -38,6 +38,9 @@ struct Shadows {
   bool inARoom() const;
   /// Whether they go on.
   bool deny() const;
+  /// Whether more of them go on, however few they are, than as seen from where a sensor stood: of a
+  /// place that densities tell of.
+  bool contradict() const;
   /// Whether there are steps enough, and they do not deny it.
   bool allow() const;
   /// Whether points that lie behind others from there are no more than errors at steps, and the
