@@ -189,6 +189,26 @@ double facing(const OrientedCloud& cloud, const PointView& points, const Vector&
   return static_cast<double>(right) / static_cast<double>(points.size);
 }
 
+// Below a floor there is a place of which densities say the same.
+TEST(Sensors, AFloorWasSeenFromAbove) {
+  for (const double height : {1.0, 1.5, 2.5}) {
+    std::mt19937 random(31);
+    std::uniform_real_distribution<double> turn(0.0, 6.28318530718);
+    std::uniform_real_distribution<double> cosine(0.2, 1.0);
+    std::vector<float> xyz;
+    for (int i = 0; i < 12000; ++i) {
+      const double z = cosine(random);
+      const double reach = height * std::sqrt(1.0 - z * z) / z;
+      const double phi = turn(random);
+      xyz.insert(xyz.end(), {static_cast<float>(40.0 + reach * std::cos(phi)),
+                             static_cast<float>(-30.0 + reach * std::sin(phi)), 5.F});
+    }
+    const SensorReport report = findSensors({xyz.data(), 3, xyz.size() / 3});
+    ASSERT_EQ(report.sensors.size(), 1U) << report.why;
+    EXPECT_LT(distanceTo(report.sensors[0], {40.0, -30.0, 5.0 + height}), 0.1 * height);
+  }
+}
+
 TEST(Sensors, NormalsOfARoomFaceTheStationThatWasFound) {
   const Vector truth{2.0, 2.5, 1.2};
   const Scan scan = scanFrom(truth, 2.5);

@@ -66,6 +66,7 @@ TEST(Shadows, WhatASensorSawEndsThere) {
     const detail::Shadows shadows = detail::findShadows(viewOf(xyz), inFloat(eye), 1);
     EXPECT_TRUE(shadows.confirm()) << edge << " " << shadows.steps << " " << shadows.covered;
     EXPECT_FALSE(shadows.deny());
+    EXPECT_FALSE(shadows.contradict());
     const detail::Shadows elsewhere = detail::findShadows(viewOf(xyz), {9.F, 2.F, 1.F}, 1);
     EXPECT_FALSE(elsewhere.allow());
     EXPECT_TRUE(elsewhere.deny()) << edge << " " << elsewhere.steps << " " << elsewhere.covered;
@@ -113,6 +114,27 @@ std::vector<float> city(float height) {
 
 // A plate lies on the plane z = 0 and against the others, as parts do in the files they are drawn
 // in, with a corner cut off: whoever looks along its faces sees holes in them as steps.
+// A plate whose back one scanner saw a part of, and another its front: the steps are few.
+TEST(Shadows, AFewPointsBehindOthersContradict) {
+  std::mt19937 random(9);
+  std::uniform_real_distribution<double> unit(0.0, 1.0);
+  const auto plate = [&](double low, double high, double z, int count, std::vector<float>& xyz) {
+    for (int i = 0; i < count; ++i) {
+      for (int a = 0; a < 2; ++a)
+        xyz.push_back(static_cast<float>(low + (high - low) * unit(random)));
+      xyz.insert(xyz.end(), {static_cast<float>(z), 0.F});
+    }
+  };
+  const Vector above{0.5, 0.5, 3.0};
+  std::vector<float> xyz;
+  plate(0.0, 1.0, 0.0, 9000, xyz);
+  EXPECT_FALSE(detail::findShadows(viewOf(xyz), inFloat(above), 1).contradict());
+  plate(0.42, 0.58, -0.3, 250, xyz);
+  const detail::Shadows shadows = detail::findShadows(viewOf(xyz), inFloat(above), 1);
+  EXPECT_TRUE(shadows.contradict()) << shadows.steps << " " << shadows.covered;
+  EXPECT_FALSE(shadows.deny());
+}
+
 TEST(Shadows, ACutCornerInTheOriginSeesNothingOfAPlate) {
   constexpr double kWidth = 16.0;
   constexpr double kLength = 24.0;

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <array>
+#include <cstddef>
+#include <limits>
 #include <optional>
 #include <vector>
 
@@ -16,6 +18,8 @@
 
 namespace segorient::detail {
 namespace {
+
+using Position = std::array<double, 3>;
 
 // Deviations of log density that are hardly more than chance have nothing to explain.
 constexpr float kMoreThanChance = 1.3F;
@@ -90,6 +94,29 @@ std::optional<FittedPlace> tryCameras(const DensityPatches& patches, float const
   return best.get();
 }
 
+// Across a plane a place leaves the same. Of what lies level the upper side was seen, unless the
+// lower place explains more.
+FittedPlace orUpperTwin(const DensityPatches& patches, const FittedPlace& found) {
+  constexpr float kSame = 1.05F;  // costs: as far as searches from different starts come
+  const Position& place = found.place.position;
+  const std::vector<float> heights = patches.heightsOver(place);
+  std::size_t nearest = 0;
+  double least = std::numeric_limits<double>::infinity();
+  for (std::size_t i = 0; i < patches.size(); ++i) {
+    const double far = distance(place, {patches.x[i], patches.y[i], patches.z[i]});
+    if (far < least) nearest = i;
+    least = std::min(least, far);
+  }
+  const std::array<float, 3> normal{patches.nx[nearest], patches.ny[nearest], patches.nz[nearest]};
+  Position twin = place;
+  for (std::size_t a = 0; a < 3; ++a) {
+    twin[a] -= 2.0 * static_cast<double>(heights[nearest]) * static_cast<double>(normal[a]);
+  }
+  if (!(twin[2] > place[2])) return found;
+  const FittedPlace upper = fitBeside(patches, fitAt(patches, twin));
+  return upper.cost <= kSame * found.cost ? upper : found;
+}
+
 struct FoundPlace {
   FoundSensor sensor;
   bool by_image = false;  // it is where the sides of an image meet
@@ -105,6 +132,7 @@ FoundPlace findStation(const DensityPatches& patches, float constant, const Sens
   bool by_image = false;
   if (options.search) {
     found = searchStation(patches, constant, options.threads);
+    if (found) found = orUpperTwin(patches, *found);
     by_image = camera && !(found && explainsFarMore(*found, *camera, constant));
     if (by_image) found = camera;
   } else if (suggested) {
