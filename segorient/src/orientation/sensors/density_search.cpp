@@ -226,6 +226,15 @@ SensorReport searchUpright(const DensityPatches& patches, PreparedCloud& cloud,
   return is_better ? turned : own;
 }
 
+// Vertices of a body that was turned on a lathe, or that is a function of the direction, have the
+// density of a scan from within it.
+bool areInABody(const SensorReport& found, const FlatPoints& flat, int threads) {
+  return std::all_of(found.sensors.begin(), found.sensors.end(), [&](const FoundSensor& sensor) {
+    return sensor.evidence == SensorEvidence::DENSITY && sensor.kind != SensorKind::ABOVE &&
+           findShadows(flat, sensor.position, threads).asOfABody();
+  });
+}
+
 }  // namespace
 
 void setOnly(const FoundSensor& sensor, const char* why, SensorReport& out) {
@@ -251,7 +260,13 @@ SensorReport searchByDensity(PreparedCloud& cloud, const SensorOptions& options,
     lookForUpperSide(cloud, patches, options, out);
     return out;
   }
-  return searchUpright(patches, cloud, options, views, out);
+  out = searchUpright(patches, cloud, options, views, out);
+  if (out.sure() && areInABody(out, views.flat(), options.threads)) {
+    for (FoundSensor& sensor : out.sensors) sensor.sure = false;
+    std::fill(out.sensor_of.begin(), out.sensor_of.end(), -1);
+    out.why = "from the places that explain the densities it looks like a body";
+  }
+  return out;
 }
 
 }  // namespace segorient::detail

@@ -10,11 +10,13 @@
 #include <vector>
 
 #include "common/by_size.h"
+#include "orientation/sensors/flat_points.h"
 #include "orientation/sensors/height_field.h"
 #include "orientation/sensors/moving_sensor.h"
 #include "orientation/sensors/occupancy.h"
 #include "orientation/sensors/seen_within.h"
 #include "orientation/sensors/several_stations.h"
+#include "orientation/sensors/shadows.h"
 #include "orientation/sensors/station_search.h"
 #include "search/index_of.h"
 
@@ -102,19 +104,33 @@ void lookFromAbove(PreparedCloud& cloud, const DensityPatches& patches,
   report.why = "one uneven surface over the ground, as it is seen from above";
 }
 
+// Whether it does from most of them.
+bool lookLikeABody(const std::vector<std::array<double, 3>>& places, const PointView& points,
+                   int threads) {
+  constexpr std::size_t kLooks = 8;
+  const detail::FlatPoints flat(points, threads);
+  const std::size_t looks = std::min(kLooks, places.size());
+  std::size_t like = 0;
+  for (std::size_t k = 0; k < looks; ++k) {
+    like += detail::findShadows(flat, detail::toFloat(places[k]), threads).asOfABody() ? 1 : 0;
+  }
+  return 2 * like > looks;
+}
+
 // Nobody knows the places, but the sides.
 void lookWithin(const PointView& points, const DensityPatches& all, const detail::Extent& extent,
                 const detail::Occupancy& occupancy, int threads, SensorReport& report) {
   constexpr std::size_t kPieces = 800;
   const DensityPatches patches = all.thinned(kPieces);
-  const std::vector<float> directions =
-      detail::directionsWithin(patches, occupancy, extent, threads);
-  if (directions.empty()) return;
+  const detail::SeenWithin seen = detail::seenWithin(patches, occupancy, extent, threads);
+  if (seen.directions.empty()) return;
+  if (lookLikeABody(seen.places, points, threads)) return;
   const std::vector<std::int32_t> piece = nearestPieces(points, patches, threads);
   report.directions.assign(3 * points.size, 0.F);
   for (std::size_t i = 0; i < piece.size(); ++i) {
     if (piece[i] < 0) continue;
-    std::copy_n(&directions[3 * static_cast<std::size_t>(piece[i])], 3, &report.directions[3 * i]);
+    std::copy_n(&seen.directions[3 * static_cast<std::size_t>(piece[i])], 3,
+                &report.directions[3 * i]);
   }
   report.why = "no places explain the densities, but it was seen from within";
 }

@@ -124,17 +124,28 @@ Sides sidesOf(const DensityPatches& patches, const Explained& within) {
   return out;
 }
 
+std::vector<Position> heaviestOf(const Explained& within) {
+  std::vector<std::size_t> order(within.mixture.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+    return within.mixture.weights[a] > within.mixture.weights[b];
+  });
+  std::vector<Position> out;
+  for (const std::size_t j : order) out.push_back(within.places[within.mixture.place[j]]);
+  return out;
+}
+
 }  // namespace
 
-std::vector<float> directionsWithin(const DensityPatches& patches, const Occupancy& occupancy,
-                                    const Extent& extent, int threads) {
+SeenWithin seenWithin(const DensityPatches& patches, const Occupancy& occupancy,
+                      const Extent& extent, int threads) {
   if (lossOfConstant(patches) < kTwoLayers) return {};
   const Explained within(patches, occupancy, placesInside(extent, kMixedInside), threads);
   Sides sides = sidesOf(patches, within);
   if (sides.one_sided < kOneSided || sides.one_sided > kConvex) return {};
   const Explained around(patches, occupancy, placesOutside(extent), threads);
   if (advantage(within.logs, around.logs) < kSure) return {};
-  return std::move(sides.directions);
+  return {std::move(sides.directions), heaviestOf(within)};
 }
 
 }  // namespace segorient::detail

@@ -41,6 +41,10 @@ struct Shadows {
   /// Whether more of them go on, however few they are, than as seen from where a sensor stood: of a
   /// place that densities tell of.
   bool contradict() const;
+  /// Whether it looks as from within a body: there is a surface in all directions, and nothing of
+  /// it hides anything, as no tripod leaves a room, or what should be hidden is there; or as from
+  /// beside one, all of which is there.
+  bool asOfABody() const;
   /// Whether there are steps enough, and they do not deny it.
   bool allow() const;
   /// Whether points that lie behind others from there are no more than errors at steps, and the
