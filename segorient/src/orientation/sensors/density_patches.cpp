@@ -146,6 +146,32 @@ std::vector<float> DensityPatches::heightsOver(const std::array<double, 3>& plac
   return out;
 }
 
+bool DensityPatches::haveWalls() const {
+  constexpr std::size_t kSome = 400;  // of the pieces, against all of them
+  constexpr float kParallel = 0.98F;  // cosine: 11 degrees, of which a cylinder's strip is a 16th
+  constexpr float kInPlane = 3.F;     // spacings
+  constexpr double kWall = 0.1;
+  const EveryNth some(size(), kSome);
+  constexpr float kAcross = 0.5F;
+  std::vector<std::size_t> walls;  // pieces in them
+  for (const std::size_t i : some) {
+    std::size_t with = 0;
+    for (std::size_t j = 0; j < size(); ++j) {
+      const float cosine = nx[i] * nx[j] + ny[i] * ny[j] + nz[i] * nz[j];
+      const float height = nx[i] * (x[j] - x[i]) + ny[i] * (y[j] - y[i]) + nz[i] * (z[j] - z[i]);
+      const bool in_plane = std::fabs(cosine) > kParallel && std::fabs(height) < kInPlane * spacing;
+      with += in_plane ? 1 : 0;
+    }
+    if (static_cast<double>(with) > kWall * static_cast<double>(size())) walls.push_back(i);
+  }
+  const auto isAcross = [&](std::size_t i) {
+    const std::size_t first = walls.front();
+    const float cosine = nx[i] * nx[first] + ny[i] * ny[first] + nz[i] * nz[first];
+    return std::fabs(cosine) < kAcross;
+  };
+  return 2 * walls.size() > some.size() && std::any_of(walls.begin(), walls.end(), isAcross);
+}
+
 void DensityPatches::setSparsity() {
   const float middle = median(log_density);
   sparsity.resize(log_density.size());

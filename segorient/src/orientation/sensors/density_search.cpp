@@ -228,10 +228,12 @@ SensorReport searchUpright(const DensityPatches& patches, PreparedCloud& cloud,
 
 // Vertices of a body that was turned on a lathe, or that is a function of the direction, have the
 // density of a scan from within it.
-bool areInABody(const SensorReport& found, const FlatPoints& flat, int threads) {
+bool areInABody(const SensorReport& found, const DensityPatches& patches, const FlatPoints& flat,
+                int threads) {
+  const bool has_walls = patches.haveWalls();
   return std::all_of(found.sensors.begin(), found.sensors.end(), [&](const FoundSensor& sensor) {
     return sensor.evidence == SensorEvidence::DENSITY && sensor.kind != SensorKind::ABOVE &&
-           findShadows(flat, sensor.position, threads).asOfABody();
+           findShadows(flat, sensor.position, threads).asOfABody(has_walls);
   });
 }
 
@@ -261,7 +263,7 @@ SensorReport searchByDensity(PreparedCloud& cloud, const SensorOptions& options,
     return out;
   }
   out = searchUpright(patches, cloud, options, views, out);
-  if (out.sure() && areInABody(out, views.flat(), options.threads)) {
+  if (out.sure() && areInABody(out, patches, views.flat(), options.threads)) {
     for (FoundSensor& sensor : out.sensors) sensor.sure = false;
     std::fill(out.sensor_of.begin(), out.sensor_of.end(), -1);
     out.why = "from the places that explain the densities it looks like a body";

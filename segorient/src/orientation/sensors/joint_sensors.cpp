@@ -105,14 +105,16 @@ void lookFromAbove(PreparedCloud& cloud, const DensityPatches& patches,
 }
 
 // Whether it does from most of them.
-bool lookLikeABody(const std::vector<std::array<double, 3>>& places, const PointView& points,
-                   int threads) {
+bool lookLikeABody(const std::vector<std::array<double, 3>>& places, const DensityPatches& patches,
+                   const PointView& points, int threads) {
   constexpr std::size_t kLooks = 8;
   const detail::FlatPoints flat(points, threads);
+  const bool has_walls = patches.haveWalls();
   const std::size_t looks = std::min(kLooks, places.size());
   std::size_t like = 0;
   for (std::size_t k = 0; k < looks; ++k) {
-    like += detail::findShadows(flat, detail::toFloat(places[k]), threads).asOfABody() ? 1 : 0;
+    like +=
+        detail::findShadows(flat, detail::toFloat(places[k]), threads).asOfABody(has_walls) ? 1 : 0;
   }
   return 2 * like > looks;
 }
@@ -124,7 +126,7 @@ void lookWithin(const PointView& points, const DensityPatches& all, const detail
   const DensityPatches patches = all.thinned(kPieces);
   const detail::SeenWithin seen = detail::seenWithin(patches, occupancy, extent, threads);
   if (seen.directions.empty()) return;
-  if (lookLikeABody(seen.places, points, threads)) return;
+  if (lookLikeABody(seen.places, patches, points, threads)) return;
   const std::vector<std::int32_t> piece = nearestPieces(points, patches, threads);
   report.directions.assign(3 * points.size, 0.F);
   for (std::size_t i = 0; i < piece.size(); ++i) {

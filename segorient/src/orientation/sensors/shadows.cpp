@@ -99,9 +99,10 @@ bool Shadows::contradict() const {
   return steps > 0.F && covered > kContradicts * steps;
 }
 
-bool Shadows::asOfABody() const {
+bool Shadows::asOfABody(bool has_walls) const {
   const bool enclosed = open < kHole;
-  return (enclosed && steps < kFewBeside) || covered > (enclosed ? kDenied : kMostHidden) * steps;
+  return (enclosed && !has_walls && steps < kFewBeside) ||
+         covered > (enclosed ? kDenied : kMostHidden) * steps;
 }
 
 bool Shadows::allow() const {

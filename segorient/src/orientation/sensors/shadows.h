@@ -44,7 +44,8 @@ struct Shadows {
   /// Whether it looks as from within a body: there is a surface in all directions, and nothing of
   /// it hides anything, as no tripod leaves a room, or what should be hidden is there; or as from
   /// beside one, all of which is there.
-  bool asOfABody() const;
+  /// \param has_walls as rooms have: one may be empty, and seen by two scanners
+  bool asOfABody(bool has_walls) const;
   /// Whether there are steps enough, and they do not deny it.
   bool allow() const;
   /// Whether points that lie behind others from there are no more than errors at steps, and the
