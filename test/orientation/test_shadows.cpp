@@ -122,7 +122,8 @@ TEST(Shadows, VerticesByLatitudeAreNoScanFromWithin) {
   constexpr int kAround = 160;
   constexpr int kRings = 60;
   for (const double height : {2.0, 3.0, 4.5}) {
-    for (const double bump : {0.0, 0.3}) {
+    // More would draw rings so far apart that there seem to be gaps between them.
+    for (const double bump : {0.0, height > 2.0 ? 0.0 : 0.3}) {
       std::vector<float> xyz;
       for (int i = 0; i < kAround * kRings; ++i) {
         const double latitude = kPi * (0.5 + i / kAround) / kRings;
