@@ -123,8 +123,8 @@ TEST(SeenWithin, LayersInContactAreNoSensorsDensity) {
       const std::vector<float> xyz = stackedBoxes(count, 8000, noise);
       const SensorReport report = findSensors({xyz.data(), 3, xyz.size() / 3});
       EXPECT_TRUE(report.sensors.empty()) << report.why;
-      EXPECT_TRUE(report.directions.empty()) << count << " boxes, noise " << noise << ": "
-                                             << report.why;
+      EXPECT_TRUE(report.directions.empty())
+          << count << " boxes, noise " << noise << ": " << report.why;
     }
   }
 }
