@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <tuple>
 
 #include "common/every_nth.h"
@@ -146,13 +147,31 @@ std::vector<float> DensityPatches::heightsOver(const std::array<double, 3>& plac
   return out;
 }
 
+std::array<double, 3> DensityPatches::imageOf(const std::array<double, 3>& place) const {
+  std::array<double, 3> image = place;
+  double least = std::numeric_limits<double>::infinity();
+  for (std::size_t i = 0; i < size(); ++i) {
+    const double away[3] = {place[0] - static_cast<double>(x[i]),
+                            place[1] - static_cast<double>(y[i]),
+                            place[2] - static_cast<double>(z[i])};
+    const double square = away[0] * away[0] + away[1] * away[1] + away[2] * away[2];
+    if (square >= least) continue;
+    least = square;
+    const double normal[3] = {static_cast<double>(nx[i]), static_cast<double>(ny[i]),
+                              static_cast<double>(nz[i])};
+    const double height = away[0] * normal[0] + away[1] * normal[1] + away[2] * normal[2];
+    for (std::size_t a = 0; a < 3; ++a) image[a] = place[a] - 2.0 * height * normal[a];
+  }
+  return image;
+}
+
 bool DensityPatches::haveWalls() const {
   constexpr std::size_t kSome = 400;  // of the pieces, against all of them
   constexpr float kParallel = 0.98F;  // cosine: 11 degrees, of which a cylinder's strip is a 16th
   constexpr float kInPlane = 3.F;     // spacings
   constexpr double kWall = 0.1;
-  const EveryNth some(size(), kSome);
   constexpr float kAcross = 0.5F;
+  const EveryNth some(size(), kSome);
   std::vector<std::size_t> walls;  // pieces in them
   for (const std::size_t i : some) {
     std::size_t with = 0;

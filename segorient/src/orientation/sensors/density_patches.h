@@ -35,6 +35,9 @@ struct DensityPatches {
   /// How far a place is in front of each piece's plane; below 0 behind it.
   std::vector<float> heightsOver(const std::array<double, 3>& place) const;
 
+  /// A place's image across the plane of the nearest piece.
+  std::array<double, 3> imageOf(const std::array<double, 3>& place) const;
+
   /// Whether most of the pieces lie in planes that hold a tenth of all, and these in more than one
   /// direction: as in rooms, unlike on what was turned on a lathe.
   bool haveWalls() const;

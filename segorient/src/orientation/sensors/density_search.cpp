@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
-#include <limits>
 #include <optional>
 #include <vector>
 
@@ -18,8 +17,6 @@
 
 namespace segorient::detail {
 namespace {
-
-using Position = std::array<double, 3>;
 
 // Deviations of log density that are hardly more than chance have nothing to explain.
 constexpr float kMoreThanChance = 1.3F;
@@ -98,21 +95,8 @@ std::optional<FittedPlace> tryCameras(const DensityPatches& patches, float const
 // lower place explains more.
 FittedPlace orUpperTwin(const DensityPatches& patches, const FittedPlace& found) {
   constexpr float kSame = 1.05F;  // costs: as far as searches from different starts come
-  const Position& place = found.place.position;
-  const std::vector<float> heights = patches.heightsOver(place);
-  std::size_t nearest = 0;
-  double least = std::numeric_limits<double>::infinity();
-  for (std::size_t i = 0; i < patches.size(); ++i) {
-    const double far = distance(place, {patches.x[i], patches.y[i], patches.z[i]});
-    if (far < least) nearest = i;
-    least = std::min(least, far);
-  }
-  const std::array<float, 3> normal{patches.nx[nearest], patches.ny[nearest], patches.nz[nearest]};
-  Position twin = place;
-  for (std::size_t a = 0; a < 3; ++a) {
-    twin[a] -= 2.0 * static_cast<double>(heights[nearest]) * static_cast<double>(normal[a]);
-  }
-  if (!(twin[2] > place[2])) return found;
+  const std::array<double, 3> twin = patches.imageOf(found.place.position);
+  if (!(twin[2] > found.place.position[2])) return found;
   const FittedPlace upper = fitBeside(patches, fitAt(patches, twin));
   return upper.cost <= kSame * found.cost ? upper : found;
 }
@@ -174,7 +158,7 @@ void lookForUpperSide(PreparedCloud& cloud, const DensityPatches& patches,
 // \return whether it is a place that is exact, as it was suggested or the sides of an image meet
 // there
 bool searchPlaces(const SceneFrame& frame, bool has_axes, const DensityPatches& patches,
-                  PreparedCloud& cloud, const SensorOptions& options,
+                  PreparedCloud& cloud, const SensorOptions& options, CameraViews& views,
                   const std::vector<RevealedPlace>& cameras, SensorReport& out) {
   auto [sensor, by_image] = findStation(frame.into(patches), out.deviation, options, cameras);
   frame.back(sensor);
@@ -183,7 +167,7 @@ bool searchPlaces(const SceneFrame& frame, bool has_axes, const DensityPatches& 
   const bool searched = sensor.kind == SensorKind::STATION && !sensor.suggested && !by_image;
   const bool is_weak = sensor.suggested && sensor.cost_ratio > kSureFound;
   if (sensor.sure && (searched || is_weak)) {
-    sensor.sure = !findShadows(cloud.points(), sensor.position, options.threads).contradict();
+    sensor.sure = !findShadows(views.flat(), sensor.position, options.threads).contradict();
   }
   if (sensor.sure) {
     setOnly(sensor,
@@ -211,14 +195,14 @@ SensorReport searchUpright(const DensityPatches& patches, PreparedCloud& cloud,
   const SceneFrame frame(patches);
   SensorReport own = empty;
   const std::vector<RevealedPlace> none;
-  const bool exact = searchPlaces({}, frame.isOwn(), patches, cloud, options,
+  const bool exact = searchPlaces({}, frame.isOwn(), patches, cloud, options, views,
                                   options.search ? views.cameras() : none, own);
   const bool by_layers = own.sure() && own.sensors[0].evidence == SensorEvidence::LAYERS;
   if (exact || by_layers || frame.isOwn() || !options.search) return own;
   SensorOptions without = options;
   without.suggestions.clear();
   SensorReport turned = empty;
-  searchPlaces(frame, true, patches, cloud, without, none, turned);
+  searchPlaces(frame, true, patches, cloud, without, views, none, turned);
   const bool knows_side = own.sure() || !own.directions.empty();
   const bool is_better =
       turned.sure() ? !own.sure() || turned.sensors[0].cost_ratio < own.sensors[0].cost_ratio

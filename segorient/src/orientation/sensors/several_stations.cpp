@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <limits>
 #include <utility>
 
 #include "common/parallel_for.h"
@@ -139,7 +138,7 @@ class Sum {
       const Position position = positions_[j];
       std::vector<float> seen = seen_[j];
       std::vector<float> density = densities_[j];
-      positions_[j] = imageOf(position);
+      positions_[j] = patches_.imageOf(position);
       lookFrom(j);
       refineOne(j, step);
       lookFrom(j);
@@ -188,26 +187,6 @@ class Sum {
     seen_[j].resize(patches_.size());
     occupancy_.visibility(patches_, positions_[j], seen_[j].data());
     densityAt(positions_[j], seen_[j], densities_[j]);
-  }
-
-  // Across the plane of the nearest piece.
-  Position imageOf(const Position& p) const {
-    Position image = p;
-    double least = std::numeric_limits<double>::infinity();
-    for (std::size_t i = 0; i < patches_.size(); ++i) {
-      const double away[3] = {p[0] - static_cast<double>(patches_.x[i]),
-                              p[1] - static_cast<double>(patches_.y[i]),
-                              p[2] - static_cast<double>(patches_.z[i])};
-      const double square = away[0] * away[0] + away[1] * away[1] + away[2] * away[2];
-      if (square >= least) continue;
-      least = square;
-      const double normal[3] = {static_cast<double>(patches_.nx[i]),
-                                static_cast<double>(patches_.ny[i]),
-                                static_cast<double>(patches_.nz[i])};
-      const double height = away[0] * normal[0] + away[1] * normal[1] + away[2] * normal[2];
-      for (std::size_t a = 0; a < 3; ++a) image[a] = p[a] - 2.0 * height * normal[a];
-    }
-    return image;
   }
 
   // Over the density that is there; negative where the piece is seen from behind.
