@@ -85,7 +85,7 @@ std::vector<float> wholeBoxes(const std::vector<Room>& boxes, double per_area = 
                               double noise = 0.0) {
   std::mt19937 random(11);
   std::uniform_real_distribution<double> unit(0.0, 1.0);
-  std::normal_distribution<double> error(0.0, noise);
+  std::normal_distribution<double> error;  // a deviation of 0 is not allowed
   std::vector<float> xyz;
   for (const Room& box : boxes) {
     for (std::size_t a = 0; a < 3; ++a) {
@@ -98,7 +98,7 @@ std::vector<float> wholeBoxes(const std::vector<Room>& boxes, double per_area = 
           p[a] = at;
           p[b] = box.low[b] + unit(random) * (box.high[b] - box.low[b]);
           p[c] = box.low[c] + unit(random) * (box.high[c] - box.low[c]);
-          for (const double v : p) xyz.push_back(static_cast<float>(v + error(random)));
+          for (const double v : p) xyz.push_back(static_cast<float>(v + noise * error(random)));
           xyz.push_back(0.F);
         }
       }
