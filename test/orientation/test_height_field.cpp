@@ -80,6 +80,23 @@ TEST(HeightField, PlatesAreNone) {
   }
 }
 
+// A rod has a layer below the upper one, but slopes away between them.
+TEST(HeightField, WhatIsNarrowIsNone) {
+  for (const std::size_t count : {3000, 6000}) {
+    std::mt19937 random(13);
+    std::uniform_real_distribution<float> unit(0.F, 1.F);
+    std::vector<float> rows;
+    for (std::size_t i = 0; i < count; ++i) {
+      const float x = 10.F * unit(random);
+      const float angle = 6.2831853F * unit(random);
+      rows.insert(rows.end(), {x, std::sin(x) + 0.4F * std::cos(angle), 0.4F * std::sin(angle)});
+    }
+    const SensorReport report = findSensors({rows.data(), 3, count});
+    EXPECT_TRUE(report.sensors.empty());
+    EXPECT_FALSE(report.faces_up) << count;
+  }
+}
+
 TEST(HeightField, WhatStandsUprightIsNone) {
   std::vector<float> rows = village(9000);
   for (std::size_t i = 0; i < rows.size(); i += 3) std::swap(rows[i], rows[i + 2]);

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "orientation/automatic/component_links.h"
 #include "orientation/automatic/ground_sides.h"
 #include "orientation/automatic/loose_parts.h"
 #include "orientation/automatic/sheet_stages.h"
@@ -91,9 +92,12 @@ std::vector<std::int8_t> conventions(const SheetSigns& sheets, const std::vector
   return out;
 }
 
-// Of open ground the winding number tells bulge from hollow, not outside from inside.
+// Of open ground the winding number tells bulge from hollow, not outside from inside. Where all
+// else closes the surface already, what a part adds has to be more than what closed clouds lack.
 bool isUnknown(const SheetSigns& sheets, std::size_t component) {
-  return sheets.ground[component] || sheets.windings[component].evidence < kNoEvidence;
+  const ComponentWinding& winding = sheets.windings[component];
+  return sheets.ground[component] || winding.evidence < kNoEvidence ||
+         (winding.residual <= kOpenResidual && winding.gain <= kClosedResidual);
 }
 
 std::int8_t signWithoutHints(const SheetSigns& sheets, std::size_t component,
@@ -130,7 +134,10 @@ void turnComponentsOut(SheetSigns& sheets) {
     if (sheets.options.turn_loose_parts) turnLooseParts(sheets);
   }
   const std::vector<float> up = facingUp(sheets);
-  for (std::size_t c = 0; c < up.size(); ++c) sheets.ground[c] = std::fabs(up[c]) > kLies;
+  for (std::size_t c = 0; c < up.size(); ++c) {
+    // Of a part of a closed surface all else closes it.
+    sheets.ground[c] = std::fabs(up[c]) > kLies && !sheets.isClosed(c, sheets.closedResidual());
+  }
   if (std::find(sheets.ground.begin(), sheets.ground.end(), true) != sheets.ground.end()) {
     // One layer over a plane is on one side of it throughout.
     sheets.turnClusters(sheets.outvoted(groundVotes(sheets, up), kSureBorders));
@@ -148,6 +155,7 @@ void turnComponentsOut(SheetSigns& sheets) {
     const bool turned = components[c].sign != signWithoutHints(sheets, c, conventional[c]);
     sheets.found.inside_out[c] = turned ? 1 : 0;
   }
+  if (sheets.sensors.none()) followNearest(sheets, components);
   for (std::size_t s = 0; s < sheets.signs.size(); ++s) {
     const std::int8_t turn = components[at(sheets.component_of[s])].sign;
     sheets.signs[s] = static_cast<std::int8_t>(sheets.signs[s] * turn);

@@ -23,6 +23,9 @@ constexpr float kMostRelief = 0.3F;
 constexpr float kColumn = 3.F;
 constexpr std::size_t kFilled = 3;
 constexpr float kMostlyFilled = 0.9F;
+// Of an area six columns wide or more two of three have others on all sides. What is narrower is no
+// land, and has sides that slope away before a second layer shows: rods, rings, stars.
+constexpr float kMostlyInner = 2.F / 3.F;
 // Layers: as far apart as a column and a half. What is under something else fills squares of two
 // by two columns, edges of roofs and walls only lines: aircraft up to .06 of the columns, solids,
 // rooms and woods .2 and more.
@@ -56,6 +59,19 @@ std::size_t countSquares(const std::vector<std::uint64_t>& columns) {
       }));
 }
 
+// Which share of these, in rising order, have all eight beside them.
+float shareInner(const std::vector<std::uint64_t>& columns) {
+  constexpr std::uint64_t kNextX = columnAt(1.F, 0.F);
+  const auto hasThree = [&](std::uint64_t middle) {
+    const auto at = std::lower_bound(columns.begin(), columns.end(), middle - 1);
+    return columns.end() - at >= 3 && at[0] == middle - 1 && at[1] == middle && at[2] == middle + 1;
+  };
+  const auto inner = std::count_if(columns.begin(), columns.end(), [&](std::uint64_t c) {
+    return hasThree(c) && hasThree(c - kNextX) && hasThree(c + kNextX);
+  });
+  return static_cast<float>(inner) / static_cast<float>(columns.size());
+}
+
 void measureColumns(const PointView& points, const Box& ground, float side, HeightField& out) {
   std::vector<std::pair<std::uint64_t, float>> heights;
   for (std::size_t i = 0; i < points.size; ++i) {
@@ -67,7 +83,7 @@ void measureColumns(const PointView& points, const Box& ground, float side, Heig
     heights.emplace_back(columnAt(x, y), points[i][2]);
   }
   std::sort(heights.begin(), heights.end());
-  std::size_t columns = 0;
+  std::vector<std::uint64_t> columns;
   std::size_t filled = 0;
   std::vector<std::uint64_t> layered;
   for (std::size_t begin = 0; begin < heights.size();) {
@@ -76,7 +92,7 @@ void measureColumns(const PointView& points, const Box& ground, float side, Heig
     for (; end < heights.size() && heights[end].first == heights[begin].first; ++end) {
       gap = std::max(gap, heights[end].second - heights[end - 1].second);
     }
-    ++columns;
+    columns.push_back(heights[begin].first);
     if (end - begin >= kFilled) {
       ++filled;
       if (gap > kApart * side) layered.push_back(heights[begin].first);
@@ -84,7 +100,8 @@ void measureColumns(const PointView& points, const Box& ground, float side, Heig
     begin = end;
   }
   if (filled == 0) return;
-  out.filled = static_cast<float>(filled) / static_cast<float>(columns);
+  out.filled = static_cast<float>(filled) / static_cast<float>(columns.size());
+  out.inner = shareInner(columns);
   out.layered = static_cast<float>(countSquares(layered)) / static_cast<float>(filled);
 }
 
@@ -149,8 +166,8 @@ float shareBacked(const PointView& points, const search::MedianHashIndex& index,
 }  // namespace
 
 bool HeightField::sure() const {
-  return relief <= kMostRelief && filled >= kMostlyFilled && layered <= kFewLayered &&
-         backed <= kFewBacked;
+  return relief <= kMostRelief && filled >= kMostlyFilled && inner >= kMostlyInner &&
+         layered <= kFewLayered && backed <= kFewBacked;
 }
 
 HeightField measureHeightField(PreparedCloud& cloud, const DensityPatches& patches) {
@@ -163,7 +180,9 @@ HeightField measureHeightField(PreparedCloud& cloud, const DensityPatches& patch
   // Cheap things first: most clouds end here.
   if (out.relief > kMostRelief) return out;
   measureColumns(points, ground, kColumn * patches.spacing, out);
-  if (out.layered <= kFewLayered) out.backed = shareBacked(points, cloud.index(), patches);
+  if (out.layered <= kFewLayered && out.inner >= kMostlyInner) {
+    out.backed = shareBacked(points, cloud.index(), patches);
+  }
   return out;
 }
 

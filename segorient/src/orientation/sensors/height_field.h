@@ -12,6 +12,7 @@ struct HeightField {
   float relief = 0.F;   ///< height over the diagonal of the ground, of the middle 96 per cent
   float filled = 0.F;   ///< share of the columns that have some points and not just one or two
   float layered = 1.F;  ///< share of those that have two layers far apart, as their neighbours do
+  float inner = 0.F;    ///< share of columns that have others on all sides
   float backed = 1.F;   ///< share of flat pieces with another layer close behind or before them
 
   /// Whether nearly all of it is one surface that faces up. An open sheet looks the same: that a

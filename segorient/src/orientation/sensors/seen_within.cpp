@@ -32,6 +32,13 @@ constexpr double kConvex = 0.995;
 // bodies touch two layers lie in one place, which is .06 at most, and chance .02 more. Scans that
 // were seen from within lose .17 and more.
 constexpr double kTwoLayers = 0.1;
+// Share of that which places within may leave: 60 scans .17 at most. Where edges are sampled ten
+// times more densely than faces, or rows of vertices lie closer, .25 and more.
+constexpr double kMostLeft = 0.2;
+
+double lossOf(const std::vector<double>& logs) {
+  return -std::accumulate(logs.begin(), logs.end(), 0.0) / static_cast<double>(logs.size());
+}
 
 // Densities over those there, to their logarithms without what all have in common.
 void toLogs(std::vector<double>& densities) {
@@ -43,7 +50,7 @@ void toLogs(std::vector<double>& densities) {
 double lossOfConstant(const DensityPatches& patches) {
   std::vector<double> logs(patches.sparsity.begin(), patches.sparsity.end());
   toLogs(logs);
-  return -std::accumulate(logs.begin(), logs.end(), 0.0) / static_cast<double>(logs.size());
+  return lossOf(logs);
 }
 
 // A mixture of places whose rays nothing is known of.
@@ -139,8 +146,10 @@ std::vector<Position> heaviestOf(const Explained& within) {
 
 SeenWithin seenWithin(const DensityPatches& patches, const Occupancy& occupancy,
                       const Extent& extent, int threads) {
-  if (lossOfConstant(patches) < kTwoLayers) return {};
+  const double of_constant = lossOfConstant(patches);
+  if (of_constant < kTwoLayers) return {};
   const Explained within(patches, occupancy, placesInside(extent, kMixedInside), threads);
+  if (lossOf(within.logs) > kMostLeft * of_constant) return {};
   Sides sides = sidesOf(patches, within);
   if (sides.one_sided < kOneSided || sides.one_sided > kConvex) return {};
   const Explained around(patches, occupancy, placesOutside(extent), threads);

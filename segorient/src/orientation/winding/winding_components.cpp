@@ -245,6 +245,7 @@ class Solver {
       out[c].residual = static_cast<float>(squares[c] / weights[c]);
       const double d = change(c);
       const double now = squaresAround(c);
+      out[c].gain = static_cast<float>(std::max(0.0, d / weights[c]));
       out[c].evidence = static_cast<float>(std::max(0.0, d / (2.0 * now + d + 1e-12)));
     }
     return out;

@@ -21,6 +21,8 @@ struct ComponentWinding {
   /// Mean of (w - 1/2)^2 over its points with all signs as found: near 0 for a clean closed
   /// surface, below 0.1 for a noisy one; more means open, or badly oriented.
   float residual = 0.F;
+  /// By how much that would grow with the other sign, of this component alone.
+  float gain = 0.F;
 };
 
 /// Chooses the signs of components so that the winding number of all of them together is 1/2 on the
