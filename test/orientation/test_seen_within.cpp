@@ -8,7 +8,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstddef>
 #include <random>
+#include <utility>
 #include <vector>
 
 #include "sensor_scans.h"
@@ -126,6 +128,68 @@ TEST(SeenWithin, LayersInContactAreNoSensorsDensity) {
       EXPECT_TRUE(report.directions.empty())
           << count << " boxes, noise " << noise << ": " << report.why;
     }
+  }
+}
+
+struct Block {
+  Vector low;
+  Vector high;
+  bool has(const Vector& p) const {
+    for (std::size_t a = 0; a < 3; ++a) {
+      if (p[a] < low[a] - 1e-9 || p[a] > high[a] + 1e-9) return false;
+    }
+    return true;
+  }
+};
+
+// The outer surface of two blocks in contact, ten times denser at the edges of their faces.
+std::vector<float> denseAtEdges(const std::array<Block, 2>& blocks, double reach) {
+  constexpr double kTimes = 10.0;
+  constexpr double kPerArea = 6000.0;
+  std::mt19937 random(8);
+  std::uniform_real_distribution<double> unit(0.0, 1.0);
+  std::vector<float> xyz;
+  for (std::size_t k = 0; k < 2; ++k) {
+    const Block& block = blocks[k];
+    for (std::size_t face = 0; face < 6; ++face) {
+      const std::size_t a = face / 2;
+      const std::size_t b = (a + 1) % 3;
+      const std::size_t c = (a + 2) % 3;
+      const double width = block.high[b] - block.low[b];
+      const double height = block.high[c] - block.low[c];
+      for (int i = 0; i < static_cast<int>(kPerArea * width * height); ++i) {
+        const double u = width * unit(random);
+        const double v = height * unit(random);
+        const double edge = std::min({u, width - u, v, height - v});
+        if (kTimes * unit(random) > 1.0 + (kTimes - 1.0) * std::exp(-edge / reach)) continue;
+        Vector p{};
+        p[a] = face % 2 == 0 ? block.low[a] : block.high[a];
+        p[b] = block.low[b] + u;
+        p[c] = block.low[c] + v;
+        if (blocks[1 - k].has(p)) continue;
+        for (const double x : p) xyz.push_back(static_cast<float>(x));
+      }
+    }
+  }
+  return xyz;
+}
+
+TEST(SeenWithin, DenseEdgesAreNoSensorsDensity) {
+  const std::vector<std::pair<std::array<Block, 2>, double>> bodies{
+      {{Block{{-0.67, -0.54, 0.0}, {0.87, 0.72, 0.32}},
+        Block{{-0.77, -0.9, 0.32}, {0.93, 0.68, 0.69}}},
+       0.08},
+      {{Block{{-0.82, -0.62, 0.0}, {0.99, 0.41, 0.2}},
+        Block{{-0.81, -0.68, 0.2}, {0.85, 0.68, 0.69}}},
+       0.07},
+      {{Block{{-0.53, -0.67, 0.0}, {0.76, 0.49, 0.43}},
+        Block{{-0.97, -0.64, 0.43}, {0.87, 0.85, 0.61}}},
+       0.22}};
+  for (const auto& [blocks, reach] : bodies) {
+    const std::vector<float> xyz = denseAtEdges(blocks, reach);
+    const SensorReport report = findSensors({xyz.data(), 3, xyz.size() / 3});
+    EXPECT_TRUE(report.sensors.empty()) << report.why;
+    EXPECT_TRUE(report.directions.empty()) << reach << ": " << report.why;
   }
 }
 
