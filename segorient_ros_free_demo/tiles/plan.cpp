@@ -41,6 +41,7 @@ void forEachNumber(P& p, const Visit& visit) {
   visit(p.place.along_way);
   visit(p.place.whole_image);
   visit(p.place.seen_within);
+  visit(p.place.may_be_suggested);
   visit(p.place_refused);
   visit(p.memory);
   visit(p.keep_orientation);
@@ -156,6 +157,7 @@ OrientationHints hintsOf(const Plan& plan, const std::array<double, 3>& origin) 
   hints.has_viewpoint = plan.has_viewpoint;
   for (std::size_t a = 0; a < 3; ++a) {
     hints.viewpoint[a] = static_cast<float>(plan.viewpoint[a] - origin[a]);
+    hints.suggested.front()[a] = static_cast<float>(-origin[a]);
   }
   if (plan.closed) hints.surface = SurfaceKind::CLOSED;
   if (plan.open) hints.surface = SurfaceKind::OPEN;

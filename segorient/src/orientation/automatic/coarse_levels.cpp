@@ -42,8 +42,12 @@ PointHints hintsOfSubset(const PointHints& hints, const std::vector<float>& towa
   out.surface = hints.surface;
   out.place.faces_up = hints.place.faces_up;
   out.place.seen_within = hints.place.seen_within;
+  out.place.may_be_suggested = hints.place.may_be_suggested;
   out.has_viewpoint = hints.has_viewpoint;
-  for (std::size_t a = 0; a < 3; ++a) out.viewpoint[a] = hints.viewpoint[a] / level.cloud.unit();
+  for (std::size_t a = 0; a < 3; ++a) {
+    out.viewpoint[a] = hints.viewpoint[a] / level.cloud.unit();
+    out.suggested[a] = hints.suggested[a] / level.cloud.unit();
+  }
   if (!hints.directions.empty()) {
     out.directions.assign(3 * size, 0.F);
     for (std::size_t i = 0; i < level.nearest.size(); ++i) {

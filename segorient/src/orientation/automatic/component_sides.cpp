@@ -9,6 +9,7 @@
 #include "orientation/automatic/ground_sides.h"
 #include "orientation/automatic/loose_parts.h"
 #include "orientation/automatic/sheet_stages.h"
+#include "orientation/automatic/suggested_view.h"
 
 namespace segorient::detail {
 namespace {
@@ -152,6 +153,9 @@ void turnComponentsOut(SheetSigns& sheets) {
   sheets.found.inside_out.assign(components.size(), 0);
   for (std::size_t c = 0; c < components.size(); ++c) {
     components[c] = sideOf(sheets, c, conventional[c], hinted[c]);
+  }
+  faceSuggestedPlace(sheets, components);
+  for (std::size_t c = 0; c < components.size(); ++c) {
     const bool turned = components[c].sign != signWithoutHints(sheets, c, conventional[c]);
     sheets.found.inside_out[c] = turned ? 1 : 0;
   }

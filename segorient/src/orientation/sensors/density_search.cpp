@@ -132,12 +132,9 @@ FoundPlace findStation(const DensityPatches& patches, float constant, const Sens
 // Whether a place is under the cloud's ground, about as far away as that is wide: of what a camera
 // sees that looks along +z, the upper side is the other one.
 bool isUnder(const Extent& ground, const std::array<float, 3>& place) {
-  const std::array<double, 3> p = inDouble(place.data());
-  for (std::size_t a = 0; a < 2; ++a) {
-    if (!(p[a] >= ground.low[a] && p[a] <= ground.high[a])) return false;
-  }
-  const double below = ground.low[2] - p[2];
-  return below > 0.0 && below < 2.0 * ground.diagonal();
+  const double below = ground.low[2] - static_cast<double>(place[2]);
+  return below > 0.0 && below < 2.0 * ground.diagonal() &&
+         looksUpAt(place, toFloat(ground.middle()));
 }
 
 // Even densities tell of no sensor. What no upright line meets twice has one side that faces up.

@@ -16,8 +16,6 @@
 namespace segorient::detail {
 namespace {
 
-// Aircraft see land, which is wider than high; what a camera sees is about as deep as it is wide.
-constexpr float kMostRelief = 0.3F;
 // Columns of three spacings hold about nine points where all was seen from above: .97 to 1 of them
 // are filled, of what scanners on the ground leave .4 to .8.
 constexpr float kColumn = 3.F;
@@ -168,6 +166,10 @@ float shareBacked(const PointView& points, const search::MedianHashIndex& index,
 bool HeightField::sure() const {
   return relief <= kMostRelief && filled >= kMostlyFilled && inner >= kMostlyInner &&
          layered <= kFewLayered && backed <= kFewBacked;
+}
+
+bool looksUpAt(const std::array<float, 3>& place, const std::array<float, 3>& middle) {
+  return std::hypot(middle[0] - place[0], middle[1] - place[1]) < middle[2] - place[2];
 }
 
 HeightField measureHeightField(PreparedCloud& cloud, const DensityPatches& patches) {

@@ -2,10 +2,15 @@
 // Copyright (c) 2026, the segorient authors
 #pragma once
 
+#include <array>
+
 #include "orientation/sensors/density_patches.h"
 #include "search/prepared_cloud.h"
 
 namespace segorient::detail {
+
+/// Height over width of land, at most: what a camera sees is about as deep as it is wide.
+constexpr float kMostRelief = 0.3F;
 
 /// How far a cloud is one surface over the xy plane, as aircraft and drones see the ground.
 struct HeightField {
@@ -19,6 +24,10 @@ struct HeightField {
   /// sensor has seen it, uneven densities have to say.
   bool sure() const;
 };
+
+/// Whether a camera at a place below a cloud that looks along +z sees the cloud's middle, 45
+/// degrees off its axis at most.
+bool looksUpAt(const std::array<float, 3>& place, const std::array<float, 3>& middle);
 
 HeightField measureHeightField(PreparedCloud& cloud, const DensityPatches& patches);
 

@@ -128,6 +128,7 @@ PointHints resolveHints(const OrientationHints& hints, PreparedCloud& cloud) {
   out.surface = hints.surface;
   out.viewpoint = scaled(hints.viewpoint, cloud.unit());
   out.has_viewpoint = hints.has_viewpoint && isFinite(out.viewpoint.data());
+  if (!hints.suggested.empty()) out.suggested = scaled(hints.suggested.front(), cloud.unit());
   addDirections(hints, cloud, out.directions);
   addSensors(hints, cloud, out.sensors, out.scans);
   addSeeds(hints, cloud, out.seeds);

@@ -32,6 +32,8 @@ struct CloudPlace {
   /// Whether a search found no place, but that all was seen from within: each point's direction is
   /// then that to where it was seen from.
   bool seen_within = false;
+  /// Whether a search found nothing at all, so that the suggested place is as good as any.
+  bool may_be_suggested = false;
 };
 
 /// OrientationHints by distinct point, in the unit of a PreparedCloud.
@@ -45,6 +47,7 @@ struct PointHints {
   bool has_viewpoint = false;
   std::array<float, 3> viewpoint{0.F, 0.F, 0.F};
   CloudPlace place;
+  std::array<float, 3> suggested{0.F, 0.F, 0.F};  ///< see CloudPlace::may_be_suggested
   /// 3 floats a point: where it was seen from, NaN = unknown; empty = none
   std::vector<float> sensors;
   /// One a point: see SensorReport::either_side; empty = none

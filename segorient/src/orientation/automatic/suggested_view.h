@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the segorient authors
+#pragma once
+
+#include <segorient/orientation/orientation_result.h>
+
+#include <vector>
+
+#include "orientation/automatic/sheet_signs.h"
+
+namespace segorient::detail {
+
+/// Open components face the place where a sensor may have stood (OrientationHints::suggested), if
+/// nothing tells of any, and all of the cloud may be an image from there: the place is outside of
+/// it, and what it sees fills 20 degrees or more. Thinned images have lost the densities, and often
+/// the shadows, that tell of their camera. Closed components keep their side, as do those that turn
+/// as much towards the place as away from it, and land, unless the place lies under it as a camera
+/// does that looks along +z.
+///
+/// \param components decided by all else; of those that face the place the other way the sign is
+///        changed, and nothing is sure of it
+void faceSuggestedPlace(SheetSigns& sheets, std::vector<ComponentOrientationResult>& components);
+
+}  // namespace segorient::detail

@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the segorient authors
+// Evenly sampled surfaces that tell of no sensor, and a place where one may have stood.
+#include <gtest/gtest.h>
+#include <segorient/orientation/pipeline.h>
+
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <memory>
+#include <random>
+#include <vector>
+
+namespace segorient {
+namespace {
+
+using Vector = std::array<float, 3>;
+
+// A wall that bends a little, and hides nothing.
+std::vector<float> wallAt(const Vector& middle, std::size_t count) {
+  std::mt19937 random(21);
+  std::uniform_real_distribution<float> unit(-1.F, 1.F);
+  std::vector<float> rows;
+  for (std::size_t i = 0; i < count; ++i) {
+    const float u = unit(random);
+    const float v = unit(random);
+    const float w = 0.4F * u * u + 0.2F * v * v + 0.1F * std::sin(5.F * u);
+    rows.insert(rows.end(), {middle[0] + u, middle[1] - w, middle[2] + v});
+  }
+  return rows;
+}
+
+// Share of normals that point along a direction.
+double shareAlong(const std::vector<float>& rows, const Vector& direction,
+                  const std::shared_ptr<OrientationHints>& hints = nullptr) {
+  PipelineOptions options;
+  options.orientation.hints = hints;
+  const std::size_t n = rows.size() / 3;
+  const OrientedCloud cloud = orientCloud({rows.data(), 3, n}, nullptr, options);
+  EXPECT_TRUE(cloud.report.sensors.sensors.empty()) << cloud.report.sensors.why;
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < n; ++i) {
+    float sum = 0.F;
+    for (std::size_t a = 0; a < 3; ++a) sum += cloud.normals[4 * i + a] * direction[a];
+    count += sum > 0.F ? 1 : 0;
+  }
+  return static_cast<double>(count) / static_cast<double>(n);
+}
+
+TEST(SuggestedView, WhatIsOpenFacesIt) {
+  // From both sides of the sheet.
+  EXPECT_EQ(shareAlong(wallAt({0.2F, 3.F, 0.1F}, 9000), {0.F, -1.F, 0.F}), 1.0);
+  EXPECT_EQ(shareAlong(wallAt({0.2F, -3.F, 0.1F}, 9000), {0.F, 1.F, 0.F}), 1.0);
+  // Another place than the origin.
+  const auto hints = std::make_shared<OrientationHints>();
+  hints->suggested = {{10.F, 23.F, 0.F}};
+  EXPECT_EQ(shareAlong(wallAt({10.F, 20.F, 0.F}, 9000), {0.F, 1.F, 0.F}, hints), 1.0);
+}
+
+TEST(SuggestedView, NobodySeesFromTooFarOrWithin) {
+  const double far = shareAlong(wallAt({1.F, 12.F, 1.F}, 9000), {0.F, -1.F, 0.F});
+  EXPECT_EQ(shareAlong(wallAt({1.F, -12.F, 1.F}, 9000), {0.F, -1.F, 0.F}), far);
+  const double within = shareAlong(wallAt({0.F, 0.1F, 0.F}, 9000), {0.F, -1.F, 0.F});
+  EXPECT_EQ(shareAlong(wallAt({0.F, 0.9F, 0.F}, 9000), {0.F, -1.F, 0.F}), within);
+}
+
+TEST(SuggestedView, ASideThatIsNamedGoesBefore) {
+  const std::vector<float> rows = wallAt({0.F, 3.F, 0.F}, 9000);
+  const auto hints = std::make_shared<OrientationHints>();
+  hints->seeds.push_back({{0.F, 3.F, 0.F}, {0.F, 1.F, 0.F}});
+  EXPECT_EQ(shareAlong(rows, {0.F, 1.F, 0.F}, hints), 1.0);
+}
+
+// Half of a ball faces the place, but the other one is there as well.
+TEST(SuggestedView, WhatIsClosedKeepsItsSide) {
+  std::mt19937 random(22);
+  std::normal_distribution<float> gauss;
+  std::vector<float> rows;
+  std::vector<float> out;
+  for (int i = 0; i < 6000; ++i) {
+    Vector d{};
+    float square = 0.F;
+    for (float& v : d) {
+      v = gauss(random);
+      square += v * v;
+    }
+    for (float& v : d) v /= std::sqrt(square);
+    out.insert(out.end(), d.begin(), d.end());
+    rows.insert(rows.end(), {d[0], d[1] + 3.F, d[2]});
+  }
+  const OrientedCloud cloud = orientCloud({rows.data(), 3, rows.size() / 3}, nullptr, {});
+  std::size_t outward = 0;
+  for (std::size_t i = 0; i < rows.size() / 3; ++i) {
+    float sum = 0.F;
+    for (std::size_t a = 0; a < 3; ++a) sum += cloud.normals[4 * i + a] * out[3 * i + a];
+    outward += sum > 0.F ? 1 : 0;
+  }
+  EXPECT_EQ(outward, rows.size() / 3);
+}
+
+// Height over the sea is no distance to a camera, of what is wider than high.
+TEST(SuggestedView, LandFacesUp) {
+  std::mt19937 random(23);
+  std::uniform_real_distribution<float> unit(-1.F, 1.F);
+  std::vector<float> rows;
+  for (int i = 0; i < 9000; ++i) {
+    const float x = unit(random);
+    const float y = unit(random);
+    rows.insert(rows.end(), {x, y, 3.F + 0.2F * std::sin(2.F * x) * std::cos(3.F * y)});
+  }
+  EXPECT_EQ(shareAlong(rows, {0.F, 0.F, 1.F}), 1.0);
+}
+
+}  // namespace
+}  // namespace segorient
