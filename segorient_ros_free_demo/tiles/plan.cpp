@@ -42,6 +42,7 @@ void forEachNumber(P& p, const Visit& visit) {
   visit(p.place.whole_image);
   visit(p.place.seen_within);
   visit(p.place.may_be_suggested);
+  visit(p.place.suggestion_suits);
   visit(p.place_refused);
   visit(p.memory);
   visit(p.keep_orientation);

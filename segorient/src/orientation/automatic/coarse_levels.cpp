@@ -43,6 +43,7 @@ PointHints hintsOfSubset(const PointHints& hints, const std::vector<float>& towa
   out.place.faces_up = hints.place.faces_up;
   out.place.seen_within = hints.place.seen_within;
   out.place.may_be_suggested = hints.place.may_be_suggested;
+  out.place.suggestion_suits = hints.place.suggestion_suits;
   out.has_viewpoint = hints.has_viewpoint;
   for (std::size_t a = 0; a < 3; ++a) {
     out.viewpoint[a] = hints.viewpoint[a] / level.cloud.unit();

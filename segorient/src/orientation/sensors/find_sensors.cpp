@@ -43,12 +43,14 @@ void setRevealed(const RevealedPlace& revealed, const char* why, detail::SeenSha
 // The first of the suggestions that they reveal.
 std::optional<RevealedPlace> trySuggestedShadows(const PreparedCloud& cloud,
                                                  const SensorOptions& options, CameraViews& views,
-                                                 const detail::SeenShadows& seen) {
+                                                 detail::SeenShadows& seen) {
   for (const std::array<float, 3>& suggestion : options.suggestions) {
     if (suggestion == seen.nothing_at) continue;
     const std::array<float, 3> s = cloud.inUnit(suggestion);
     const detail::Shadows shadows = detail::findShadows(views.flat(), s, options.threads, true);
     if (shadows.reveal()) return RevealedPlace{s, shadows};
+    seen.suit_first =
+        seen.suit_first || (&suggestion == &options.suggestions.front() && shadows.suit());
   }
   return std::nullopt;
 }

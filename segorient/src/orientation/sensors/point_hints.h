@@ -34,6 +34,7 @@ struct CloudPlace {
   bool seen_within = false;
   /// Whether a search found nothing at all, so that the suggested place is as good as any.
   bool may_be_suggested = false;
+  bool suggestion_suits = false;  ///< see SeenShadows::suit_first
 };
 
 /// OrientationHints by distinct point, in the unit of a PreparedCloud.

@@ -21,6 +21,8 @@ struct SeenShadows {
   Shadows of_sensor;
   /// Found: all four sides of an image meet in the sensor.
   bool whole_image = false;
+  /// Found: shadows suit the first suggestion, though they do not reveal it.
+  bool suit_first = false;
 };
 
 /// findSensors() of a cloud that is prepared.

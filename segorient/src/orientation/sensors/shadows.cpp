@@ -109,6 +109,10 @@ bool Shadows::allow() const {
   return steps > kFewSteps && covered < kAllowed * steps && hidden < kMostHidden * steps;
 }
 
+bool Shadows::suit() const {
+  return open > kMostOpen && allow();
+}
+
 bool Shadows::excuse() const {
   return open > kOpen && steps > 0.F && covered < kAllowed * steps && hidden < kMostHidden * steps;
 }
