@@ -11,13 +11,17 @@
 #include <random>
 #include <vector>
 
+#include "orientation/sensors/shadows.h"
+#include "sensor_scans.h"
+#include "voxel_thinned.h"
+
 namespace segorient {
 namespace {
 
-using Vector = std::array<float, 3>;
+using Floats = std::array<float, 3>;
 
 // A wall that bends a little, and hides nothing.
-std::vector<float> wallAt(const Vector& middle, std::size_t count) {
+std::vector<float> wallAt(const Floats& middle, std::size_t count) {
   std::mt19937 random(21);
   std::uniform_real_distribution<float> unit(-1.F, 1.F);
   std::vector<float> rows;
@@ -31,7 +35,7 @@ std::vector<float> wallAt(const Vector& middle, std::size_t count) {
 }
 
 // Share of normals that point along a direction.
-double shareAlong(const std::vector<float>& rows, const Vector& direction,
+double shareAlong(const std::vector<float>& rows, const Floats& direction,
                   const std::shared_ptr<OrientationHints>& hints = nullptr) {
   PipelineOptions options;
   options.orientation.hints = hints;
@@ -62,6 +66,9 @@ TEST(SuggestedView, NobodySeesFromTooFarOrWithin) {
   EXPECT_EQ(shareAlong(wallAt({1.F, -12.F, 1.F}, 9000), {0.F, -1.F, 0.F}), far);
   const double within = shareAlong(wallAt({0.F, 0.1F, 0.F}, 9000), {0.F, -1.F, 0.F});
   EXPECT_EQ(shareAlong(wallAt({0.F, 0.9F, 0.F}, 9000), {0.F, -1.F, 0.F}), within);
+  const auto hints = std::make_shared<OrientationHints>();
+  hints->suggested = {{std::nanf(""), 3.F, 0.F}};
+  EXPECT_EQ(shareAlong(wallAt({1.F, 12.F, 1.F}, 9000), {0.F, -1.F, 0.F}, hints), far);
 }
 
 TEST(SuggestedView, ASideThatIsNamedGoesBefore) {
@@ -78,7 +85,7 @@ TEST(SuggestedView, WhatIsClosedKeepsItsSide) {
   std::vector<float> rows;
   std::vector<float> out;
   for (int i = 0; i < 6000; ++i) {
-    Vector d{};
+    Floats d{};
     float square = 0.F;
     for (float& v : d) {
       v = gauss(random);
@@ -109,6 +116,40 @@ TEST(SuggestedView, LandFacesUp) {
     rows.insert(rows.end(), {x, y, 3.F + 0.2F * std::sin(2.F * x) * std::cos(3.F * y)});
   }
   EXPECT_EQ(shareAlong(rows, {0.F, 0.F, 1.F}), 1.0);
+}
+
+// Part of a room as some places around the origin have seen it together, thinned: what hides
+// something hides less of it from all of them, and the room is not enclosed.
+TEST(SuggestedView, ShadowsThatSuitItTellOfSomePlaces) {
+  Room room;
+  room.low = {2.6, 1.4, 0.0};
+  room.high = {3.4, 2.2, 1.1};
+  const Vector first{1.2, 1.1, 1.5};
+  std::vector<float> seen;
+  for (const Vector& place : {first, Vector{1.5, 2.3, 1.2}, Vector{1.6, 0.4, 2.0}}) {
+    const std::vector<float> rows = scanFrom(place, 1.0, room).rows();
+    for (std::size_t i = 0; i < rows.size(); i += 3) {
+      if (!(rows[i] > 1.7F && rows[i + 2] < 2.2F)) continue;  // no wall behind them, no ceiling
+      Floats p{};
+      for (std::size_t a = 0; a < 3; ++a) p[a] = rows[i + a] - static_cast<float>(first[a]);
+      // As cameras have it: to the right, down, ahead.
+      seen.insert(seen.end(), {-p[1], -p[2], p[0]});
+    }
+  }
+  const std::vector<float> thin = test::thinned({seen.data(), 3, seen.size() / 3}, 0.08);
+  const PointView points{thin.data(), 4, thin.size() / 4};
+  const detail::Shadows shadows = detail::findShadows(points, {0.F, 0.F, 0.F}, 0);
+  EXPECT_FALSE(shadows.reveal());
+  EXPECT_TRUE(shadows.suit()) << shadows.open << " " << shadows.steps << " " << shadows.covered;
+  const OrientedCloud cloud = orientCloud(points, nullptr, {});
+  std::size_t facing = 0;
+  for (std::size_t i = 0; i < points.size; ++i) {
+    float sum = 0.F;
+    for (std::size_t a = 0; a < 3; ++a) sum -= cloud.normals[4 * i + a] * points[i][a];
+    facing += sum > 0.F ? 1 : 0;
+  }
+  EXPECT_GT(static_cast<double>(facing), 0.95 * static_cast<double>(points.size))
+      << cloud.report.components[0].residual;
 }
 
 }  // namespace

@@ -22,12 +22,12 @@ namespace {
 
 // Cosines of the half angle of a cone with nearly all points: three or four images side by side are
 // 110 degrees wide, what is less than 20 is hardly an image of the whole.
-constexpr float kWidest = 0.574F;
-constexpr float kNarrowest = 0.985F;
+constexpr float kWidestCone = 0.574F;
+constexpr float kNarrowestCone = 0.985F;
 constexpr std::size_t kBeyond = 20;  // one point of so many may be outside of it
 // Cameras keep a distance. Of the nearest points over that of the median one: 200 images, single,
-// cut, and two to eight fused ones, .28 and more. From a corner of a body's box it is .17 at most.
-constexpr float kNear = 0.25F;
+// cut, and two to four fused ones, .30 and more. From a corner of a body's box it is .17 at most.
+constexpr float kNearestShare = 0.25F;
 // Points that the extent is taken from, and the share of them at each end that may be strays.
 constexpr std::size_t kSample = 20000;
 constexpr std::size_t kStrays = 100;
@@ -56,13 +56,14 @@ bool isBefore(const PointView& points, const std::array<float, 3>& place) {
     }
   }
   const float length = std::sqrt(dot(axis.data(), axis.data()));
+  if (!(length > 0.F) || !std::isfinite(length)) return false;
   std::vector<float> cosines;
   for (const std::array<float, 3>& way : ways) {
     cosines.push_back(dot(way.data(), axis.data()) / length);
   }
   const float width = quantile(cosines, kBeyond);
-  return width > kWidest && width < kNarrowest &&
-         quantile(distances, kStrays) > kNear * quantile(distances, 2);
+  return width > kWidestCone && width < kNarrowestCone &&
+         quantile(distances, kStrays) > kNearestShare * quantile(distances, 2);
 }
 
 // Land is wider than high.
@@ -123,7 +124,8 @@ void faceSuggestedPlace(SheetSigns& sheets, std::vector<ComponentOrientationResu
     const bool land = sheets.ground[c] && !suits && !under;
     const bool known =
         component.by == DecidedBy::HINTS || sheets.hints.surface == SurfaceKind::CLOSED;
-    if (known || land || sheets.windings[c].residual <= kOpenResidual) continue;
+    const bool closed = !suits && sheets.windings[c].residual <= kOpenResidual;
+    if (known || land || closed) continue;
     if (std::fabs(sums[c]) < kFaces * counts[c]) continue;
     turn[c] = sums[c] < 0.F ? -1 : 1;
     if (turn[c] == component.sign) continue;

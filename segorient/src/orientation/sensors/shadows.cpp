@@ -110,7 +110,7 @@ bool Shadows::allow() const {
 }
 
 bool Shadows::suit() const {
-  return open > kMostOpen && allow();
+  return open > kMostOpen && steps > kFewSteps && !contradict() && hidden < kMostHidden * steps;
 }
 
 bool Shadows::excuse() const {

@@ -48,8 +48,8 @@ struct Shadows {
   bool asOfABody(bool has_walls) const;
   /// Whether there are steps enough, and they do not deny it.
   bool allow() const;
-  /// Whether they allow it, and half of all directions are empty, as of scenes that were seen from
-  /// some places close together.
+  /// Whether there are steps enough that do not contradict it, and half of all directions are
+  /// empty, as of scenes that were seen from some places close together.
   bool suit() const;
   /// Whether points that lie behind others from there are no more than errors at steps, and the
   /// place is not enclosed.
