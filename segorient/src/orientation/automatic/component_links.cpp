@@ -33,12 +33,13 @@ constexpr int kLastLook = 1024;
 // One node for all components that are decided, one for each other one.
 class Links {
  public:
-  Links(const SheetSigns& sheets, const std::vector<ComponentOrientationResult>& components)
+  Links(const SheetSigns& sheets, const std::vector<bool>& known,
+        const std::vector<ComponentOrientationResult>& components)
       : sheets_(sheets), components_(components), node_(components.size(), -1) {
     for (std::size_t c = 0; c < components.size(); ++c) {
       if (components[c].points < kLeastSamples) continue;
-      const bool known = sheets.ground[c] && sheets.windings[c].residual > kOpenResidual;
-      const bool open = components[c].by == DecidedBy::NOTHING && !known;
+      const bool land = sheets.ground[c] && sheets.windings[c].residual > kOpenResidual;
+      const bool open = components[c].by == DecidedBy::NOTHING && !known[c] && !land;
       node_[c] = open ? static_cast<std::int32_t>(open_.size() + 1) : 0;
       if (open) open_.push_back(c);
     }
@@ -161,8 +162,9 @@ class Links {
 
 }  // namespace
 
-void followNearest(const SheetSigns& sheets, std::vector<ComponentOrientationResult>& components) {
-  const Links links(sheets, components);
+void followNearest(const SheetSigns& sheets, const std::vector<bool>& known,
+                   std::vector<ComponentOrientationResult>& components) {
+  const Links links(sheets, known, components);
   if (!links.none()) links.follow(components);
 }
 

@@ -17,10 +17,12 @@ namespace segorient::detail {
 /// do (borderVotes()), unless they lie before or behind it: whether two sheets face each other or
 /// turn their backs, no neighbour knows.
 ///
+/// \param known one a component: whether its side is, whatever decided it
 /// \param components decided by all else; those decided by DecidedBy::NOTHING that are no ground,
 ///        and have as many points as a winding number takes, get their sign and
 ///        DecidedBy::SURROUNDINGS. Where such are linked with each other only, the largest keeps
 ///        its sign
-void followNearest(const SheetSigns& sheets, std::vector<ComponentOrientationResult>& components);
+void followNearest(const SheetSigns& sheets, const std::vector<bool>& known,
+                   std::vector<ComponentOrientationResult>& components);
 
 }  // namespace segorient::detail

@@ -154,12 +154,12 @@ void turnComponentsOut(SheetSigns& sheets) {
   for (std::size_t c = 0; c < components.size(); ++c) {
     components[c] = sideOf(sheets, c, conventional[c], hinted[c]);
   }
-  faceSuggestedPlace(sheets, components);
+  const std::vector<bool> facing = faceSuggestedPlace(sheets, components);
   for (std::size_t c = 0; c < components.size(); ++c) {
     const bool turned = components[c].sign != signWithoutHints(sheets, c, conventional[c]);
     sheets.found.inside_out[c] = turned ? 1 : 0;
   }
-  if (sheets.sensors.none()) followNearest(sheets, components);
+  if (sheets.sensors.none()) followNearest(sheets, facing, components);
   for (std::size_t s = 0; s < sheets.signs.size(); ++s) {
     const std::int8_t turn = components[at(sheets.component_of[s])].sign;
     sheets.signs[s] = static_cast<std::int8_t>(sheets.signs[s] * turn);

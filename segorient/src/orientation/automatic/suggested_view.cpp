@@ -100,44 +100,62 @@ std::vector<std::int32_t> componentsOf(const SheetSigns& sheets) {
   return out;
 }
 
-}  // namespace
-
-void faceSuggestedPlace(SheetSigns& sheets, std::vector<ComponentOrientationResult>& components) {
-  const std::array<float, 3>& place = sheets.hints.suggested;
-  if (!sheets.hints.place.may_be_suggested || sheets.points.size == 0) return;
-  const bool suits = sheets.hints.place.suggestion_suits;
-  if (!suits && !isBefore(sheets.points, place)) return;
-  const bool under = isUnder(boxWithout(kStrays, sheets.points, kSample), place);
-  std::vector<Ballot> facing = facingOf(sheets, place);
-  const std::vector<std::int32_t> component_of = componentsOf(sheets);
-  std::vector<float> sums(components.size(), 0.F);
+// Of each component, with its segments' signs so far.
+std::vector<float> meanCosines(const SheetSigns& sheets, const std::vector<Ballot>& facing,
+                               const std::vector<std::int32_t>& component_of) {
+  std::vector<float> out(sheets.windings.size(), 0.F);
   for (std::size_t c = 0; c < facing.size(); ++c) {
-    if (component_of[c] >= 0) sums[at(component_of[c])] += facing[c].balance;
+    if (component_of[c] >= 0) out[at(component_of[c])] += facing[c].balance;
   }
-  std::vector<float> counts(components.size(), 0.F);
+  std::vector<float> counts(out.size(), 0.F);
   for (std::size_t i = 0; i < sheets.points.size; ++i) {
     if (sheets.componentOf(i) >= 0) counts[at(sheets.componentOf(i))] += 1.F;
   }
-  std::vector<int> turn(components.size(), 0);
+  for (std::size_t c = 0; c < out.size(); ++c) out[c] /= std::max(1.F, counts[c]);
+  return out;
+}
+
+// Clusters of components that face the place, unless their borders know better.
+// \param sides of each component: what turns it to the place, 0 = it is not asked
+void turnClusters(const std::vector<std::int8_t>& sides,
+                  const std::vector<std::int32_t>& component_of, std::vector<Ballot> facing,
+                  SheetSigns& sheets) {
+  for (std::size_t c = 0; c < facing.size(); ++c) {
+    const int side = component_of[c] < 0 ? 0 : sides[at(component_of[c])];
+    facing[c].balance *= static_cast<float>(side);
+  }
+  sheets.turnClusters(sheets.outvoted(facing, kSureBorders));
+}
+
+}  // namespace
+
+std::vector<bool> faceSuggestedPlace(SheetSigns& sheets,
+                                     std::vector<ComponentOrientationResult>& components) {
+  std::vector<bool> out(components.size(), false);
+  const std::array<float, 3>& place = sheets.hints.suggested;
+  const bool asked = sheets.hints.place.may_be_suggested && sheets.points.size > 0 &&
+                     sheets.hints.surface != SurfaceKind::CLOSED;
+  const bool suits = sheets.hints.place.suggestion_suits;
+  if (!asked || !(suits || isBefore(sheets.points, place))) return out;
+  const bool under = suits || isUnder(boxWithout(kStrays, sheets.points, kSample), place);
+  const std::vector<Ballot> facing = facingOf(sheets, place);
+  const std::vector<std::int32_t> component_of = componentsOf(sheets);
+  const std::vector<float> cosines = meanCosines(sheets, facing, component_of);
+  std::vector<std::int8_t> sides(components.size(), 0);
   for (std::size_t c = 0; c < components.size(); ++c) {
     ComponentOrientationResult& component = components[c];
-    const bool land = sheets.ground[c] && !suits && !under;
-    const bool known =
-        component.by == DecidedBy::HINTS || sheets.hints.surface == SurfaceKind::CLOSED;
     const bool closed = !suits && sheets.windings[c].residual <= kOpenResidual;
-    if (known || land || closed) continue;
-    if (std::fabs(sums[c]) < kFaces * counts[c]) continue;
-    turn[c] = sums[c] < 0.F ? -1 : 1;
-    if (turn[c] == component.sign) continue;
-    component.sign = static_cast<std::int8_t>(turn[c]);
+    if (component.by == DecidedBy::HINTS || closed || (sheets.ground[c] && !under)) continue;
+    if (std::fabs(cosines[c]) < kFaces) continue;
+    out[c] = true;
+    sides[c] = cosines[c] < 0.F ? std::int8_t{-1} : std::int8_t{1};
+    if (sides[c] == component.sign) continue;
+    component.sign = sides[c];
     component.by = DecidedBy::NOTHING;
     component.confidence = 0.F;
   }
-  for (std::size_t c = 0; c < facing.size(); ++c) {
-    const int sign = component_of[c] < 0 ? 0 : turn[at(component_of[c])];
-    facing[c] = {static_cast<float>(sign) * facing[c].balance, facing[c].total};
-  }
-  sheets.turnClusters(sheets.outvoted(facing, kSureBorders));
+  turnClusters(sides, component_of, facing, sheets);
+  return out;
 }
 
 }  // namespace segorient::detail

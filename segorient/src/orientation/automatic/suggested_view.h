@@ -19,6 +19,8 @@ namespace segorient::detail {
 ///
 /// \param components decided by all else; of those that face the place the other way the sign is
 ///        changed, and nothing is sure of it
-void faceSuggestedPlace(SheetSigns& sheets, std::vector<ComponentOrientationResult>& components);
+/// \return of each component, whether it faces the place now
+std::vector<bool> faceSuggestedPlace(SheetSigns& sheets,
+                                     std::vector<ComponentOrientationResult>& components);
 
 }  // namespace segorient::detail
