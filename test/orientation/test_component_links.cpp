@@ -8,6 +8,7 @@
 #include <Eigen/Geometry>
 #include <cmath>
 #include <cstddef>
+#include <memory>
 #include <vector>
 
 namespace segorient {
@@ -31,8 +32,10 @@ struct Globe {
   }
 };
 
-OrientedCloud oriented(const Globe& globe) {
+OrientedCloud oriented(const Globe& globe,
+                       const std::shared_ptr<OrientationHints>& hints = nullptr) {
   PipelineOptions options;
+  options.orientation.hints = hints;
   options.orientation.automatic.find_sensors = false;
   return orientCloud({globe.xyz.data(), 3, globe.out.size()}, nullptr, options);
 }
@@ -57,6 +60,20 @@ TEST(ComponentLinks, CirclesAroundThePolesFaceOutward) {
     EXPECT_GT(cloud.report.components.size(), 2U) << "the circles are connected";
     EXPECT_EQ(shareOutward(globe, cloud), 1.0) << around;
   }
+}
+
+// Who turns the rest turns them with it.
+TEST(ComponentLinks, CirclesFollowASeed) {
+  Globe globe;
+  for (int r = 0; r < 75; ++r) globe.addRow(M_PI * ((r + 0.5) / 75 - 0.5), 300);
+  const std::size_t middle = globe.out.size() / 2;
+  const auto hints = std::make_shared<OrientationHints>();
+  OrientationHints::Seed& inward = hints->seeds.emplace_back();
+  for (Eigen::Index a = 0; a < 3; ++a) {
+    inward.position[static_cast<std::size_t>(a)] = static_cast<float>(globe.out[middle][a]);
+    inward.normal[static_cast<std::size_t>(a)] = static_cast<float>(-globe.out[middle][a]);
+  }
+  EXPECT_EQ(shareOutward(globe, oriented(globe, hints)), 0.0);
 }
 
 // Each half has one layer over any plane, as ground has, but the other one closes it.

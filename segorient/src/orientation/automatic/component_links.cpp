@@ -36,9 +36,14 @@ class Links {
   Links(const SheetSigns& sheets, const std::vector<bool>& known,
         const std::vector<ComponentOrientationResult>& components)
       : sheets_(sheets), components_(components), node_(components.size(), -1) {
+    // Of tiles, a component's size counts other points.
+    std::vector<std::size_t> sizes(components.size(), 0);
+    for (std::size_t i = 0; i < sheets.points.size; ++i) {
+      if (sheets.componentOf(i) >= 0) ++sizes[at(sheets.componentOf(i))];
+    }
     for (std::size_t c = 0; c < components.size(); ++c) {
-      if (components[c].points < kLeastSamples) continue;
-      const bool land = sheets.ground[c] && sheets.windings[c].residual > kOpenResidual;
+      if (sizes[c] < kLeastSamples) continue;
+      const bool land = sheets.ground[c] && !sheets.looksClosed(c, kOpenResidual);
       const bool open = components[c].by == DecidedBy::NOTHING && !known[c] && !land;
       node_[c] = open ? static_cast<std::int32_t>(open_.size() + 1) : 0;
       if (open) open_.push_back(c);

@@ -18,8 +18,8 @@ namespace segorient::detail {
 /// turn their backs, no neighbour knows.
 ///
 /// \param known one a component: whether its side is, whatever decided it
-/// \param components decided by all else; those decided by DecidedBy::NOTHING that are no ground,
-///        and have as many points as a winding number takes, get their sign and
+/// \param components decided by all else; those decided by DecidedBy::NOTHING that are no open
+///        ground, and have as many points as a winding number takes, get their sign and
 ///        DecidedBy::SURROUNDINGS. Where such are linked with each other only, the largest keeps
 ///        its sign
 void followNearest(const SheetSigns& sheets, const std::vector<bool>& known,

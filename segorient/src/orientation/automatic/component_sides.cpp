@@ -98,7 +98,7 @@ std::vector<std::int8_t> conventions(const SheetSigns& sheets, const std::vector
 bool isUnknown(const SheetSigns& sheets, std::size_t component) {
   const ComponentWinding& winding = sheets.windings[component];
   return sheets.ground[component] || winding.evidence < kNoEvidence ||
-         (winding.residual <= kOpenResidual && winding.gain <= kClosedResidual);
+         (sheets.looksClosed(component, kOpenResidual) && winding.gain <= kClosedResidual);
 }
 
 std::int8_t signWithoutHints(const SheetSigns& sheets, std::size_t component,
@@ -137,7 +137,7 @@ void turnComponentsOut(SheetSigns& sheets) {
   const std::vector<float> up = facingUp(sheets);
   for (std::size_t c = 0; c < up.size(); ++c) {
     // Of a part of a closed surface all else closes it.
-    sheets.ground[c] = std::fabs(up[c]) > kLies && !sheets.isClosed(c, sheets.closedResidual());
+    sheets.ground[c] = std::fabs(up[c]) > kLies && !sheets.looksClosed(c, sheets.closedResidual());
   }
   if (std::find(sheets.ground.begin(), sheets.ground.end(), true) != sheets.ground.end()) {
     // One layer over a plane is on one side of it throughout.
@@ -155,11 +155,19 @@ void turnComponentsOut(SheetSigns& sheets) {
     components[c] = sideOf(sheets, c, conventional[c], hinted[c]);
   }
   const std::vector<bool> facing = faceSuggestedPlace(sheets, components);
+  std::vector<ComponentOrientationResult> without = components;
+  bool differ = false;
   for (std::size_t c = 0; c < components.size(); ++c) {
-    const bool turned = components[c].sign != signWithoutHints(sheets, c, conventional[c]);
-    sheets.found.inside_out[c] = turned ? 1 : 0;
+    without[c].sign = signWithoutHints(sheets, c, conventional[c]);
+    differ = differ || without[c].sign != components[c].sign;
   }
-  if (sheets.sensors.none()) followNearest(sheets, facing, components);
+  if (sheets.sensors.none()) {
+    followNearest(sheets, facing, components);
+    if (differ) followNearest(sheets, facing, without);
+  }
+  for (std::size_t c = 0; differ && c < components.size(); ++c) {
+    sheets.found.inside_out[c] = components[c].sign != without[c].sign ? 1 : 0;
+  }
   for (std::size_t s = 0; s < sheets.signs.size(); ++s) {
     const std::int8_t turn = components[at(sheets.component_of[s])].sign;
     sheets.signs[s] = static_cast<std::int8_t>(sheets.signs[s] * turn);

@@ -71,6 +71,11 @@ struct SheetSigns {
   /// Whether a component is told or known to be closed. \param residual most of the winding
   /// number's
   bool isClosed(std::size_t component, float residual) const;
+  /// Whether the winding number tells that it is, ground or not.
+  bool looksClosed(std::size_t component, float residual) const {
+    return options.wind_components && hints.surface != SurfaceKind::OPEN &&
+           windings[component].residual <= residual;
+  }
   /// What that is where everything is closed, in this noise.
   float closedResidual() const;
   /// Clusters that nearly all of the ballot is against, unless their borders know better.

@@ -75,7 +75,8 @@ bool isUnder(const Box& cloud, const std::array<float, 3>& place) {
 
 // How far each cluster faces the place.
 std::vector<Ballot> facingOf(const SheetSigns& sheets, const std::array<float, 3>& place) {
-  std::vector<Ballot> out(sheets.clusters.size());
+  std::vector<double> balance(sheets.clusters.size(), 0.0);
+  std::vector<double> total(balance.size(), 0.0);
   for (std::size_t i = 0; i < sheets.points.size; ++i) {
     const std::int32_t s = sheets.segmentation.labels[i];
     if (s < 0) continue;
@@ -84,9 +85,13 @@ std::vector<Ballot> facingOf(const SheetSigns& sheets, const std::array<float, 3
     const float along = dot(sheets.field.normals + 4 * i, way.data());
     const float cosine = along / std::sqrt(dot(way.data(), way.data()));
     if (!std::isfinite(cosine)) continue;
-    Ballot& ballot = out[at(sheets.clusters.of(at(s)))];
-    ballot.balance += sheets.pointSign(i) * cosine;
-    ballot.total += std::fabs(cosine);
+    const std::size_t c = at(sheets.clusters.of(at(s)));
+    balance[c] += static_cast<double>(sheets.pointSign(i) * cosine);
+    total[c] += static_cast<double>(std::fabs(cosine));
+  }
+  std::vector<Ballot> out;
+  for (std::size_t c = 0; c < balance.size(); ++c) {
+    out.push_back({static_cast<float>(balance[c]), static_cast<float>(total[c])});
   }
   return out;
 }
@@ -107,11 +112,13 @@ std::vector<float> meanCosines(const SheetSigns& sheets, const std::vector<Ballo
   for (std::size_t c = 0; c < facing.size(); ++c) {
     if (component_of[c] >= 0) out[at(component_of[c])] += facing[c].balance;
   }
-  std::vector<float> counts(out.size(), 0.F);
+  std::vector<std::size_t> counts(out.size(), 0);
   for (std::size_t i = 0; i < sheets.points.size; ++i) {
-    if (sheets.componentOf(i) >= 0) counts[at(sheets.componentOf(i))] += 1.F;
+    if (sheets.componentOf(i) >= 0) ++counts[at(sheets.componentOf(i))];
   }
-  for (std::size_t c = 0; c < out.size(); ++c) out[c] /= std::max(1.F, counts[c]);
+  for (std::size_t c = 0; c < out.size(); ++c) {
+    out[c] /= static_cast<float>(std::max<std::size_t>(1, counts[c]));
+  }
   return out;
 }
 
@@ -144,7 +151,7 @@ std::vector<bool> faceSuggestedPlace(SheetSigns& sheets,
   std::vector<std::int8_t> sides(components.size(), 0);
   for (std::size_t c = 0; c < components.size(); ++c) {
     ComponentOrientationResult& component = components[c];
-    const bool closed = !suits && sheets.windings[c].residual <= kOpenResidual;
+    const bool closed = !suits && sheets.looksClosed(c, kOpenResidual);
     if (component.by == DecidedBy::HINTS || closed || (sheets.ground[c] && !under)) continue;
     if (std::fabs(cosines[c]) < kFaces) continue;
     out[c] = true;

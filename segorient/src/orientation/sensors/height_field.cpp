@@ -21,8 +21,9 @@ namespace {
 constexpr float kColumn = 3.F;
 constexpr std::size_t kFilled = 3;
 constexpr float kMostlyFilled = 0.9F;
-// Of an area six columns wide or more two of three have others on all sides. What is narrower is no
-// land, and has sides that slope away before a second layer shows: rods, rings, stars.
+// Of a strip six columns wide two of three have others on all sides, and of a square of eleven.
+// What is narrower is no land, and has sides that slope away before a second layer shows: rods,
+// rings, stars.
 constexpr float kMostlyInner = 2.F / 3.F;
 // Layers: as far apart as a column and a half. What is under something else fills squares of two
 // by two columns, edges of roofs and walls only lines: aircraft up to .06 of the columns, solids,

@@ -97,6 +97,9 @@ PlaceChoice choosePlaces(const PointView& points, const OrientationHints& given,
   if (is_fact || !as_given.place.shadows.deny()) return as_given;
   // What was found in that very place is no more than compared, either.
   if (found.sensors.sure()) found = findOthers(points, asIfNotThere(given, *place), cloud, threads);
+  // Nor is it as good as any.
+  found.place.may_be_suggested = false;
+  found.place.suggestion_suits = false;
   found.hiding = lookFrom(cloud.points(), cloud.inUnit(*place), threads);
   return found;
 }
