@@ -113,8 +113,6 @@ std::vector<float> city(float height) {
   return xyz;
 }
 
-// A plate lies on the plane z = 0 and against the others, as parts do in the files they are drawn
-// in, with a corner cut off: whoever looks along its faces sees holes in them as steps.
 // Vertices by latitude and longitude have the density of a scan from within; but no tripod left a
 // hole, and nothing hides anything.
 TEST(Shadows, VerticesByLatitudeAreNoScanFromWithin) {
@@ -163,6 +161,8 @@ TEST(Shadows, AFewPointsBehindOthersContradict) {
   EXPECT_FALSE(shadows.deny());
 }
 
+// A plate lies on the plane z = 0 and against the others, as parts do in the files they are drawn
+// in, with a corner cut off: whoever looks along its faces sees holes in them as steps.
 TEST(Shadows, ACutCornerInTheOriginSeesNothingOfAPlate) {
   constexpr double kWidth = 16.0;
   constexpr double kLength = 24.0;

@@ -34,6 +34,19 @@ std::vector<float> wallAt(const Floats& middle, std::size_t count) {
   return rows;
 }
 
+// How many normals point along a direction. \param direction of each point
+template <typename Direction>
+std::size_t countAlong(const OrientedCloud& cloud, const Direction& direction) {
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < cloud.normals.size() / 4; ++i) {
+    const Floats along = direction(i);
+    float sum = 0.F;
+    for (std::size_t a = 0; a < 3; ++a) sum += cloud.normals[4 * i + a] * along[a];
+    count += sum > 0.F ? 1 : 0;
+  }
+  return count;
+}
+
 // Share of normals that point along a direction.
 double shareAlong(const std::vector<float>& rows, const Floats& direction,
                   const std::shared_ptr<OrientationHints>& hints = nullptr) {
@@ -42,12 +55,7 @@ double shareAlong(const std::vector<float>& rows, const Floats& direction,
   const std::size_t n = rows.size() / 3;
   const OrientedCloud cloud = orientCloud({rows.data(), 3, n}, nullptr, options);
   EXPECT_TRUE(cloud.report.sensors.sensors.empty()) << cloud.report.sensors.why;
-  std::size_t count = 0;
-  for (std::size_t i = 0; i < n; ++i) {
-    float sum = 0.F;
-    for (std::size_t a = 0; a < 3; ++a) sum += cloud.normals[4 * i + a] * direction[a];
-    count += sum > 0.F ? 1 : 0;
-  }
+  const std::size_t count = countAlong(cloud, [&](std::size_t) { return direction; });
   return static_cast<double>(count) / static_cast<double>(n);
 }
 
@@ -83,7 +91,7 @@ TEST(SuggestedView, WhatIsClosedKeepsItsSide) {
   std::mt19937 random(22);
   std::normal_distribution<float> gauss;
   std::vector<float> rows;
-  std::vector<float> out;
+  std::vector<Floats> out;
   for (int i = 0; i < 6000; ++i) {
     Floats d{};
     float square = 0.F;
@@ -92,17 +100,11 @@ TEST(SuggestedView, WhatIsClosedKeepsItsSide) {
       square += v * v;
     }
     for (float& v : d) v /= std::sqrt(square);
-    out.insert(out.end(), d.begin(), d.end());
+    out.push_back(d);
     rows.insert(rows.end(), {d[0], d[1] + 3.F, d[2]});
   }
   const OrientedCloud cloud = orientCloud({rows.data(), 3, rows.size() / 3}, nullptr, {});
-  std::size_t outward = 0;
-  for (std::size_t i = 0; i < rows.size() / 3; ++i) {
-    float sum = 0.F;
-    for (std::size_t a = 0; a < 3; ++a) sum += cloud.normals[4 * i + a] * out[3 * i + a];
-    outward += sum > 0.F ? 1 : 0;
-  }
-  EXPECT_EQ(outward, rows.size() / 3);
+  EXPECT_EQ(countAlong(cloud, [&](std::size_t i) { return out[i]; }), rows.size() / 3);
 }
 
 // Height over the sea is no distance to a camera, of what is wider than high.
@@ -142,12 +144,9 @@ TEST(SuggestedView, ShadowsThatSuitItTellOfSomePlaces) {
   EXPECT_FALSE(shadows.reveal());
   EXPECT_TRUE(shadows.suit()) << shadows.open << " " << shadows.steps << " " << shadows.covered;
   const OrientedCloud cloud = orientCloud(points, nullptr, {});
-  std::size_t facing = 0;
-  for (std::size_t i = 0; i < points.size; ++i) {
-    float sum = 0.F;
-    for (std::size_t a = 0; a < 3; ++a) sum -= cloud.normals[4 * i + a] * points[i][a];
-    facing += sum > 0.F ? 1 : 0;
-  }
+  const std::size_t facing = countAlong(cloud, [&](std::size_t i) {
+    return Floats{-points[i][0], -points[i][1], -points[i][2]};
+  });
   EXPECT_GT(static_cast<double>(facing), 0.95 * static_cast<double>(points.size))
       << cloud.report.components[0].residual;
 }

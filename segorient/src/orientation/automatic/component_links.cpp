@@ -36,11 +36,7 @@ class Links {
   Links(const SheetSigns& sheets, const std::vector<bool>& known,
         const std::vector<ComponentOrientationResult>& components)
       : sheets_(sheets), components_(components), node_(components.size(), -1) {
-    // Of tiles, a component's size counts other points.
-    std::vector<std::size_t> sizes(components.size(), 0);
-    for (std::size_t i = 0; i < sheets.points.size; ++i) {
-      if (sheets.componentOf(i) >= 0) ++sizes[at(sheets.componentOf(i))];
-    }
+    const std::vector<std::size_t> sizes = sheets.componentSizes();
     for (std::size_t c = 0; c < components.size(); ++c) {
       if (sizes[c] < kLeastSamples) continue;
       const bool land = sheets.ground[c] && !sheets.looksClosed(c, kOpenResidual);

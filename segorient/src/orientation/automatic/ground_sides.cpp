@@ -97,12 +97,7 @@ class Columns {
 // points or every n-th, up to some two times `most` of them.
 std::vector<Columns> columnsOver(const SheetSigns& sheets, const std::vector<bool>& asked,
                                  std::size_t most) {
-  std::vector<std::size_t> sizes(asked.size(), 0);
-  // The points that are here: of tiles, a segment's size counts others.
-  for (std::size_t i = 0; i < sheets.points.size; ++i) {
-    const std::int32_t component = sheets.componentOf(i);
-    if (component >= 0) ++sizes[at(component)];
-  }
+  const std::vector<std::size_t> sizes = sheets.componentSizes();
   std::vector<Columns> out(asked.size());
   std::vector<std::size_t> left_out(asked.size(), 0);  // points until the next one of the sample
   std::vector<std::uint32_t> sample;

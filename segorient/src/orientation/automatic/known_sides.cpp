@@ -103,11 +103,10 @@ void turnWhatNoSegmentDecides(SheetSigns& sheets, const std::vector<Ballot>& bal
 
 void followHints(SheetSigns& sheets) {
   std::vector<HintVotes> by_cluster(sheets.clusters.size());
-  std::vector<std::int32_t> component_of(sheets.clusters.size(), -1);
   for (std::size_t s = 0; s < sheets.clusters.size(); ++s) {
     by_cluster[at(sheets.clusters.of(s))].add(sheets.hint_votes[s], sheets.signs[s]);
-    component_of[at(sheets.clusters.of(s))] = sheets.component_of[s];
   }
+  const std::vector<std::int32_t> component_of = sheets.componentsOfClusters();
   // What hides points from a doubtful place goes on behind them, as closed surfaces do.
   const KnownSensors& known_sensors = sheets.sensors;
   const bool hides = known_sensors.doubtful && known_sensors.scans[0].hidden > kFewHidden;

@@ -59,6 +59,20 @@ void SheetSigns::numberComponents() {
   ground.assign(roots.size(), false);
 }
 
+std::vector<std::size_t> SheetSigns::componentSizes() const {
+  std::vector<std::size_t> out(windings.size(), 0);
+  for (std::size_t i = 0; i < points.size; ++i) {
+    if (componentOf(i) >= 0) ++out[at(componentOf(i))];
+  }
+  return out;
+}
+
+std::vector<std::int32_t> SheetSigns::componentsOfClusters() const {
+  std::vector<std::int32_t> out(clusters.size(), -1);
+  for (std::size_t s = 0; s < out.size(); ++s) out[at(clusters.of(s))] = component_of[s];
+  return out;
+}
+
 FastVector<float> SheetSigns::dipoles() const {
   FastVector<float> out(4 * points.size);
   // The mean distance to the 6 nearest of points of density 1/a is 0.977 sqrt(a). Noise of r

@@ -64,6 +64,10 @@ struct SheetSigns {
     const std::int32_t s = segmentation.labels[i];
     return s < 0 ? -1 : component_of[at(s)];
   }
+  /// The points of each component that are here: of tiles, its result counts others.
+  std::vector<std::size_t> componentSizes() const;
+  /// The component of each cluster, -1 for names of none.
+  std::vector<std::int32_t> componentsOfClusters() const;
   /// 4 floats a point: normal times area and area; 0 without one.
   FastVector<float> dipoles() const;
   /// What is known of segments, one a point; -1 without a segment.

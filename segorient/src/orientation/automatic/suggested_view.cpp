@@ -7,7 +7,6 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <limits>
 #include <vector>
 
 #include "common/at.h"
@@ -16,6 +15,7 @@
 #include "common/every_nth.h"
 #include "orientation/sensors/density_patches.h"
 #include "orientation/sensors/height_field.h"
+#include "orientation/sensors/seen_from.h"
 
 namespace segorient::detail {
 namespace {
@@ -43,27 +43,24 @@ float quantile(std::vector<float>& values, std::size_t one_of) {
 
 // Whether what is seen from a place may be an image.
 bool isBefore(const PointView& points, const std::array<float, 3>& place) {
-  std::vector<float> distances;
-  std::vector<std::array<float, 3>> ways;
-  std::array<float, 3> axis{};
+  std::vector<float> sample;
   for (const std::size_t i : EveryNth(points.size, kSample)) {
-    std::array<float, 3>& way = ways.emplace_back();
-    for (std::size_t a = 0; a < 3; ++a) way[a] = points[i][a] - place[a];
-    distances.push_back(std::sqrt(dot(way.data(), way.data())));
-    for (std::size_t a = 0; a < 3; ++a) {
-      way[a] /= std::max(distances.back(), std::numeric_limits<float>::min());
-      axis[a] += way[a];
-    }
+    sample.insert(sample.end(), points[i], points[i] + 3);
+  }
+  SeenFrom seen = seeFrom(place, {sample.data(), 3, sample.size() / 3}, 1);
+  std::array<float, 3> axis{};
+  for (std::size_t i = 0; i < seen.size(); ++i) {
+    for (std::size_t a = 0; a < 3; ++a) axis[a] += seen.direction[4 * i + a];
   }
   const float length = std::sqrt(dot(axis.data(), axis.data()));
   if (!(length > 0.F) || !std::isfinite(length)) return false;
   std::vector<float> cosines;
-  for (const std::array<float, 3>& way : ways) {
-    cosines.push_back(dot(way.data(), axis.data()) / length);
+  for (std::size_t i = 0; i < seen.size(); ++i) {
+    cosines.push_back(dot(&seen.direction[4 * i], axis.data()) / length);
   }
   const float width = quantile(cosines, kBeyond);
   return width > kWidestCone && width < kNarrowestCone &&
-         quantile(distances, kStrays) > kNearestShare * quantile(distances, 2);
+         quantile(seen.distance, kStrays) > kNearestShare * quantile(seen.distance, 2);
 }
 
 // Land is wider than high.
@@ -96,15 +93,6 @@ std::vector<Ballot> facingOf(const SheetSigns& sheets, const std::array<float, 3
   return out;
 }
 
-// The component of each cluster, -1 for names of none.
-std::vector<std::int32_t> componentsOf(const SheetSigns& sheets) {
-  std::vector<std::int32_t> out(sheets.clusters.size(), -1);
-  for (std::size_t s = 0; s < out.size(); ++s) {
-    out[at(sheets.clusters.of(s))] = sheets.component_of[s];
-  }
-  return out;
-}
-
 // Of each component, with its segments' signs so far.
 std::vector<float> meanCosines(const SheetSigns& sheets, const std::vector<Ballot>& facing,
                                const std::vector<std::int32_t>& component_of) {
@@ -112,10 +100,7 @@ std::vector<float> meanCosines(const SheetSigns& sheets, const std::vector<Ballo
   for (std::size_t c = 0; c < facing.size(); ++c) {
     if (component_of[c] >= 0) out[at(component_of[c])] += facing[c].balance;
   }
-  std::vector<std::size_t> counts(out.size(), 0);
-  for (std::size_t i = 0; i < sheets.points.size; ++i) {
-    if (sheets.componentOf(i) >= 0) ++counts[at(sheets.componentOf(i))];
-  }
+  const std::vector<std::size_t> counts = sheets.componentSizes();
   for (std::size_t c = 0; c < out.size(); ++c) {
     out[c] /= static_cast<float>(std::max<std::size_t>(1, counts[c]));
   }
@@ -146,7 +131,7 @@ std::vector<bool> faceSuggestedPlace(SheetSigns& sheets,
   if (!asked || !(suits || isBefore(sheets.points, place))) return out;
   const bool under = suits || isUnder(boxWithout(kStrays, sheets.points, kSample), place);
   const std::vector<Ballot> facing = facingOf(sheets, place);
-  const std::vector<std::int32_t> component_of = componentsOf(sheets);
+  const std::vector<std::int32_t> component_of = sheets.componentsOfClusters();
   const std::vector<float> cosines = meanCosines(sheets, facing, component_of);
   std::vector<std::int8_t> sides(components.size(), 0);
   for (std::size_t c = 0; c < components.size(); ++c) {
