@@ -63,6 +63,25 @@ TEST_P(SeveralStations, AreFoundAndShareThePoints) {
 
 INSTANTIATE_TEST_SUITE_P(Sensors, SeveralStations, testing::Values(0.0, 0.8));
 
+// Four stations leave nearly even densities, which too many of them fit worse than none.
+TEST(Sensors, FourStationsAreFoundThoughTheyLeaveNearlyEvenDensities) {
+  const Room room{{3.8, 4.2, 2.5}, {3.0, 0.0, 0.0}, {3.8, 0.8, 1.5}};
+  const std::array<Vector, 4> truth{
+      {{1.0, 1.1, 1.2}, {2.6, 0.9, 1.4}, {0.9, 3.1, 1.5}, {2.9, 3.0, 1.6}}};
+  Scan scan;
+  for (const Vector& t : truth) {
+    Scan one = scanFrom(t, 1.8, room);
+    scan.rows().insert(scan.rows().end(), one.rows().begin(), one.rows().end());
+  }
+  const SensorReport report = findSensors(scan.view());
+  ASSERT_EQ(report.sensors.size(), truth.size()) << report.why;
+  for (const Vector& t : truth) {
+    double nearest = 1e30;
+    for (const FoundSensor& s : report.sensors) nearest = std::min(nearest, distanceTo(s, t));
+    EXPECT_LT(nearest, 0.1);
+  }
+}
+
 // A lidar of few beams that turns while it goes along, in a room and between two long walls, where
 // most straight lines leave the scene.
 struct Way {

@@ -244,7 +244,6 @@ std::optional<Stations> searchStations(const DensityPatches& patches, const Occu
   Sum sum(some, occupancy, axis, places);
   if (sum.positions().empty()) return std::nullopt;
   sum.refine(kStep * diagonal);
-  if (sum.cost() > kHopeless * constant) return std::nullopt;
   sum.setAlternatives(placesInside(extent, kAlternatives), threads);
   // All numbers of stations down to one.
   std::vector<Stations> tried;

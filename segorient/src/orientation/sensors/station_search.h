@@ -12,9 +12,8 @@
 namespace segorient::detail {
 
 /// What places have to leave of the constant's deviation at most, or no search goes on from there:
-/// .24 to .62 where there is a single station, 1.0 and more on solids and sheets; .02 to .61 where
-/// there are several, once each was moved, and .39 to .72 for lines near to the path of one that
-/// moved, 1.0 and more on layers and bodies.
+/// .24 to .62 where there is a single station, 1.0 and more on solids and sheets; .39 to .72 for
+/// lines near to the path of a sensor that moved, 1.0 and more on layers and bodies.
 constexpr float kHopeless = 0.8F;
 
 /// What a law may leave of the constant's deviation at the best of all places: true ones .04 to
