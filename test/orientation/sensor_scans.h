@@ -56,6 +56,11 @@ class Scan {
   void move(const Vector& by) {
     for (std::size_t i = 0; i < rows_.size(); ++i) rows_[i] += static_cast<float>(by[i % 3]);
   }
+  void blur(float noise) {
+    std::mt19937 random(5);
+    std::normal_distribution<float> error(0.F, noise);
+    for (float& v : rows_) v += error(random);
+  }
   void scale(float by) {
     for (float& v : rows_) v *= by;
   }
@@ -68,10 +73,12 @@ class Scan {
 };
 
 // A scanner on a tripod: equal steps of azimuth and elevation.
-inline Scan scanFrom(const Vector& station, double step_degrees, const Room& room = {}) {
+// \param lowest elevation
+inline Scan scanFrom(const Vector& station, double step_degrees, const Room& room = {},
+                     double lowest = -1.0) {
   Scan scan(room);
   const double step = step_degrees * kPi / 180.0;
-  for (double e = -1.0; e < 1.5; e += step) {
+  for (double e = lowest; e < 1.5; e += step) {
     for (double a = 0.1 * step; a < 2.0 * kPi; a += step) {
       scan.add(station, {std::cos(e) * std::cos(a), std::cos(e) * std::sin(a), std::sin(e)});
     }

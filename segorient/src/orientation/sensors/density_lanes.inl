@@ -39,7 +39,9 @@ inline void leave(const Sight& from, float* out) {
       const Lanes height = v.x * from.axis[0] + v.y * from.axis[1] + v.z * from.axis[2];
       if constexpr (law == SamplingLaw::ANGLE_GRID) {
         const Lanes level = squareRoot(larger(d2 - height * height, kPole * d2));
-        return larger(facing / (d2 * level), all(kNothing));
+        const Lanes above = larger(
+            smaller((-1.F * height - from.lowest * d) / (kFade * d) + 0.5F, all(1.F)), all(0.F));
+        return larger(above * facing / (d2 * level), all(kNothing));
       } else {
         const Lanes depth = larger(-1.F * height, kWidest * d);
         return larger(facing / (depth * depth * depth), all(kNothing));

@@ -30,6 +30,8 @@ namespace {
 // What may be left of the deviation. Several stations have more to adapt: true ones in rooms and
 // yards left .03 to .28, or nothing but chance; wrong ones around single bodies .33 and more.
 constexpr float kSureSeveral = 0.3F;
+// What a scanner has below it, it sees all of, or from 60 or 45 degrees on: sines.
+constexpr std::array<float, 3> kLowest{detail::kNoLowest, -0.866F, -0.707F};
 // Along a line inside the scene, with free beams: true ones left .05 to .35, others .53 and more.
 constexpr float kSureTrack = 0.4F;
 // Stations whose axis lies level, as that of scanners that tilt, are sought where densities vary by
@@ -152,14 +154,37 @@ bool areOutside(const std::vector<std::array<double, 3>>& positions, const detai
   });
 }
 
+bool isEnough(const detail::Stations& stations, const SensorReport& report) {
+  return stations.cost <= std::max(kSureSeveral * report.deviation, report.chance);
+}
+
+// The first are those of scanners that see all that is below them. Nothing but a level floor tells
+// from where on others do, and no more is tried where they explain enough.
+std::optional<detail::Stations> searchUprightStations(const DensityPatches& patches,
+                                                      const detail::Occupancy& occupancy,
+                                                      const SensorReport& report, int threads) {
+  std::optional<detail::Stations> best;
+  for (const float lowest : kLowest) {
+    const bool enough = best && isEnough(*best, report);
+    if (lowest != detail::kNoLowest && (enough || !patches.haveWalls())) break;
+    const detail::Place rays{{}, kUp, detail::SamplingLaw::ANGLE_GRID, lowest};
+    const std::optional<detail::Stations> found =
+        detail::searchStations(patches, occupancy, rays, threads);
+    // What one station does not see nobody tells of.
+    const bool tells = found && (lowest == detail::kNoLowest || found->positions.size() > 1);
+    if (tells && (!best || found->cost < best->cost)) best = found;
+  }
+  return best;
+}
+
 bool addStations(const PointView& points, const DensityPatches& patches,
                  const detail::Extent& extent, const detail::Occupancy& occupancy, int threads,
                  SensorReport& report) {
   const std::optional<detail::Stations> stations =
-      detail::searchStations(patches, occupancy, kUp, threads);
-  if (!stations || areOutside(stations->positions, extent)) return false;
+      searchUprightStations(patches, occupancy, report, threads);
+  if (!stations || !isEnough(*stations, report)) return false;
+  if (areOutside(stations->positions, extent)) return false;
   const float ratio = stations->cost / report.deviation;
-  if (ratio > kSureSeveral && stations->cost > report.chance) return false;
   addSensors(stations->positions, SensorKind::STATION, kUp, ratio, report);
   assignPlaces(points, patches, detail::originsOf(patches, occupancy, *stations), threads, report);
   report.why = "several places explain the densities";
@@ -206,8 +231,8 @@ void lookForTilted(PreparedCloud& cloud, const DensityPatches& patches,
   for (std::size_t a = 0; a < 2; ++a) {
     std::array<double, 3> axis{0.0, 0.0, 0.0};
     axis[a] = 1.0;
-    const std::optional<detail::Stations> found =
-        detail::searchStations(patches, occupancy, axis, threads);
+    const std::optional<detail::Stations> found = detail::searchStations(
+        patches, occupancy, {{}, axis, detail::SamplingLaw::ANGLE_GRID}, threads);
     if (found && (!best || found->cost < best->cost)) best = found;
   }
   if (!best) return;
@@ -215,7 +240,7 @@ void lookForTilted(PreparedCloud& cloud, const DensityPatches& patches,
   const bool much = report.deviation >= kVariesMuch * report.chance;
   if (ratio > (much ? kSureWhereMuch : kSureSeveral)) return;
   if (!areInside(best->positions, extent)) return;
-  addSensors(best->positions, SensorKind::STATION, best->axis, ratio, report);
+  addSensors(best->positions, SensorKind::STATION, best->rays.axis, ratio, report);
   assignPlaces(cloud.points(), patches, detail::originsOf(patches, occupancy, *best), threads,
                report);
   report.why = "several places of scanners that tilt explain the densities";
@@ -232,8 +257,7 @@ void detail::findSeveral(PreparedCloud& cloud, const DensityPatches& patches, bo
   const bool is_track = track && track->cost <= kSureTrack * report.deviation;
   if (is_track && addTrack(cloud.points(), patches, occupancy, *track, threads, report)) return;
   lookFromAbove(cloud, patches, extent, report);
-  // A line is told by five numbers, several places by three each: what one explains needs no more.
-  if (has_axes && report.sensors.empty() && !is_track) {
+  if (has_axes && report.sensors.empty()) {
     lookForTilted(cloud, patches, extent, occupancy, threads, report);
   }
   if (report.sensors.empty()) {

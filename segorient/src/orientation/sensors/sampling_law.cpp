@@ -15,6 +15,8 @@ namespace {
 
 // A grid of angles is not finer than this towards its poles: scanners' heads are in the way.
 constexpr float kPole = 0.01F;
+// Where rays end, in sines of elevations: a piece is about as wide as that, seen from a tripod.
+constexpr float kFade = 0.05F;
 // A pinhole camera sees no more than 84 degrees from its axis.
 constexpr float kWidest = 0.1F;
 
@@ -29,7 +31,8 @@ struct Sight {
         nz(patches.nz.data()),
         count(patches.size()),
         at(toFloat(place.position)),
-        axis(toFloat(place.axis)) {}
+        axis(toFloat(place.axis)),
+        lowest(place.lowest) {}
 
   const float* x;
   const float* y;
@@ -40,6 +43,7 @@ struct Sight {
   std::size_t count;
   std::array<float, 3> at;
   std::array<float, 3> axis;
+  float lowest;
 };
 
 }  // namespace

@@ -28,11 +28,15 @@ enum class SamplingLaw : std::uint8_t {
   PINHOLE       ///< 1 / cos^3 of the angle from the optical axis: equal steps in an image
 };
 
+/// Of a device that looks down as far as up.
+constexpr float kNoLowest = -2.F;
+
 /// A sensor that might have been: where it stood, and its axis (see SamplingLaw).
 struct Place {
   std::array<double, 3> position{0.0, 0.0, 0.0};
   std::array<double, 3> axis{0.0, 0.0, 1.0};  ///< unit; unused by SOLID_ANGLE
   SamplingLaw law = SamplingLaw::SOLID_ANGLE;
+  float lowest = kNoLowest;  ///< sine of the lowest elevation about the axis that an ANGLE_GRID has
 };
 
 /// What the law leaves of each piece's log density, up to a common constant.

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <limits>
 #include <utility>
 
 #include "common/parallel_for.h"
@@ -64,11 +65,12 @@ struct SideSums {
 // Some stations and what each leaves on the pieces. Weights are equal: one scanner, one setting.
 class Sum {
  public:
-  Sum(const DensityPatches& patches, const Occupancy& occupancy, const Position& axis,
+  // \param rays of all of them: a Place whose position is unused
+  Sum(const DensityPatches& patches, const Occupancy& occupancy, const Place& rays,
       std::vector<Position> positions)
       : patches_(patches),
         occupancy_(occupancy),
-        axis_(axis),
+        rays_(rays),
         positions_(std::move(positions)),
         seen_(positions_.size()),
         densities_(positions_.size()) {
@@ -192,7 +194,7 @@ class Sum {
   // Over the density that is there; negative where the piece is seen from behind.
   void densityAt(const Position& position, const std::vector<float>& seen,
                  std::vector<float>& out) const {
-    ratios(patches_, {position, axis_, SamplingLaw::ANGLE_GRID}, out);
+    ratios(patches_, {position, rays_.axis, rays_.law, rays_.lowest}, out);
     const std::vector<float> heights = patches_.heightsOver(position);
     const float* const height = heights.data();
     const float* const share = seen.data();
@@ -222,7 +224,7 @@ class Sum {
 
   const DensityPatches& patches_;
   const Occupancy& occupancy_;
-  Position axis_;
+  Place rays_;
   std::vector<Position> positions_;
   std::vector<std::vector<float>> seen_;
   std::vector<std::vector<float>> densities_;
@@ -232,51 +234,54 @@ class Sum {
   std::vector<float> logs_;
 };
 
+void settle(const DensityPatches& patches, const Occupancy& occupancy, const Extent& extent,
+            Stations& stations) {
+  const double step = kFineStep * extent.diagonal();
+  const DensityPatches fine = patches.thinned(kFinePieces);
+  Sum sum(fine, occupancy, stations.rays, stations.positions);
+  for (int round = 0; round < kFineRounds; ++round) {
+    sum.reflect(step);
+    sum.refine(step);
+  }
+  stations.positions = sum.positions();
+  stations.cost = sum.cost();
+}
+
 }  // namespace
 
 std::optional<Stations> searchStations(const DensityPatches& patches, const Occupancy& occupancy,
-                                       const Position& axis, int threads) {
+                                       const Place& rays, int threads) {
   const Extent extent = extentOf(patches);
-  const double diagonal = extent.diagonal();
+  const double step = kStep * extent.diagonal();
   const DensityPatches some = patches.thinned(kPieces);
-  const float constant = deviation(some.log_density);
-  const std::vector<Position> places = mixturePlaces(some, occupancy, extent, axis, threads);
-  Sum sum(some, occupancy, axis, places);
+  Sum sum(some, occupancy, rays, mixturePlaces(some, occupancy, extent, rays, threads));
   if (sum.positions().empty()) return std::nullopt;
-  sum.refine(kStep * diagonal);
+  sum.refine(step);
   sum.setAlternatives(placesInside(extent, kAlternatives), threads);
-  // All numbers of stations down to one.
   std::vector<Stations> tried;
+  float least = std::numeric_limits<float>::infinity();
   while (true) {
-    sum.refine(kStep * diagonal);
+    sum.refine(step);
     const bool few = sum.positions().size() <= kMostRelocated;
-    for (int i = 0; few && i < kRelocations && sum.relocate(kStep * diagonal); ++i) {
+    for (int i = 0; few && i < kRelocations && sum.relocate(step); ++i) {
     }
-    sum.reflect(kStep * diagonal);
-    tried.push_back({sum.positions(), axis, sum.cost()});
+    sum.reflect(step);
+    tried.push_back({sum.positions(), rays, sum.cost()});
+    least = std::min(least, tried.back().cost);
     if (sum.positions().size() == 1) break;
     sum.dropOne();
   }
-  Stations out;
-  float least = tried[0].cost;
-  for (const Stations& t : tried) least = std::min(least, t.cost);
-  for (const Stations& t : tried) {
-    if (t.cost <= least + kGain * constant) out = t;  // the last one has fewest
-  }
-  const DensityPatches fine = patches.thinned(kFinePieces);
-  Sum found(fine, occupancy, axis, out.positions);
-  for (int round = 0; round < kFineRounds; ++round) {
-    found.reflect(kFineStep * diagonal);
-    found.refine(kFineStep * diagonal);
-  }
-  out.positions = found.positions();
-  out.cost = found.cost();
+  const float most = least + kGain * deviation(some.log_density);
+  const auto fewest =
+      std::find_if(tried.rbegin(), tried.rend(), [&](const Stations& t) { return t.cost <= most; });
+  Stations out = *fewest;
+  settle(patches, occupancy, extent, out);
   return out;
 }
 
 PieceOrigins originsOf(const DensityPatches& patches, const Occupancy& occupancy,
                        const Stations& stations) {
-  return Sum(patches, occupancy, stations.axis, stations.positions).strongest();
+  return Sum(patches, occupancy, stations.rays, stations.positions).strongest();
 }
 
 }  // namespace segorient::detail

@@ -16,14 +16,15 @@ namespace segorient::detail {
 /// leave where they can see.
 struct Stations {
   std::vector<std::array<double, 3>> positions;
-  std::array<double, 3> axis{0.0, 0.0, 1.0};  ///< all turned about
-  float cost = 0.F;                           ///< as costOf()
+  Place rays;        ///< of all of them, its position unused
+  float cost = 0.F;  ///< as costOf()
 };
 
 /// The smallest number of stations that explains the densities as well as any number does; nothing
-/// where that is hopeless.
+/// where there is none to start from.
+/// \param rays of all of them, its position unused
 std::optional<Stations> searchStations(const DensityPatches& patches, const Occupancy& occupancy,
-                                       const std::array<double, 3>& axis, int threads);
+                                       const Place& rays, int threads);
 
 /// Which of the stations the pieces were seen from.
 PieceOrigins originsOf(const DensityPatches& patches, const Occupancy& occupancy,

@@ -75,7 +75,7 @@ void fillRows(const DensityPatches& patches, const Occupancy& occupancy,
         return Scratch{std::vector<float>(n), {}};
       },
       [&](std::size_t j, Scratch& scratch) {
-        ratios(patches, {places[j], law.axis, law.law}, scratch.left);
+        ratios(patches, {places[j], law.axis, law.law, law.lowest}, scratch.left);
         occupancy.visibility(patches, places[j], scratch.seen.data());
         float* const row = out.row(j);
         float sum = 0.F;
@@ -158,10 +158,9 @@ Mixture mixtureOf(const DensityPatches& patches, const Occupancy& occupancy,
 }
 
 std::vector<Position> mixturePlaces(const DensityPatches& patches, const Occupancy& occupancy,
-                                    const Extent& extent, const Position& axis, int threads) {
+                                    const Extent& extent, const Place& rays, int threads) {
   const std::vector<Position> places = placesAround(extent, kMixedInside);
-  const Mixture mixture =
-      mixtureOf(patches, occupancy, places, {{}, axis, SamplingLaw::ANGLE_GRID}, threads);
+  const Mixture mixture = mixtureOf(patches, occupancy, places, rays, threads);
   const std::vector<float>& weights = mixture.weights;
   const float all = std::accumulate(weights.begin(), weights.end(), 0.F);
   const BySize by_weight(weights.size(), [&](std::size_t j) { return weights[j]; });
