@@ -32,8 +32,9 @@ namespace {
 constexpr float kSureSeveral = 0.3F;
 // What a scanner has below it, it sees all of, or from 60 or 45 degrees on: sines.
 constexpr std::array<float, 3> kLowest{detail::kNoLowest, -0.866F, -0.707F};
-// Along a line inside the scene, with free beams: true ones left .05 to .35, others .53 and more.
-constexpr float kSureTrack = 0.4F;
+// Along a line inside the scene, with free beams: true ones left .05 to .40 in sight, others .47
+// and more but for vertices by rows, which shadows tell.
+constexpr float kSureTrack = 0.43F;
 // Stations whose axis lies level, as that of scanners that tilt, are sought where densities vary by
 // so many times what chance makes of them, and only inside of the scene. The same is asked of them;
 // of a real one in a hall, where the densities varied by 12 times, .35 was left.
@@ -192,15 +193,24 @@ bool addStations(const PointView& points, const DensityPatches& patches,
 }
 
 // A wrong line runs through what it would have seen.
-bool addTrack(const PointView& points, const DensityPatches& patches,
+std::optional<detail::Track> trackInSight(const DensityPatches& patches,
+                                          const detail::Extent& extent,
+                                          const detail::Occupancy& occupancy,
+                                          const SensorReport& report, int threads) {
+  const float most = kSureTrack * report.deviation;
+  const std::optional<detail::Track> found = detail::searchTrack(patches, extent, threads);
+  if (!found || found->cost > most) return std::nullopt;
+  detail::Track settled = detail::settleInSight(patches, extent, occupancy, *found);
+  if (settled.cost > most) return std::nullopt;
+  return settled;
+}
+
+void addTrack(const PointView& points, const DensityPatches& patches,
               const detail::Occupancy& occupancy, const detail::Track& track, int threads,
               SensorReport& report) {
-  const float in_sight = detail::costInSight(patches, occupancy, track);
-  if (in_sight > kSureTrack * report.deviation) return false;
   addSensors(track.places, SensorKind::MOVING, kUp, track.cost / report.deviation, report);
   assignPlaces(points, patches, detail::originsOf(patches, occupancy, track), threads, report);
   report.why = "places along a line explain the densities";
-  return true;
 }
 
 // A cloud in another frame.
@@ -253,12 +263,16 @@ void detail::findSeveral(PreparedCloud& cloud, const DensityPatches& patches, bo
   const detail::Extent extent = detail::extentOf(patches);
   const detail::Occupancy occupancy(cloud.points(), patches, extent);
   if (addStations(cloud.points(), patches, extent, occupancy, threads, report)) return;
-  const std::optional<detail::Track> track = detail::searchTrack(patches, extent, threads);
-  const bool is_track = track && track->cost <= kSureTrack * report.deviation;
-  if (is_track && addTrack(cloud.points(), patches, occupancy, *track, threads, report)) return;
-  lookFromAbove(cloud, patches, extent, report);
-  if (has_axes && report.sensors.empty()) {
+  const std::optional<detail::Track> track =
+      trackInSight(patches, extent, occupancy, report, threads);
+  if (!track) lookFromAbove(cloud, patches, extent, report);
+  // Tilting scanners that stand in a row look somewhat like a line.
+  const bool is_clear = track && track->cost <= kSureSeveral * report.deviation;
+  if (has_axes && report.sensors.empty() && !is_clear) {
     lookForTilted(cloud, patches, extent, occupancy, threads, report);
+  }
+  if (track && report.sensors.empty()) {
+    addTrack(cloud.points(), patches, occupancy, *track, threads, report);
   }
   if (report.sensors.empty()) {
     lookWithin(cloud.points(), patches, extent, occupancy, threads, report);
@@ -286,11 +300,12 @@ void detail::findSeveralTurned(SceneFrame frame, const PreparedCloud& cloud,
   if (!report.sensors.empty()) return;
   // A line has more to adapt, and is looked for only where no stations are.
   for (const TurnedScene& scene : scenes) {
-    const std::optional<Track> track = searchTrack(scene.patches, scene.extent, threads);
-    if (!track || track->cost > kSureTrack * report.deviation) continue;
+    const std::optional<Track> track =
+        trackInSight(scene.patches, scene.extent, scene.occupancy, report, threads);
+    if (!track) continue;
     SensorReport found = nothing;
-    if (addTrack(scene.points(), scene.patches, scene.occupancy, *track, threads, found))
-      keepBetter(scene, std::move(found));
+    addTrack(scene.points(), scene.patches, scene.occupancy, *track, threads, found);
+    keepBetter(scene, std::move(found));
   }
   if (!report.sensors.empty()) return;
   const TurnedScene& upright = scenes.front();

@@ -32,6 +32,8 @@ constexpr std::size_t kStarts =
     12;  // that are followed, of each length: a third, as the best may be dead ends
 constexpr int kEvaluations = 160;
 constexpr double kStep = 0.04;  // of the extent
+constexpr int kFineEvaluations = 60;
+constexpr double kFineStep = 0.01;
 
 // The bin of an elevation by its sine, from a table: arcsines are slow.
 class ElevationBins {
@@ -84,7 +86,9 @@ void beamShares(const DensityPatches& patches, const Position& place, std::vecto
 // What the places leave on the pieces, and how it depends on the beams.
 class TrackModel {
  public:
-  explicit TrackModel(const DensityPatches& patches) : patches_(patches) {}
+  // \param occupancy what hides pieces from places, or null: nothing does
+  explicit TrackModel(const DensityPatches& patches, const Occupancy* occupancy = nullptr)
+      : patches_(patches), occupancy_(occupancy) {}
 
   // The beams that suit the line best, in a few rounds: each bin by what is missing where its
   // beams make most of the density.
@@ -113,6 +117,10 @@ class TrackModel {
     bins_.resize(places.size());
     for (std::size_t j = 0; j < places.size(); ++j) {
       beamShares(patches_, places[j], rows_[j], bins_[j]);
+      if (occupancy_ == nullptr) continue;
+      seen_.resize(patches_.size());
+      occupancy_->visibility(patches_, places[j], seen_.data());
+      for (std::size_t i = 0; i < seen_.size(); ++i) rows_[j][i] *= seen_[i];
     }
   }
 
@@ -151,6 +159,8 @@ class TrackModel {
   }
 
   const DensityPatches& patches_;
+  const Occupancy* occupancy_;
+  std::vector<float> seen_;
   std::vector<std::vector<float>> rows_;
   std::vector<std::vector<std::uint8_t>> bins_;
   std::vector<float> beams_;
@@ -231,6 +241,14 @@ double costOf(const Line& line, const Extent& extent, TrackModel& model) {
                                 : std::numeric_limits<double>::infinity();
 }
 
+Track trackOf(const Line& line, TrackModel model) {
+  Track out;
+  out.places = placesAlong(line);
+  out.cost = model.fit(out.places);
+  out.beams = model.beams();
+  return out;
+}
+
 }  // namespace
 
 std::optional<Track> searchTrack(const DensityPatches& patches, const Extent& extent, int threads) {
@@ -268,12 +286,7 @@ std::optional<Track> searchTrack(const DensityPatches& patches, const Extent& ex
   const std::size_t best =
       *std::min_element(order.begin(), order.end(),
                         [&](std::size_t a, std::size_t b) { return costs[a] < costs[b]; });
-  Track out;
-  out.places = placesAlong(lines[best]);
-  TrackModel model(patches);
-  out.cost = model.fit(out.places);
-  out.beams = model.beams();
-  return out;
+  return trackOf(lines[best], TrackModel(patches));
 }
 
 namespace {
@@ -294,13 +307,17 @@ std::vector<std::vector<float>> sharesOf(const DensityPatches& patches, const Oc
 
 }  // namespace
 
-float costInSight(const DensityPatches& patches, const Occupancy& occupancy, const Track& track) {
-  std::vector<float> sum(patches.size(), kNothing);
-  for (const std::vector<float>& row : sharesOf(patches, occupancy, track)) {
-    for (std::size_t i = 0; i < sum.size(); ++i) sum[i] += row[i];
-  }
-  takeLogs(sum);
-  return deviation(sum);
+Track settleInSight(const DensityPatches& patches, const Extent& extent, const Occupancy& occupancy,
+                    const Track& track) {
+  const DensityPatches some = patches.thinned(kPieces);
+  TrackModel model(some, &occupancy);
+  const auto cost = [&](const Line& l) { return costOf(l, extent, model); };
+  const Position& first = track.places.front();
+  const Position& last = track.places.back();
+  Line line{first[0], first[1], last[0], last[1], first[2]};
+  const std::vector<double> steps(line.size(), kFineStep * extent.diagonal());
+  minimize(cost, steps, kFineEvaluations, line);
+  return trackOf(line, TrackModel(patches, &occupancy));
 }
 
 PieceOrigins originsOf(const DensityPatches& patches, const Occupancy& occupancy,

@@ -25,8 +25,9 @@ struct Track {
 /// Nothing where that is hopeless.
 std::optional<Track> searchTrack(const DensityPatches& patches, const Extent& extent, int threads);
 
-/// Track::cost where each place leaves points only on what nothing hides from it.
-float costInSight(const DensityPatches& patches, const Occupancy& occupancy, const Track& track);
+/// The best line beside a track if each place leaves points only on what nothing hides from it.
+Track settleInSight(const DensityPatches& patches, const Extent& extent, const Occupancy& occupancy,
+                    const Track& track);
 
 /// Which of the track's places the pieces were seen from.
 PieceOrigins originsOf(const DensityPatches& patches, const Occupancy& occupancy,
