@@ -212,9 +212,10 @@ SensorReport searchUpright(const DensityPatches& patches, PreparedCloud& cloud,
 bool areInABody(const SensorReport& found, const DensityPatches& patches, const FlatPoints& flat,
                 int threads) {
   const bool has_walls = patches.haveWalls();
+  const bool are_several = found.sensors.size() > 1;
   return std::all_of(found.sensors.begin(), found.sensors.end(), [&](const FoundSensor& sensor) {
     return sensor.evidence == SensorEvidence::DENSITY && sensor.kind != SensorKind::ABOVE &&
-           findShadows(flat, sensor.position, threads).asOfABody(has_walls);
+           findShadows(flat, sensor.position, threads).asOfABody(has_walls, are_several);
   });
 }
 

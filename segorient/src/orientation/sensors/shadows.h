@@ -45,7 +45,9 @@ struct Shadows {
   /// it hides anything, as no tripod leaves a room, or what should be hidden is there; or as from
   /// beside one, all of which is there.
   /// \param has_walls as rooms have: one may be empty, and seen by two scanners
-  bool asOfABody(bool has_walls) const;
+  /// \param is_one_of_several places that sensors were found in: in a room each of them saw what is
+  ///        hidden from others
+  bool asOfABody(bool has_walls, bool is_one_of_several = false) const;
   /// Whether there are steps enough, and they do not deny it.
   bool allow() const;
   /// Whether there are steps enough that do not contradict it, and half of all directions are
