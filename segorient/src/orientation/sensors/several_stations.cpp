@@ -274,6 +274,7 @@ std::optional<Stations> searchStations(const DensityPatches& patches, const Occu
   const float most = least + kGain * deviation(some.log_density);
   const auto fewest =
       std::find_if(tried.rbegin(), tried.rend(), [&](const Stations& t) { return t.cost <= most; });
+  if (fewest == tried.rend()) return std::nullopt;  // costs are no numbers
   Stations out = *fewest;
   settle(patches, occupancy, extent, out);
   return out;
