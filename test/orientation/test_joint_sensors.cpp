@@ -18,6 +18,12 @@
 namespace segorient {
 namespace {
 
+double distanceToNearest(const SensorReport& report, const Vector& truth) {
+  double nearest = 1e30;
+  for (const FoundSensor& s : report.sensors) nearest = std::min(nearest, distanceTo(s, truth));
+  return nearest;
+}
+
 class SeveralStations : public testing::TestWithParam<double> {};
 
 // Also where no wall runs along an axis.
@@ -45,9 +51,7 @@ TEST_P(SeveralStations, AreFoundAndShareThePoints) {
   ASSERT_EQ(report.sensors.size(), truth.size());
   std::size_t points = 0;
   for (const Vector& t : truth) {
-    double nearest = 1e30;
-    for (const FoundSensor& s : report.sensors) nearest = std::min(nearest, distanceTo(s, t));
-    EXPECT_LT(nearest, 0.1);
+    EXPECT_LT(distanceToNearest(report, t), 0.1);
   }
   for (std::size_t s = 0; s < report.sensors.size(); ++s) {
     EXPECT_TRUE(report.sensors[s].sure);
@@ -78,9 +82,7 @@ TEST(Sensors, FourStationsAreFoundThatSeeNothingBelowThem) {
   const SensorReport report = findSensors(scan.view());
   ASSERT_EQ(report.sensors.size(), truth.size()) << report.why;
   for (const Vector& t : truth) {
-    double nearest = 1e30;
-    for (const FoundSensor& s : report.sensors) nearest = std::min(nearest, distanceTo(s, t));
-    EXPECT_LT(nearest, 0.1);
+    EXPECT_LT(distanceToNearest(report, t), 0.1);
   }
 }
 

@@ -67,8 +67,9 @@ std::vector<Position> placesAlong(const Line& line) {
 }
 
 // As an ANGLE_GRID about z would have it, and the elevation's bin.
-void beamShares(const DensityPatches& patches, const Position& place, std::vector<float>& row,
-                std::vector<std::uint8_t>& bins) {
+// \param occupancy what hides pieces from the place, or null: nothing does
+void beamShares(const DensityPatches& patches, const Occupancy* occupancy, const Position& place,
+                std::vector<float>& row, std::vector<std::uint8_t>& bins) {
   static const ElevationBins kBins;
   ratios(patches, {place, {0.0, 0.0, 1.0}, SamplingLaw::ANGLE_GRID}, row);
   bins.resize(patches.size());
@@ -81,12 +82,16 @@ void beamShares(const DensityPatches& patches, const Position& place, std::vecto
     const float d = std::sqrt(std::max(x * x + y * y + z * z, 1e-12F));
     bins[i] = static_cast<std::uint8_t>(kBins.of(z / d));
   }
+  if (occupancy == nullptr) return;
+  std::vector<float> seen(patches.size());
+  occupancy->visibility(patches, place, seen.data());
+  for (std::size_t i = 0; i < seen.size(); ++i) row[i] *= seen[i];
 }
 
 // What the places leave on the pieces, and how it depends on the beams.
 class TrackModel {
  public:
-  // \param occupancy what hides pieces from places, or null: nothing does
+  // \param occupancy as of beamShares()
   explicit TrackModel(const DensityPatches& patches, const Occupancy* occupancy = nullptr)
       : patches_(patches), occupancy_(occupancy) {}
 
@@ -116,11 +121,7 @@ class TrackModel {
     rows_.resize(places.size());
     bins_.resize(places.size());
     for (std::size_t j = 0; j < places.size(); ++j) {
-      beamShares(patches_, places[j], rows_[j], bins_[j]);
-      if (occupancy_ == nullptr) continue;
-      seen_.resize(patches_.size());
-      occupancy_->visibility(patches_, places[j], seen_.data());
-      for (std::size_t i = 0; i < seen_.size(); ++i) rows_[j][i] *= seen_[i];
+      beamShares(patches_, occupancy_, places[j], rows_[j], bins_[j]);
     }
   }
 
@@ -160,7 +161,6 @@ class TrackModel {
 
   const DensityPatches& patches_;
   const Occupancy* occupancy_;
-  std::vector<float> seen_;
   std::vector<std::vector<float>> rows_;
   std::vector<std::vector<std::uint8_t>> bins_;
   std::vector<float> beams_;
@@ -296,11 +296,9 @@ std::vector<std::vector<float>> sharesOf(const DensityPatches& patches, const Oc
                                          const Track& track) {
   std::vector<std::vector<float>> rows(track.places.size());
   std::vector<std::uint8_t> bins;
-  std::vector<float> seen(patches.size());
   for (std::size_t j = 0; j < rows.size(); ++j) {
-    beamShares(patches, track.places[j], rows[j], bins);
-    occupancy.visibility(patches, track.places[j], seen.data());
-    for (std::size_t i = 0; i < seen.size(); ++i) rows[j][i] *= track.beams[bins[i]] * seen[i];
+    beamShares(patches, &occupancy, track.places[j], rows[j], bins);
+    for (std::size_t i = 0; i < bins.size(); ++i) rows[j][i] *= track.beams[bins[i]];
   }
   return rows;
 }

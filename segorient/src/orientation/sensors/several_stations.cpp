@@ -194,7 +194,9 @@ class Sum {
   // Over the density that is there; negative where the piece is seen from behind.
   void densityAt(const Position& position, const std::vector<float>& seen,
                  std::vector<float>& out) const {
-    ratios(patches_, {position, rays_.axis, rays_.law, rays_.lowest}, out);
+    Place place = rays_;
+    place.position = position;
+    ratios(patches_, place, out);
     const std::vector<float> heights = patches_.heightsOver(position);
     const float* const height = heights.data();
     const float* const share = seen.data();

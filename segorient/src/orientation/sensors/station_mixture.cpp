@@ -75,7 +75,9 @@ void fillRows(const DensityPatches& patches, const Occupancy& occupancy,
         return Scratch{std::vector<float>(n), {}};
       },
       [&](std::size_t j, Scratch& scratch) {
-        ratios(patches, {places[j], law.axis, law.law, law.lowest}, scratch.left);
+        Place place = law;
+        place.position = places[j];
+        ratios(patches, place, scratch.left);
         occupancy.visibility(patches, places[j], scratch.seen.data());
         float* const row = out.row(j);
         float sum = 0.F;
