@@ -29,6 +29,13 @@ float splitOf(const SheetSigns& sheets, const std::vector<Ballot>& ballots,
   return total > 0.F ? 0.5F * (1.F - agreed / total) : 0.F;
 }
 
+// A room seen from within all but closes, too. What hides points from a doubtful place goes on
+// behind them, as closed surfaces do, and what is all around it has no openings.
+float residualOfClosed(const SheetSigns& sheets, bool hides) {
+  const bool goes_on = hides || (sheets.sensors.doubtful && sheets.sensors.enclosed);
+  return goes_on ? kOpenResidual : sheets.closedResidual();
+}
+
 // One place for all points may be wrong as a whole, inside a solid, or have seen one side of it
 // only. Unless its density says that all was seen from there, what closes in itself knows better:
 // it keeps its outside if that faces the place, or if the place is doubtful. A doubtful place that
@@ -42,8 +49,7 @@ void weighOnePlace(SheetSigns& sheets, const std::vector<Ballot>& ballots) {
   for (std::size_t s = 0; s < sheets.signs.size(); ++s) {
     by_component[at(sheets.component_of[s])].add(ballots[s], sheets.signs[s]);
   }
-  // A room seen from within all but closes, too.
-  const float residual = sheets.sensors.hides ? kOpenResidual : sheets.closedResidual();
+  const float residual = residualOfClosed(sheets, sheets.sensors.hides);
   std::vector<bool> own(sheets.windings.size(), false);
   std::size_t believed = 0;
   for (std::size_t c = 0; c < own.size(); ++c) {
@@ -107,10 +113,9 @@ void followHints(SheetSigns& sheets) {
     by_cluster[at(sheets.clusters.of(s))].add(sheets.hint_votes[s], sheets.signs[s]);
   }
   const std::vector<std::int32_t> component_of = sheets.componentsOfClusters();
-  // What hides points from a doubtful place goes on behind them, as closed surfaces do.
   const KnownSensors& known_sensors = sheets.sensors;
   const bool hides = known_sensors.doubtful && known_sensors.scans[0].hidden > kFewHidden;
-  const float residual = hides ? kOpenResidual : sheets.closedResidual();
+  const float residual = residualOfClosed(sheets, hides);
   std::vector<Ballot> seen(sheets.clusters.size());
   std::vector<Ballot> known(sheets.clusters.size());
   for (std::size_t c = 0; c < sheets.clusters.size(); ++c) {

@@ -101,6 +101,23 @@ FittedPlace orUpperTwin(const DensityPatches& patches, const FittedPlace& found)
   return upper.cost <= kSame * found.cost ? upper : found;
 }
 
+// Whether a far place across the scene, which sees it from the other side, explains as much.
+bool isAlikeAcross(const DensityPatches& patches, const FittedPlace& found) {
+  // Costs: 39 cameras, stations and range scanners leave 1.4 to 45 times as much across.
+  constexpr float kAlike = 1.2F;
+  const Extent extent = extentOf(patches);
+  if (extent.holds(found.place.position, kFarthest * extent.diagonal())) return false;
+  FittedPlace across = found;
+  const std::array<double, 3> middle = extent.middle();
+  for (std::size_t a = 0; a < 3; ++a) {
+    across.place.position[a] = 2.0 * middle[a] - found.place.position[a];
+    if (found.place.law == SamplingLaw::PINHOLE) across.place.axis[a] = -found.place.axis[a];
+  }
+  across = fitBeside(patches, across);
+  return across.cost <= kAlike * found.cost &&
+         2 * countTurned(patches, found, across) > patches.size();
+}
+
 struct FoundPlace {
   FoundSensor sensor;
   bool by_image = false;  // it is where the sides of an image meet
@@ -126,7 +143,9 @@ FoundPlace findStation(const DensityPatches& patches, float constant, const Sens
     return {describe(*suggested, constant, true), false};
   }
   if (!found || !options.search) return {};
-  return {describe(*found, constant, false), by_image};
+  FoundSensor sensor = describe(*found, constant, false);
+  sensor.sure = sensor.sure && (by_image || !isAlikeAcross(patches, *found));
+  return {sensor, by_image};
 }
 
 // Whether a place is under the cloud's ground, about as far away as that is wide: of what a camera

@@ -150,10 +150,14 @@ class Finder {
     const bool denied =
         report.density > kDenied && density.constant > kVaries && std::isfinite(report.density);
     if (out_.one_place) {
-      out_.confirmed = hints_.place.shadows.reveal() || hints_.place.whole_image;
+      // Of a thin wall one side lies hardly behind the other, and leaves no step: what closes has
+      // its say where points are hidden.
+      const bool shown = hints_.place.shadows.reveal() || hints_.place.whole_image;
+      out_.confirmed = shown && !hides;
       out_.allowed = hints_.place.shadows.allow();
       out_.hides = hides && !out_.allowed;
-      out_.in_a_room = !hides && hints_.place.shadows.inARoom();
+      out_.in_a_room = (shown || !hides) && hints_.place.shadows.inARoom();
+      out_.enclosed = hints_.place.shadows.enclose();
       if (out_.confirmed) return;
       out_.doubtful = out_.allowed || hides || denied || density.constant < kVaries;
       if (out_.allowed) return;
@@ -198,13 +202,15 @@ class Finder {
       }
     }
     // Poses that were mixed up are wrong together: where one is refused, others need more than that
-    // nothing contradicts them.
+    // nothing contradicts them. Most points of a scan that was mixed with others may still be its
+    // own, and have its density.
     const bool mixed_up =
         !hints_.place.along_way && std::any_of(out_.scans.begin(), out_.scans.end(),
                                                [](const KnownSensor& scan) { return !scan.used; });
     for (std::size_t s = 0; mixed_up && s < n; ++s) {
       KnownSensor& scan = out_.scans[s];
-      if (!scan.used || scan.moving || scan.density < kConfirmed) continue;
+      const bool told = scan.density < kConfirmed && scan.hidden <= kMostHidden;
+      if (!scan.used || scan.moving || told) continue;
       const Shadows& shadows = shadowsOf(s);
       scan.used = hints_.even_sample ? !shadows.deny() : shadows.confirm();
     }

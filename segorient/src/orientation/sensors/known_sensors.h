@@ -59,6 +59,8 @@ struct KnownSensors : SeenPoints {
   bool allowed = false;
   /// Of that place: what is around it has openings, as no solid has.
   bool in_a_room = false;
+  /// Of that place: there is something all around it, as in a solid.
+  bool enclosed = false;
 
   bool none() const { return toward.empty(); }
   const float* of(std::size_t point) const { return &toward[3 * point]; }

@@ -91,6 +91,10 @@ bool Shadows::inARoom() const {
   return open > kFewOpen && open < kMostOpen;
 }
 
+bool Shadows::enclose() const {
+  return open <= kFewOpen;
+}
+
 bool Shadows::deny() const {
   return steps > kFewSteps && covered > kDenied * steps;
 }

@@ -36,6 +36,8 @@ struct Shadows {
   /// Whether the place is enclosed, but for openings: where nothing was seen below a tripod, or
   /// through a window.
   bool inARoom() const;
+  /// Whether there is something in all directions.
+  bool enclose() const;
   /// Whether they go on.
   bool deny() const;
   /// Whether more of them go on, however few they are, than as seen from where a sensor stood: of a
