@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "common/in_double.h"
+#include "orientation/sensors/far_station.h"
 #include "orientation/sensors/height_field.h"
 #include "orientation/sensors/joint_sensors.h"
 #include "orientation/sensors/scene_frame.h"
@@ -19,15 +20,13 @@ namespace segorient::detail {
 namespace {
 
 // Deviations of log density that are hardly more than chance have nothing to explain.
-constexpr float kMoreThanChance = 1.3F;
+constexpr float kMoreThanChance = 0.4F;
 // What a law may leave of the constant's deviation at a place that is looked at because it was
 // suggested: true ones left .04 to .57, wrong ones .81 and more.
 constexpr float kSureSuggested = 0.6F;
 // Several sensors can adapt to much, so that there must be enough to adapt to: at twice the
 // deviation of chance three quarters of the variance are something else.
 constexpr float kFarBeyondChance = 2.F;
-// From farther away, in diagonals, distances hardly differ, and a law is one of incidence alone.
-constexpr double kFarthest = 10.0;
 
 FoundSensor describe(const FittedPlace& fitted, float constant, bool suggested) {
   FoundSensor out;
@@ -101,23 +100,6 @@ FittedPlace orUpperTwin(const DensityPatches& patches, const FittedPlace& found)
   return upper.cost <= kSame * found.cost ? upper : found;
 }
 
-// Whether a far place across the scene, which sees it from the other side, explains as much.
-bool isAlikeAcross(const DensityPatches& patches, const FittedPlace& found) {
-  // Costs: 39 cameras, stations and range scanners leave 1.4 to 45 times as much across.
-  constexpr float kAlike = 1.2F;
-  const Extent extent = extentOf(patches);
-  if (extent.holds(found.place.position, kFarthest * extent.diagonal())) return false;
-  FittedPlace across = found;
-  const std::array<double, 3> middle = extent.middle();
-  for (std::size_t a = 0; a < 3; ++a) {
-    across.place.position[a] = 2.0 * middle[a] - found.place.position[a];
-    if (found.place.law == SamplingLaw::PINHOLE) across.place.axis[a] = -found.place.axis[a];
-  }
-  across = fitBeside(patches, across);
-  return across.cost <= kAlike * found.cost &&
-         2 * countTurned(patches, found, across) > patches.size();
-}
-
 struct FoundPlace {
   FoundSensor sensor;
   bool by_image = false;  // it is where the sides of an image meet
@@ -131,9 +113,15 @@ FoundPlace findStation(const DensityPatches& patches, float constant, const Sens
   const std::optional<FittedPlace> camera = tryCameras(patches, constant, cameras);
   std::optional<FittedPlace> found;
   bool by_image = false;
+  bool side_is_known = true;
   if (options.search) {
     found = searchStation(patches, constant, options.threads);
-    if (found) found = orUpperTwin(patches, *found);
+    if (found) {
+      const SidedPlace sided =
+          sideOfFarPlace(patches, orUpperTwin(patches, *found), options.suggestions);
+      found = sided.fitted;
+      side_is_known = sided.side_is_known;
+    }
     by_image = camera && !(found && explainsFarMore(*found, *camera, constant));
     if (by_image) found = camera;
   } else if (suggested) {
@@ -144,7 +132,7 @@ FoundPlace findStation(const DensityPatches& patches, float constant, const Sens
   }
   if (!found || !options.search) return {};
   FoundSensor sensor = describe(*found, constant, false);
-  sensor.sure = sensor.sure && (by_image || !isAlikeAcross(patches, *found));
+  sensor.sure = sensor.sure && (by_image || side_is_known);
   return {sensor, by_image};
 }
 

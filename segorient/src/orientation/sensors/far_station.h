@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the segorient authors
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "orientation/sensors/station_search.h"
+
+namespace segorient::detail {
+
+/// From farther away, in diagonals, distances hardly differ, and a law is one of incidence alone.
+constexpr double kFarthest = 10.0;
+
+/// A place and whether it is known from which side it sees the scene.
+struct SidedPlace {
+  FittedPlace fitted;
+  bool side_is_known = true;
+};
+
+/// The side of a place that is so far away that the same place across the scene explains the
+/// densities as well, as of a scanner whose rays are parallel.
+///
+/// A suggested place beside the scene that sees all from one side tells; else what lies level is seen from above, as
+/// from the air, and an object bulges to whoever sees it.
+/// \param suggestions places that the sensor may have been in, in the patches' unit
+SidedPlace sideOfFarPlace(const DensityPatches& patches, const FittedPlace& found,
+                          const std::vector<std::array<float, 3>>& suggestions);
+
+}  // namespace segorient::detail
