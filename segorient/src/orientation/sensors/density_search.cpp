@@ -168,7 +168,7 @@ bool searchPlaces(const SceneFrame& frame, bool has_axes, const DensityPatches& 
   frame.back(sensor);
   // Several stations around a body, most points from one of them, look like one at some place, and
   // somewhat like one at many.
-  const bool searched = sensor.kind == SensorKind::STATION && !sensor.suggested && !by_image;
+  const bool searched = !sensor.suggested && !by_image;
   const bool is_weak = sensor.suggested && sensor.cost_ratio > kSureFound;
   if (sensor.sure && (searched || is_weak)) {
     sensor.sure = !findShadows(views.flat(), sensor.position, options.threads).contradict();
@@ -218,12 +218,15 @@ SensorReport searchUpright(const DensityPatches& patches, PreparedCloud& cloud,
 // density of a scan from within it.
 bool areInABody(const SensorReport& found, const DensityPatches& patches, const FlatPoints& flat,
                 int threads) {
-  const bool has_walls = patches.haveWalls();
-  const bool are_several = found.sensors.size() > 1;
-  return std::all_of(found.sensors.begin(), found.sensors.end(), [&](const FoundSensor& sensor) {
-    return sensor.evidence == SensorEvidence::DENSITY && sensor.kind != SensorKind::ABOVE &&
-           findShadows(flat, sensor.position, threads).asOfABody(has_walls, are_several);
-  });
+  const SensorKind kind = found.sensors[0].kind;
+  if (found.sensors[0].evidence != SensorEvidence::DENSITY || kind == SensorKind::ABOVE) {
+    return false;
+  }
+  std::vector<Shadows> seen;
+  for (const FoundSensor& sensor : found.sensors) {
+    seen.push_back(findShadows(flat, sensor.position, threads));
+  }
+  return lookLikeABody(seen, patches.haveWalls(), kind == SensorKind::MOVING);
 }
 
 }  // namespace

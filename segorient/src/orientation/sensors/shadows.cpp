@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <vector>
 
+#include "common/median.h"
 #include "orientation/sensors/depth_steps.h"
 #include "orientation/sensors/seen_from.h"
 
@@ -121,6 +122,24 @@ bool Shadows::suit() const {
 
 bool Shadows::excuse() const {
   return open > kOpen && steps > 0.F && covered < kAllowed * steps && hidden < kMostHidden * steps;
+}
+
+bool lookLikeABody(const std::vector<Shadows>& places, bool has_walls, bool is_way) {
+  const bool are_several = places.size() > 1;
+  if (std::all_of(places.begin(), places.end(),
+                  [&](const Shadows& s) { return s.asOfABody(has_walls, are_several); })) {
+    return true;
+  }
+  std::vector<float> open;
+  std::vector<float> steps;
+  for (const Shadows& s : places) {
+    open.push_back(s.open);
+    steps.push_back(s.steps);
+  }
+  const float mostly_open = median(open);
+  const bool hides_little = median(steps) < kFewBeside;
+  if (is_way) return mostly_open < kOpen || (hides_little && mostly_open < kMostOpen);
+  return hides_little && !has_walls && mostly_open < kHole;
 }
 
 Shadows findShadows(const FlatPoints& flat, const Place& place, int threads, bool to_reveal) {

@@ -6,6 +6,7 @@
 #include <segorient/common/point_view.h>
 
 #include <array>
+#include <vector>
 
 #include "orientation/sensors/flat_points.h"
 
@@ -59,6 +60,11 @@ struct Shadows {
   /// place is not enclosed.
   bool excuse() const;
 };
+
+/// Whether the places that sensors were found in look as from within one body, or beside it: each
+/// of them, or, as none of its places hides much, most.
+/// \param is_way of a sensor that moved, which is not surrounded by what it saw
+bool lookLikeABody(const std::vector<Shadows>& places, bool has_walls, bool is_way);
 
 /// \param place in the points' unit
 SEGORIENT_ORIENTATION_EXPORT Shadows findShadows(const PointView& points,
