@@ -19,8 +19,9 @@
 namespace segorient::detail {
 namespace {
 
-// Deviations of log density that are hardly more than chance have nothing to explain.
-constexpr float kMoreThanChance = 0.4F;
+// Deviations of log density that are hardly more than chance have little to explain; where points
+// do not fall at random, as on lines of a scanner, one place may still do it.
+constexpr float kMoreThanChance = 1.3F;
 // What a law may leave of the constant's deviation at a place that is looked at because it was
 // suggested: true ones left .04 to .57, wrong ones .81 and more.
 constexpr float kSureSuggested = 0.6F;
@@ -102,7 +103,8 @@ FittedPlace orUpperTwin(const DensityPatches& patches, const FittedPlace& found)
 
 struct FoundPlace {
   FoundSensor sensor;
-  bool by_image = false;  // it is where the sides of an image meet
+  bool by_image = false;      // it is where the sides of an image meet
+  bool side_is_known = true;  // else it may as well be across the scene
 };
 
 // \param cameras that the sides of an image and shadows tell of: where they explain densities about
@@ -128,12 +130,10 @@ FoundPlace findStation(const DensityPatches& patches, float constant, const Sens
     found = fitBeside(patches, *suggested);
   }
   if (suggested && !(found && betters(*found, *suggested, constant, patches))) {
-    return {describe(*suggested, constant, true), false};
+    return {describe(*suggested, constant, true)};
   }
   if (!found || !options.search) return {};
-  FoundSensor sensor = describe(*found, constant, false);
-  sensor.sure = sensor.sure && (by_image || side_is_known);
-  return {sensor, by_image};
+  return {describe(*found, constant, false), by_image, by_image || side_is_known};
 }
 
 // Whether a place is under the cloud's ground, about as far away as that is wide: of what a camera
@@ -164,7 +164,12 @@ void lookForUpperSide(PreparedCloud& cloud, const DensityPatches& patches,
 bool searchPlaces(const SceneFrame& frame, bool has_axes, const DensityPatches& patches,
                   PreparedCloud& cloud, const SensorOptions& options, CameraViews& views,
                   const std::vector<RevealedPlace>& cameras, SensorReport& out) {
-  auto [sensor, by_image] = findStation(frame.into(patches), out.deviation, options, cameras);
+  auto [sensor, by_image, side_is_known] =
+      findStation(frame.into(patches), out.deviation, options, cameras);
+  if (sensor.sure && !side_is_known) {
+    out.why = "one place explains the densities, but so does the one across";
+    return false;
+  }
   frame.back(sensor);
   // Several stations around a body, most points from one of them, look like one at some place, and
   // somewhat like one at many.
@@ -249,12 +254,13 @@ SensorReport searchByDensity(PreparedCloud& cloud, const SensorOptions& options,
   }
   out.deviation = deviation(patches.log_density);
   out.chance = chanceDeviation(patches.k);
-  if (out.deviation < kMoreThanChance * out.chance) {
+  const bool is_even = out.deviation < kMoreThanChance * out.chance;
+  out = searchUpright(patches, cloud, options, views, out);
+  if (is_even && !out.sure()) {
     out.why = "the density is even";
     lookForUpperSide(cloud, patches, options, out);
     return out;
   }
-  out = searchUpright(patches, cloud, options, views, out);
   if (out.sure() && areInABody(out, patches, views.flat(), options.threads)) {
     for (FoundSensor& sensor : out.sensors) sensor.sure = false;
     std::fill(out.sensor_of.begin(), out.sensor_of.end(), -1);

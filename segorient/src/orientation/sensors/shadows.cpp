@@ -136,10 +136,7 @@ bool lookLikeABody(const std::vector<Shadows>& places, bool has_walls, bool is_w
     open.push_back(s.open);
     steps.push_back(s.steps);
   }
-  const float mostly_open = median(open);
-  const bool hides_little = median(steps) < kFewBeside;
-  if (is_way) return mostly_open < kOpen || (hides_little && mostly_open < kMostOpen);
-  return hides_little && !has_walls && mostly_open < kHole;
+  return !has_walls && median(steps) < kFewBeside && median(open) < (is_way ? kMostOpen : kHole);
 }
 
 Shadows findShadows(const FlatPoints& flat, const Place& place, int threads, bool to_reveal) {

@@ -62,7 +62,7 @@ struct Shadows {
 };
 
 /// Whether the places that sensors were found in look as from within one body, or beside it: each
-/// of them, or, as none of its places hides much, most.
+/// of them, or most, as little hides anything from them.
 /// \param is_way of a sensor that moved, which is not surrounded by what it saw
 bool lookLikeABody(const std::vector<Shadows>& places, bool has_walls, bool is_way);
 
