@@ -40,6 +40,10 @@ FoundSensor describe(const FittedPlace& fitted, float constant, bool suggested) 
   return out;
 }
 
+bool isEven(const DensityPatches& patches, float constant) {
+  return constant < kMoreThanChance * chanceDeviation(patches.k);
+}
+
 // Of some places the one that fits best, if one leaves no more than `most`.
 class BestFit {
  public:
@@ -119,8 +123,8 @@ FoundPlace findStation(const DensityPatches& patches, float constant, const Sens
   if (options.search) {
     found = searchStation(patches, constant, options.threads);
     if (found) {
-      const SidedPlace sided =
-          sideOfFarPlace(patches, orUpperTwin(patches, *found), options.suggestions);
+      const SidedPlace sided = sideOfFarPlace(patches, orUpperTwin(patches, *found),
+                                              isEven(patches, constant), options.suggestions);
       found = sided.fitted;
       side_is_known = sided.side_is_known;
     }
@@ -254,7 +258,7 @@ SensorReport searchByDensity(PreparedCloud& cloud, const SensorOptions& options,
   }
   out.deviation = deviation(patches.log_density);
   out.chance = chanceDeviation(patches.k);
-  const bool is_even = out.deviation < kMoreThanChance * out.chance;
+  const bool is_even = isEven(patches, out.deviation);
   out = searchUpright(patches, cloud, options, views, out);
   if (is_even && !out.sure()) {
     out.why = "the density is even";

@@ -21,10 +21,10 @@ struct SidedPlace {
 /// The side of a place that is so far away that the same place across the scene explains the
 /// densities as well, as of a scanner whose rays are parallel.
 ///
-/// A suggested place beside the scene that sees all from one side tells; else what lies level is
-/// seen from above, as from the air, and an object bulges to whoever sees it. \param suggestions
-/// places that the sensor may have been in, in the patches' unit
-SidedPlace sideOfFarPlace(const DensityPatches& patches, const FittedPlace& found,
+/// A suggested place beside the scene that sees all from one side tells.
+/// \param is_even whether densities vary so little that distances can tell nothing there
+/// \param suggestions places that the sensor may have been in, in the patches' unit
+SidedPlace sideOfFarPlace(const DensityPatches& patches, const FittedPlace& found, bool is_even,
                           const std::vector<std::array<float, 3>>& suggestions);
 
 }  // namespace segorient::detail
