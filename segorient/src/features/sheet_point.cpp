@@ -33,7 +33,7 @@ PointFit fitAdaptive(Neighborhood& of, std::size_t smallest) {
   if (out.all_on_it) return out;
   for (std::size_t s = kLargest; s-- > smallest;) {
     const Plane p = of.planeOf(s);
-    if (!p.valid) continue;
+    if (!p.valid || p.lambda[1] < kOneScanLine * p.lambda[2]) continue;
     if (s == kCurvature) out.curvature = p.variation();
     const Plane& best = out.plane;
     if (!best.valid ||
