@@ -15,8 +15,8 @@ namespace segorient::detail {
 /// Neighbours spread in one direction only, as on a ring, if their variance across it in the plane
 /// is less than this part of that along it: their plane is any plane through it.
 constexpr float kOneLine = 0.15F;
-/// The same for as few as nine points, of which one in 25 is so by chance, one in 1,000 by this: on a
-/// scanner's line whose noise is no more than half of its step.
+/// The same for a few: of nine random points of a plane one set in 25 is below that, one in 1,000
+/// below this. A scanner's line is, if its noise is no more than half of its step.
 constexpr float kOneScanLine = 0.04F;
 
 /// Least-squares planes of the nearest neighbours of some points, themselves counted, for one

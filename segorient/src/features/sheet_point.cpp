@@ -17,8 +17,8 @@ namespace {
 constexpr float kFlat = 1e-4F;
 
 // Over neighbourhoods from number `smallest` of kSheetScales on: from the largest down, a smaller
-// one where it is clearly flatter. The curvature is the variation over 18 neighbours, or 32 where
-// noise hides smaller ones or all lie on one plane.
+// one where it is clearly flatter, if it is not of one line of a scanner. The curvature is the
+// variation over 18 neighbours, or 32 where noise hides smaller ones or all lie on one plane.
 PointFit fitAdaptive(Neighborhood& of, std::size_t smallest) {
   // Of the share of variance that the larger neighbourhood leaves. Noise makes that of 18 of 32
   // neighbours so small for one point in 400, of 12 of 18 for 1 in 50 (beta distribution).

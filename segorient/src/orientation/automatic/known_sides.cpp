@@ -29,8 +29,9 @@ float splitOf(const SheetSigns& sheets, const std::vector<Ballot>& ballots,
   return total > 0.F ? 0.5F * (1.F - agreed / total) : 0.F;
 }
 
-// A room seen from within all but closes, too. What hides points from a doubtful place goes on
-// behind them, as closed surfaces do, and what is all around it has no openings.
+// What a surface leaves of the winding number's sum that closes, as seen from a place. A room seen
+// from within all but closes, too; but what hides points goes on behind them, as closed surfaces
+// do, and so does what is all around a doubtful place, without openings.
 float residualOfClosed(const SheetSigns& sheets, bool hides) {
   const bool goes_on = hides || (sheets.sensors.doubtful && sheets.sensors.enclosed);
   return goes_on ? kOpenResidual : sheets.closedResidual();
@@ -69,10 +70,10 @@ void weighOnePlace(SheetSigns& sheets, const std::vector<Ballot>& ballots) {
   report.used = 2 * believed > sheets.cloud_points;
   sheets.sensors.countSeen();
   if (!sheets.sensors.doubtful) return;
-  // followHints() has left closed components alone where a doubtful place hides points, so that it
-  // decided nothing if all are closed.
-  sheets.found.place_idle =
-      report.hidden > kFewHidden && std::all_of(own.begin(), own.end(), [](bool o) { return o; });
+  // followHints() has left closed components alone where a doubtful place hides points or is
+  // enclosed, so that it decided nothing if all are closed.
+  sheets.found.place_idle = (report.hidden > kFewHidden || sheets.sensors.enclosed) &&
+                            std::all_of(own.begin(), own.end(), [](bool o) { return o; });
   report.contrary = splitOf(sheets, ballots, own);
   if (sheets.sensors.allowed) return;
   // The less its density is that of a sensor there, the less may contradict it. Thinned clouds have

@@ -107,8 +107,8 @@ FittedPlace orUpperTwin(const DensityPatches& patches, const FittedPlace& found)
 
 struct FoundPlace {
   FoundSensor sensor;
-  bool by_image = false;      // it is where the sides of an image meet
-  bool side_is_known = true;  // else it may as well be across the scene
+  bool by_image = false;          // it is where the sides of an image meet
+  bool from_either_side = false;  // a place explains the densities, and so does the one across
 };
 
 // \param cameras that the sides of an image and shadows tell of: where they explain densities about
@@ -117,27 +117,31 @@ FoundPlace findStation(const DensityPatches& patches, float constant, const Sens
                        const std::vector<RevealedPlace>& cameras) {
   const std::optional<FittedPlace> suggested = trySuggestions(patches, constant, options);
   const std::optional<FittedPlace> camera = tryCameras(patches, constant, cameras);
+  FoundPlace out;
   std::optional<FittedPlace> found;
-  bool by_image = false;
-  bool side_is_known = true;
   if (options.search) {
     found = searchStation(patches, constant, options.threads);
     if (found) {
       const SidedPlace sided = sideOfFarPlace(patches, orUpperTwin(patches, *found),
                                               isEven(patches, constant), options.suggestions);
       found = sided.fitted;
-      side_is_known = sided.side_is_known;
+      if (!sided.side_is_known) {
+        out.from_either_side = found->cost <= kSureFound * constant;
+        found.reset();
+      }
     }
-    by_image = camera && !(found && explainsFarMore(*found, *camera, constant));
-    if (by_image) found = camera;
+    out.by_image = camera && !(found && explainsFarMore(*found, *camera, constant));
+    if (out.by_image) found = camera;
   } else if (suggested) {
     found = fitBeside(patches, *suggested);
   }
   if (suggested && !(found && betters(*found, *suggested, constant, patches))) {
     return {describe(*suggested, constant, true)};
   }
-  if (!found || !options.search) return {};
-  return {describe(*found, constant, false), by_image, by_image || side_is_known};
+  if (!found || !options.search) return out;
+  out.sensor = describe(*found, constant, false);
+  out.from_either_side = false;
+  return out;
 }
 
 // Whether a place is under the cloud's ground, about as far away as that is wide: of what a camera
@@ -148,7 +152,8 @@ bool isUnder(const Extent& ground, const std::array<float, 3>& place) {
          looksUpAt(place, toFloat(ground.middle()));
 }
 
-// Even densities tell of no sensor. What no upright line meets twice has one side that faces up.
+// Where densities tell of no sensor, or not of its side: what no upright line meets twice has one
+// side that faces up.
 void lookForUpperSide(PreparedCloud& cloud, const DensityPatches& patches,
                       const SensorOptions& options, SensorReport& out) {
   if (!options.search || patches.size() == 0) return;
@@ -168,10 +173,11 @@ void lookForUpperSide(PreparedCloud& cloud, const DensityPatches& patches,
 bool searchPlaces(const SceneFrame& frame, bool has_axes, const DensityPatches& patches,
                   PreparedCloud& cloud, const SensorOptions& options, CameraViews& views,
                   const std::vector<RevealedPlace>& cameras, SensorReport& out) {
-  auto [sensor, by_image, side_is_known] =
+  auto [sensor, by_image, from_either_side] =
       findStation(frame.into(patches), out.deviation, options, cameras);
-  if (sensor.sure && !side_is_known) {
-    out.why = "one place explains the densities, but so does the one across";
+  if (from_either_side) {
+    out.why = "a far place explains the densities, but so does the one across";
+    if (frame.isOwn()) lookForUpperSide(cloud, patches, options, out);
     return false;
   }
   frame.back(sensor);
@@ -224,18 +230,21 @@ SensorReport searchUpright(const DensityPatches& patches, PreparedCloud& cloud,
 }
 
 // Vertices of a body that was turned on a lathe, or that is a function of the direction, have the
-// density of a scan from within it.
+// density of a scan from within it, and those of a rod that of one from its axis.
 bool areInABody(const SensorReport& found, const DensityPatches& patches, const FlatPoints& flat,
                 int threads) {
   const SensorKind kind = found.sensors[0].kind;
   if (found.sensors[0].evidence != SensorEvidence::DENSITY || kind == SensorKind::ABOVE) {
     return false;
   }
+  const bool has_walls = patches.haveWalls();
   std::vector<Shadows> seen;
   for (const FoundSensor& sensor : found.sensors) {
     seen.push_back(findShadows(flat, sensor.position, threads));
+    // In walls each place has to look like it.
+    if (has_walls && !seen.back().asOfABody(true, found.sensors.size() > 1)) return false;
   }
-  return lookLikeABody(seen, patches.haveWalls(), kind == SensorKind::MOVING);
+  return areAtOneBody(seen, has_walls, kind == SensorKind::MOVING);
 }
 
 }  // namespace
@@ -258,17 +267,15 @@ SensorReport searchByDensity(PreparedCloud& cloud, const SensorOptions& options,
   }
   out.deviation = deviation(patches.log_density);
   out.chance = chanceDeviation(patches.k);
-  const bool is_even = isEven(patches, out.deviation);
   out = searchUpright(patches, cloud, options, views, out);
-  if (is_even && !out.sure()) {
-    out.why = "the density is even";
-    lookForUpperSide(cloud, patches, options, out);
-    return out;
-  }
   if (out.sure() && areInABody(out, patches, views.flat(), options.threads)) {
     for (FoundSensor& sensor : out.sensors) sensor.sure = false;
     std::fill(out.sensor_of.begin(), out.sensor_of.end(), -1);
     out.why = "from the places that explain the densities it looks like a body";
+  }
+  if (!out.sure() && isEven(patches, out.deviation)) {
+    if (out.sensors.empty()) out.why = "the density is even";
+    lookForUpperSide(cloud, patches, options, out);
   }
   return out;
 }

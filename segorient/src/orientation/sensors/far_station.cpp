@@ -12,17 +12,15 @@ namespace {
 // Of costs: 52 cameras, stations and range scanners leave 1.4 to 45 times as much across, parallel
 // rays 1.0 to 1.21 times.
 constexpr float kAlike = 1.3F;
-// Of the pieces that a place sees the same side of as another.
+// Of the pieces: two places see opposite sides of them, or the same.
 constexpr float kNearlyAll = 0.9F;
 
-FittedPlace acrossFrom(const DensityPatches& patches, const FittedPlace& found) {
+FittedPlace acrossFrom(const std::array<double, 3>& middle, const FittedPlace& found) {
   FittedPlace out = found;
-  const std::array<double, 3> middle = extentOf(patches).middle();
   for (std::size_t a = 0; a < 3; ++a) {
     out.place.position[a] = 2.0 * middle[a] - found.place.position[a];
-    if (found.place.law == SamplingLaw::PINHOLE) out.place.axis[a] = -found.place.axis[a];
   }
-  return fitBeside(patches, out);
+  return out;
 }
 
 float shareTurned(const DensityPatches& patches, const FittedPlace& a, const FittedPlace& b) {
@@ -35,14 +33,17 @@ SidedPlace sideOfFarPlace(const DensityPatches& patches, const FittedPlace& foun
                           const std::vector<std::array<float, 3>>& suggestions) {
   const Extent extent = extentOf(patches);
   if (extent.holds(found.place.position, kFarthest * extent.diagonal())) return {found, true};
-  const FittedPlace across = acrossFrom(patches, found);
-  const bool differ = !is_even && across.cost > kAlike * found.cost;
-  if (differ || shareTurned(patches, found, across) < kNearlyAll) return {found, true};
+  const FittedPlace mirrored = acrossFrom(extent.middle(), found);
+  if (shareTurned(patches, found, mirrored) < kNearlyAll) return {found, true};
+  const FittedPlace across = fitBeside(patches, mirrored);
+  if (!is_even && across.cost > kAlike * found.cost) return {found, true};
   for (const std::array<float, 3>& s : suggestions) {
+    if (!isFinite(s.data())) continue;
     FittedPlace place = found;
     place.place.position = inDouble(s.data());
-    // Near to an object is where its own coordinates begin.
+    // Near to an object is where its own coordinates begin, far from it where those of a map do.
     if (extent.holds(place.place.position, extent.diagonal())) continue;
+    if (!extent.holds(place.place.position, kFarthest * extent.diagonal())) continue;
     const float turned = shareTurned(patches, found, place);
     if (turned > kNearlyAll) return {across, true};
     if (turned < 1.F - kNearlyAll) return {found, true};

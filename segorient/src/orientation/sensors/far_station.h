@@ -9,7 +9,8 @@
 
 namespace segorient::detail {
 
-/// From farther away, in diagonals, distances hardly differ, and a law is one of incidence alone.
+/// Diagonals of the scene: from farther away distances hardly differ, and a law is one of incidence
+/// alone.
 constexpr double kFarthest = 10.0;
 
 /// A place and whether it is known from which side it sees the scene.
@@ -21,7 +22,7 @@ struct SidedPlace {
 /// The side of a place that is so far away that the same place across the scene explains the
 /// densities as well, as of a scanner whose rays are parallel.
 ///
-/// A suggested place beside the scene that sees all from one side tells.
+/// A suggested place one to ten diagonals beside the scene that sees all from one side tells.
 /// \param is_even whether densities vary so little that distances can tell nothing there
 /// \param suggestions places that the sensor may have been in, in the patches' unit
 SidedPlace sideOfFarPlace(const DensityPatches& patches, const FittedPlace& found, bool is_even,

@@ -150,8 +150,8 @@ class Finder {
     const bool denied =
         report.density > kDenied && density.constant > kVaries && std::isfinite(report.density);
     if (out_.one_place) {
-      // Of a thin wall one side lies hardly behind the other, and leaves no step: what closes has
-      // its say where points are hidden.
+      // Of a thin wall one side lies hardly behind the other, which shadows miss: where points are
+      // hidden, they alone do not confirm a place against what closes.
       const bool shown = hints_.place.shadows.reveal() || hints_.place.whole_image;
       out_.confirmed = shown && !hides;
       out_.allowed = hints_.place.shadows.allow();
@@ -209,8 +209,8 @@ class Finder {
                                                [](const KnownSensor& scan) { return !scan.used; });
     for (std::size_t s = 0; mixed_up && s < n; ++s) {
       KnownSensor& scan = out_.scans[s];
-      const bool told = scan.density < kConfirmed && scan.hidden <= kMostHidden;
-      if (!scan.used || scan.moving || told) continue;
+      const bool is_confirmed = scan.density < kConfirmed && scan.hidden <= kMostHidden;
+      if (!scan.used || scan.moving || is_confirmed) continue;
       const Shadows& shadows = shadowsOf(s);
       scan.used = hints_.even_sample ? !shadows.deny() : shadows.confirm();
     }

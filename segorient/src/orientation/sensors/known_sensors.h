@@ -49,7 +49,8 @@ struct KnownSensors : SeenPoints {
   bool common = false;
   /// All points have been told the same place, whether as theirs or as the common one.
   bool one_place = false;
-  /// Of that place: the density of the points, or where surfaces end, shows that it saw them.
+  /// Of that place: the density of the points shows that it saw them, or where surfaces end does
+  /// and few points are hidden.
   bool confirmed = false;
   /// Of that place: there is evidence that it did not see all points, or too little to tell.
   bool doubtful = false;

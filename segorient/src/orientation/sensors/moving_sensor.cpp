@@ -17,6 +17,10 @@
 namespace segorient::detail {
 namespace {
 
+// What places near to the path of a sensor that moved have to leave of the constant's deviation at
+// most, or no search goes on from there: .39 to .72, 1.0 and more on layers and bodies.
+constexpr float kHopeless = 0.8F;
+
 using Position = std::array<double, 3>;
 using Line = std::vector<double>;  // x, y of one end, x, y of the other, z
 

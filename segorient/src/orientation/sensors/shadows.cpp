@@ -124,19 +124,20 @@ bool Shadows::excuse() const {
   return open > kOpen && steps > 0.F && covered < kAllowed * steps && hidden < kMostHidden * steps;
 }
 
-bool lookLikeABody(const std::vector<Shadows>& places, bool has_walls, bool is_way) {
+bool areAtOneBody(const std::vector<Shadows>& places, bool has_walls, bool on_its_way) {
   const bool are_several = places.size() > 1;
   if (std::all_of(places.begin(), places.end(),
                   [&](const Shadows& s) { return s.asOfABody(has_walls, are_several); })) {
     return true;
   }
+  if (has_walls) return false;
   std::vector<float> open;
   std::vector<float> steps;
   for (const Shadows& s : places) {
     open.push_back(s.open);
     steps.push_back(s.steps);
   }
-  return !has_walls && median(steps) < kFewBeside && median(open) < (is_way ? kMostOpen : kHole);
+  return median(steps) < kFewBeside && median(open) < (on_its_way ? kMostOpen : kHole);
 }
 
 Shadows findShadows(const FlatPoints& flat, const Place& place, int threads, bool to_reveal) {

@@ -23,7 +23,7 @@ struct Shadows {
   /// With nearer points all around, whether on surfaces or not: in noise few show to be.
   float hidden = 0.F;
 
-  float open = 0.F;  ///< of all directions, those where there is nothing
+  float open = 1.F;  ///< of all directions, those where there is nothing; 1 if nobody looked
   /// Whether the place across the middle says as much: of a landscape that something far above it
   /// saw, steps look much alike from far below.
   bool better_across = false;
@@ -37,7 +37,7 @@ struct Shadows {
   /// Whether the place is enclosed, but for openings: where nothing was seen below a tripod, or
   /// through a window.
   bool inARoom() const;
-  /// Whether there is something in all directions.
+  /// Whether there is something in all directions, but for .005 of them.
   bool enclose() const;
   /// Whether they go on.
   bool deny() const;
@@ -61,10 +61,11 @@ struct Shadows {
   bool excuse() const;
 };
 
-/// Whether the places that sensors were found in look as from within one body, or beside it: each
-/// of them, or most, as little hides anything from them.
-/// \param is_way of a sensor that moved, which is not surrounded by what it saw
-bool lookLikeABody(const std::vector<Shadows>& places, bool has_walls, bool is_way);
+/// Whether places that sensors were found in are in one body, or beside it: each looks like it, or
+/// there are no walls, and from most of them nothing hides anything and there is something all
+/// around (of a sensor on its way in more than half of all directions).
+/// \param places not empty
+bool areAtOneBody(const std::vector<Shadows>& places, bool has_walls, bool on_its_way);
 
 /// \param place in the points' unit
 SEGORIENT_ORIENTATION_EXPORT Shadows findShadows(const PointView& points,

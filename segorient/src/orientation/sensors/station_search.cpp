@@ -25,8 +25,9 @@ constexpr double kFineStep = 0.01;
 constexpr int kCoarseEvaluations = 100;
 constexpr int kFineEvaluations = 250;
 constexpr int kAxisEvaluations = 60;
-// Of the constant's cost: 80 places from where an object of a few faces was scanned are .2 to 1.24
-// at the best of the coarse ones, and lead to .17 at most.
+// Of the constant's cost: what the best of the coarse places leaves at most, or the search ends
+// there. Of objects of a few faces, seen from one place, it leaves up to 1.24, and what it leads to
+// .17 at most (80 scans).
 constexpr float kFarOff = 1.5F;
 
 // The laws, those with a vertical once for each coordinate axis: people turn clouds so that up is

@@ -11,11 +11,6 @@
 
 namespace segorient::detail {
 
-/// What places have to leave of the constant's deviation at most, or no search goes on from there:
-/// .24 to .62 where there is a single station, 1.0 and more on solids and sheets; .39 to .72 for
-/// lines near to the path of a sensor that moved, 1.0 and more on layers and bodies.
-constexpr float kHopeless = 0.8F;
-
 /// What a law may leave of the constant's deviation at the best of all places: true ones .04 to
 /// .31, solids and sheets .99 and more, several stations around an object from .42 on.
 constexpr float kSureFound = 0.33F;
@@ -39,8 +34,8 @@ FittedPlace fitBeside(const DensityPatches& patches, const FittedPlace& place);
 /// Of how many pieces two places see opposite sides.
 std::size_t countTurned(const DensityPatches& patches, const FittedPlace& a, const FittedPlace& b);
 
-/// The best place anywhere around and inside the cloud; nothing where none is much better than
-/// no sensor. \param constant deviation() of the log densities
+/// The best place anywhere around and inside the cloud; nothing where all of a coarse choice are
+/// much worse than no sensor. \param constant deviation() of the log densities
 std::optional<FittedPlace> searchStation(const DensityPatches& patches, float constant,
                                          int threads);
 
