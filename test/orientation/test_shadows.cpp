@@ -216,6 +216,22 @@ TEST(Shadows, AStrayPointBeforeThePlaceEnclosesNothing) {
   EXPECT_TRUE(detail::findShadows(viewOf(xyz), inFloat(eye), 1).reveal());
 }
 
+// Each place of a room hides something; of a rod's axis none does, where there are gaps or not.
+TEST(Shadows, PlacesThatNothingIsHiddenFromAreAtOneBody) {
+  detail::Shadows free;
+  free.open = 0.01F;
+  detail::Shadows beside = free;
+  beside.open = 0.03F;
+  detail::Shadows hides = free;
+  hides.steps = 0.06F;
+  EXPECT_TRUE(detail::areAtOneBody({free, free, hides}, false, false));
+  EXPECT_FALSE(detail::areAtOneBody({free, hides, hides}, false, false));
+  EXPECT_FALSE(detail::areAtOneBody({beside, beside, beside}, false, false));
+  EXPECT_TRUE(detail::areAtOneBody({beside, beside, beside}, false, true));
+  EXPECT_FALSE(detail::areAtOneBody({beside, beside, beside}, true, true));
+  EXPECT_TRUE(free.enclose() == false && detail::Shadows{}.enclose() == false);
+}
+
 TEST(Shadows, NothingTellsNothing) {
   const detail::Shadows none = detail::findShadows({nullptr, 4, 0}, {0.F, 0.F, 0.F}, 1);
   EXPECT_FALSE(none.confirm() || none.deny() || none.allow() || none.reveal());
