@@ -229,7 +229,10 @@ TEST(Shadows, PlacesThatNothingIsHiddenFromAreAtOneBody) {
   EXPECT_FALSE(detail::areAtOneBody({beside, beside, beside}, false, false));
   EXPECT_TRUE(detail::areAtOneBody({beside, beside, beside}, false, true));
   EXPECT_FALSE(detail::areAtOneBody({beside, beside, beside}, true, true));
-  EXPECT_TRUE(free.enclose() == false && detail::Shadows{}.enclose() == false);
+  free.open = 0.F;
+  hides.open = 0.F;
+  EXPECT_TRUE(free.enclose());
+  EXPECT_FALSE(beside.enclose() || hides.enclose() || detail::Shadows{}.enclose());
 }
 
 TEST(Shadows, NothingTellsNothing) {

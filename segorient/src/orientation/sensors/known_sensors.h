@@ -60,7 +60,7 @@ struct KnownSensors : SeenPoints {
   bool allowed = false;
   /// Of that place: what is around it has openings, as no solid has.
   bool in_a_room = false;
-  /// Of that place: there is something all around it, as in a solid.
+  /// Of that place: there is something all around it, and nothing hidden, as in a solid.
   bool enclosed = false;
 
   bool none() const { return toward.empty(); }

@@ -93,7 +93,7 @@ bool Shadows::inARoom() const {
 }
 
 bool Shadows::enclose() const {
-  return open <= kFewOpen;
+  return open <= kFewOpen && steps < kFewBeside;
 }
 
 bool Shadows::deny() const {

@@ -37,7 +37,8 @@ struct Shadows {
   /// Whether the place is enclosed, but for openings: where nothing was seen below a tripod, or
   /// through a window.
   bool inARoom() const;
-  /// Whether there is something in all directions, but for .005 of them.
+  /// Whether there is something in all directions, but for .005 of them, and it hides nothing: as
+  /// in a body, unlike in a room with something in it.
   bool enclose() const;
   /// Whether they go on.
   bool deny() const;
