@@ -29,9 +29,9 @@ float splitOf(const SheetSigns& sheets, const std::vector<Ballot>& ballots,
   return total > 0.F ? 0.5F * (1.F - agreed / total) : 0.F;
 }
 
-// What a surface leaves of the winding number's sum that closes, as seen from a place. A room seen
-// from within all but closes, too; but what hides points goes on behind them, as closed surfaces
-// do, and so does what is all around a doubtful place, without openings.
+// What the winding number may leave of a surface that counts as closed, whatever a place says. A
+// room seen from within all but closes, too; but what hides points goes on behind them, as closed
+// surfaces do, and so does what is all around a doubtful place.
 float residualOfClosed(const SheetSigns& sheets, bool hides) {
   const bool goes_on = hides || (sheets.sensors.doubtful && sheets.sensors.enclosed);
   return goes_on ? kOpenResidual : sheets.closedResidual();
