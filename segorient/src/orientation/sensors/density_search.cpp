@@ -122,13 +122,9 @@ FoundPlace findStation(const DensityPatches& patches, float constant, const Sens
   if (options.search) {
     found = searchStation(patches, constant, options.threads);
     if (found) {
-      const SidedPlace sided = sideOfFarPlace(patches, orUpperTwin(patches, *found),
-                                              isEven(patches, constant), options.suggestions);
-      found = sided.fitted;
-      if (!sided.side_is_known) {
-        out.from_either_side = found->cost <= kSureFound * constant;
-        found.reset();
-      }
+      const FittedPlace best = orUpperTwin(patches, *found);
+      found = sideOfFarPlace(patches, best, isEven(patches, constant), options.suggestions);
+      out.from_either_side = !found && best.cost <= kSureFound * constant;
     }
     out.by_image = camera && !(found && explainsFarMore(*found, *camera, constant));
     if (out.by_image) found = camera;

@@ -29,14 +29,15 @@ float shareTurned(const DensityPatches& patches, const FittedPlace& a, const Fit
 
 }  // namespace
 
-SidedPlace sideOfFarPlace(const DensityPatches& patches, const FittedPlace& found, bool is_even,
-                          const std::vector<std::array<float, 3>>& suggestions) {
+std::optional<FittedPlace> sideOfFarPlace(const DensityPatches& patches, const FittedPlace& found,
+                                          bool is_even,
+                                          const std::vector<std::array<float, 3>>& suggestions) {
   const Extent extent = extentOf(patches);
-  if (extent.holds(found.place.position, kFarthest * extent.diagonal())) return {found, true};
+  if (extent.holds(found.place.position, kFarthest * extent.diagonal())) return found;
   const FittedPlace mirrored = acrossFrom(extent.middle(), found);
-  if (shareTurned(patches, found, mirrored) < kNearlyAll) return {found, true};
+  if (shareTurned(patches, found, mirrored) < kNearlyAll) return found;
   const FittedPlace across = fitBeside(patches, mirrored);
-  if (!is_even && across.cost > kAlike * found.cost) return {found, true};
+  if (!is_even && across.cost > kAlike * found.cost) return found;
   for (const std::array<float, 3>& s : suggestions) {
     if (!isFinite(s.data())) continue;
     FittedPlace place = found;
@@ -45,10 +46,10 @@ SidedPlace sideOfFarPlace(const DensityPatches& patches, const FittedPlace& foun
     if (extent.holds(place.place.position, extent.diagonal())) continue;
     if (!extent.holds(place.place.position, kFarthest * extent.diagonal())) continue;
     const float turned = shareTurned(patches, found, place);
-    if (turned > kNearlyAll) return {across, true};
-    if (turned < 1.F - kNearlyAll) return {found, true};
+    if (turned > kNearlyAll) return across;
+    if (turned < 1.F - kNearlyAll) return found;
   }
-  return {found, false};
+  return std::nullopt;
 }
 
 }  // namespace segorient::detail

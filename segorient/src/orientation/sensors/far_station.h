@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <optional>
 #include <vector>
 
 #include "orientation/sensors/station_search.h"
@@ -13,19 +14,15 @@ namespace segorient::detail {
 /// alone.
 constexpr double kFarthest = 10.0;
 
-/// A place and whether it is known from which side it sees the scene.
-struct SidedPlace {
-  FittedPlace fitted;
-  bool side_is_known = true;
-};
-
 /// The side of a place that is so far away that the same place across the scene explains the
 /// densities as well, as of a scanner whose rays are parallel.
 ///
 /// A suggested place one to ten diagonals beside the scene that sees all from one side tells.
 /// \param is_even whether densities vary so little that distances can tell nothing there
 /// \param suggestions places that the sensor may have been in, in the patches' unit
-SidedPlace sideOfFarPlace(const DensityPatches& patches, const FittedPlace& found, bool is_even,
-                          const std::vector<std::array<float, 3>>& suggestions);
+/// \return the place itself, or the one across; nothing where either may be it
+std::optional<FittedPlace> sideOfFarPlace(const DensityPatches& patches, const FittedPlace& found,
+                                          bool is_even,
+                                          const std::vector<std::array<float, 3>>& suggestions);
 
 }  // namespace segorient::detail
