@@ -233,6 +233,44 @@ TEST(AutomaticNormals, NeighborsOfOneLineTellNoNormal) {
   EXPECT_FALSE(automatic(torus(6000, 6)).report.traits.lines);
 }
 
+// A torus of radii 1 and .4 by contours at 21 heights, .038 apart, along which the points of each
+// are at random.
+Sample torusByContours() {
+  Sample sample;
+  std::mt19937 rng(4);
+  std::uniform_real_distribution<float> around(0.F, 6.2831853F);
+  for (int line = 0; line < 21; ++line) {
+    const float z = 0.038F * static_cast<float>(line - 10);
+    for (const float side : {-1.F, 1.F}) {
+      const float across = side * std::sqrt(0.16F - z * z);
+      for (int i = 0; i < 600; ++i) {
+        const float angle = around(rng);
+        const Eigen::Vector3f radial{std::cos(angle), std::sin(angle), 0.F};
+        Eigen::Vector3f p = (1.F + across) * radial;
+        p.z() = z;
+        sample.add(p, (p - radial) / 0.4F);
+      }
+    }
+  }
+  return sample;
+}
+
+// A quadratic surface through points of two lines may lean any way between them, and a plane
+// through the points of a bent contour is the contour's.
+TEST(AutomaticNormals, NeighborsOfTwoContoursTellNoSlope) {
+  const Sample sample = torusByContours();
+  search::MedianHashIndex index;
+  index.build(sample.view(), nullptr, {});
+  std::vector<float> found(4 * sample.normals.size());
+  for (const int k : {12, 32}) {
+    const AutomaticNormalReport report = estimateNormalsAutomatically(
+        sample.view(), index, neighborsOf(sample.view(), k), 0, found.data());
+    EXPECT_TRUE(report.traits.lines);
+    EXPECT_GT(report.across, sample.normals.size() / 10) << k;
+    EXPECT_LT(rmsDegrees(sample, found), 3.0) << k;
+  }
+}
+
 TEST(AutomaticNormals, SeekMoreNeighborsWhereTheNoiseAsks) {
   for (const float noise : {0.F, 0.4F}) {
     const Sample sample = torus(6000, 6, noise * torusSpacing(6000));

@@ -16,7 +16,7 @@ PAGE = ROOT / "segorient/doc/constants.md"
 
 # What the default method consists of: folder, and which of its files.
 ROOMS = [
-    ("features", r"(sheet_|grown_|growing_|more_neighbors|noise_level|automatic_normals|one_sided|scan_|cloud_noise|surface_|spread_)"),
+    ("features", r"(sheet_|grown_|growing_|more_neighbors|noise_level|automatic_normals|one_sided|scan_|cloud_noise|surface_|spread_|slope_|across_)"),
     ("segmentation", r"sheet_"),
     ("orientation/automatic", r""),
     ("orientation/winding", r""),

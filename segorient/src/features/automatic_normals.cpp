@@ -165,9 +165,11 @@ std::string AutomaticNormalReport::text() const {
   for (const auto& [k, count] : surfaces) {
     out << ", " << count << " points by quadratic surfaces of " << k << " neighbours";
   }
+  if (across > 0)
+    out << ", " << across << " by larger ones, as a few of two lines of a scan tell no slope";
   if (analytic) out << " or cubic ones of " << detail::kCubicNeighbors << " where these fit better";
   out << ", " << at_edges << " that none of these fits, as at edges"
-      << (traits.lines ? " and where neighbours are of one line, " : ", ");
+      << (traits.lines && triangulated ? " and where neighbours are of one line, " : ", ");
   if (planes > 0)
     out << planes << " of them by planes of " << detail::kPlaneNeighbors << " and the others ";
   const char* others = cubic ? "cubic surfaces" : "quadratic surfaces";

@@ -21,7 +21,7 @@ struct AutomaticNormalTraits {
   detail::CloudNoise noise;
   bool analytic = false;     ///< so smooth that cubic surfaces are nearer at most points
   bool cubic_edges = false;  ///< whether cubic surfaces fit most points at edges better
-  bool lines = false;        ///< whether, without noise, many points' neighbours are of one line
+  bool lines = false;        ///< whether the neighbours of many points are of one line
 };
 
 /// What estimateNormalsAutomatically() found out about a cloud, and what it chose.
@@ -29,6 +29,7 @@ struct AutomaticNormalReport {
   /// Neighbourhoods of quadratic surfaces that were tried, largest first, and how many points they
   /// were taken for; with the last one also bends, and points that only a cubic surface fits.
   std::vector<std::pair<int, std::size_t>> surfaces;
+  std::size_t across = 0;        ///< points by larger ones, as those tell no slope along lines
   bool analytic = false;         ///< so smooth that cubic surfaces are nearer at most points
   std::size_t at_edges = 0;      ///< the points left, those with neighbours of one line included
   std::size_t planes = 0;        ///< of these, those that a plane of six neighbours does fit
@@ -56,7 +57,8 @@ constexpr int kMostAutomaticNeighbors = 64;
 /// if these fit most such points better, else the smallest quadratic ones. In a clean cloud that a
 /// scanner saw by lines, neighbours that are all of one line tell no normal, however well something
 /// fits them: such points get the plane of as few neighbours as spread in two directions, unless
-/// that is of two faces, or of more than there are.
+/// that is of two faces, or of more than there are. Nor do those of two lines tell the slope of a
+/// quadratic surface: such points get one of more neighbours, see takeAcrossLines().
 ///
 /// \param points distinct points \param neighborhoods of them, the wider the table the better up to
 ///        kMostAutomaticNeighbors; with a narrow one noisy clouds are served less well

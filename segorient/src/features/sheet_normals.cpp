@@ -17,6 +17,7 @@
 #include "features/scan_scale.h"
 #include "features/sheet_fit.h"
 #include "features/sheet_point.h"
+#include "features/spread_planes.h"
 
 namespace segorient {
 namespace {
@@ -119,6 +120,7 @@ SheetNormals estimateSheetNormals(const PointView& points, const Neighborhoods& 
   parallelFor(n, options.threads, 30.0, [&](std::size_t i) {
     out.spacing[i] = detail::meanDistance(points, nb, i, detail::kFirstRing);
   });
+  out.traits.lines = options.known ? options.known->lines : detail::seesLines({points, points, nb});
   std::vector<std::uint8_t> done;
   if (out.traits.scan_scales) {
     done.resize(n);
@@ -151,7 +153,7 @@ SheetNormals estimateSheetNormals(const PointView& points, const Neighborhoods& 
         fits.reserve(rows.size());
         for (std::size_t r = 0; r < rows.size(); ++r) {
           const std::size_t i = job.row(r);
-          Neighborhood of(points, nb, i, out.spacing[i], *planes, r);
+          Neighborhood of(points, nb, i, out.spacing[i], *planes, r, out.traits.lines);
           fits.push_back(fitPoint(of, smallest, noise, options));
         }
         if (options.split_walls) keepOwnWalls(job, out.spacing.data(), noise.thin, fits);

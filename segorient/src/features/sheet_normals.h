@@ -41,6 +41,7 @@ struct SheetTraits {
   NoiseLevel noise;
   float residual = 0.F;      ///< see SheetNormals::residual
   bool scan_scales = false;  ///< whether many points ask for the planes that scans need
+  bool lines = false;        ///< whether the neighbours of many points are of one line
 
   /// Whether the noise of this scan is one that only many neighbours show. Steps of depth, rings
   /// and rough ground hide from few what they are to many: normals err alike side by side.
@@ -103,6 +104,8 @@ int smallestNeighbors(float noise);
 /// lie on; then twice: Otsu's threshold on the offsets along the normal tells two walls apart, and
 /// the plane is fitted again to the point's own. Walls more than 1.25 spacings apart (2 in thin
 /// clouds, see NoiseLevel) are no walls to it.
+/// In clouds of lines, neighbours on a conic have no say: the plane of a contour is not that of the
+/// surface, see tellsSlope().
 ///
 /// With scan_scales, points that ask for clearly larger neighbourhoods than that, as in scans near
 /// their sensor and between rings, have planes of up to 60 neighbours, if there are many of them.

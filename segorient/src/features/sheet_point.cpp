@@ -9,6 +9,8 @@
 #include <iterator>
 #include <utility>
 
+#include "features/slope_gain.h"
+
 namespace segorient::detail {
 namespace {
 
@@ -36,10 +38,9 @@ PointFit fitAdaptive(Neighborhood& of, std::size_t smallest) {
     if (!p.valid || p.lambda[1] < kOneScanLine * p.lambda[2]) continue;
     if (s == kCurvature) out.curvature = p.variation();
     const Plane& best = out.plane;
-    if (!best.valid ||
-        p.lambda[0] * best.lambda[1] < kClearlyFlatter * best.lambda[0] * p.lambda[1]) {
-      out.plane = p;
-    }
+    const bool better = !best.valid || p.lambda[0] * best.lambda[1] <
+                                           kClearlyFlatter * best.lambda[0] * p.lambda[1];
+    if (better && !of.isContour(s, p)) out.plane = p;
   }
   return out;
 }
@@ -54,6 +55,11 @@ const Offsets& Neighborhood::offsets() {
 Plane Neighborhood::planeOf(std::size_t scale) {
   if (!planes_[scale].hasNormal(r_)) return fitPlane(momentsOf(offsets(), kSheetScales[scale]));
   return spacing_ > 0.F ? planes_[scale].at(r_, spacing_) : Plane{};
+}
+
+bool Neighborhood::isContour(std::size_t scale, const Plane& plane) const {
+  return lines_ && !tellsSlope({points_, points_, nb_}, i_, kSheetScales[scale],
+                               plane.normal.data(), kGainOnConic);
 }
 
 PointFit fitPoint(Neighborhood& of, std::size_t smallest, const NoiseLevel& noise,

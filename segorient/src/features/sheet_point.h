@@ -34,11 +34,14 @@ class Neighborhood {
  public:
   /// \param planes the point's at [r]
   Neighborhood(const PointView& points, const Neighborhoods& nb, std::size_t i, float spacing,
-               const SheetPlanes& planes, std::size_t r)
-      : points_(points), nb_(nb), i_(i), spacing_(spacing), planes_(planes), r_(r) {}
+               const SheetPlanes& planes, std::size_t r, bool lines)
+      : points_(points), nb_(nb), i_(i), spacing_(spacing), planes_(planes), r_(r), lines_(lines) {}
 
   const Offsets& offsets();
   Plane planeOf(std::size_t scale);
+  /// Whether those that a plane was fitted to may be of a contour, whose own plane it then is: in
+  /// clouds of lines, those on a conic.
+  bool isContour(std::size_t scale, const Plane& plane) const;
 
  private:
   const PointView& points_;
@@ -47,6 +50,7 @@ class Neighborhood {
   float spacing_;
   const SheetPlanes& planes_;
   std::size_t r_;
+  bool lines_;
   std::optional<Offsets> offsets_;
 };
 

@@ -11,6 +11,7 @@
 #include "features/grown_planes.h"
 #include "features/more_neighbors.h"
 #include "features/sheet_fit.h"
+#include "features/surface_sizes.h"
 
 namespace segorient::detail {
 namespace {
@@ -68,6 +69,16 @@ bool spreads(const Surroundings& of, std::size_t row, int k) {
   if (count < 1) return false;
   return isSpread(
       GrowingMoments(of.points, of.at[row], of.table.indices(row), count).planeOf(count));
+}
+
+bool seesLines(const Surroundings& of) {
+  // Three times what chance does: of one in sixty of points at random they are on a line.
+  constexpr double kMany = 0.05;
+  const std::vector<pcl::index_t> rows = sampleRows(of.table.size());
+  const auto of_one_line = std::count_if(rows.begin(), rows.end(), [&](pcl::index_t r) {
+    return !spreads(of, static_cast<std::size_t>(r), kTriangulationNeighbors);
+  });
+  return static_cast<double>(of_one_line) > kMany * static_cast<double>(rows.size());
 }
 
 std::size_t takeSpreadPlanes(const Surroundings& of, const search::MedianHashIndex* index,

@@ -17,6 +17,9 @@ namespace segorient::detail {
 /// surface bends along the line turns them, and they fit nonetheless.
 bool spreads(const Surroundings& of, std::size_t row, int k);
 
+/// Whether a scanner saw the cloud by lines: the nearest ten of many points are of one line.
+bool seesLines(const Surroundings& of);
+
 /// Gives rows the plane of their nearest neighbours, as few as spread in two directions: 12, half
 /// as many again each time, 60 at most. Where none do, or that plane is of two faces, rows keep
 /// what they have.

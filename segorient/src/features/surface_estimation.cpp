@@ -6,8 +6,11 @@
 #include <iterator>
 #include <limits>
 #include <numeric>
+#include <utility>
 
 #include "common/parallel_for.h"
+#include "features/across_lines.h"
+#include "features/slope_gain.h"
 #include "features/spread_planes.h"
 #include "features/surface_sizes.h"
 
@@ -25,10 +28,8 @@ constexpr double kBend = 0.2;
 // Cubic surfaces that leave less than this share of what quadratic ones do of most points have
 // found the next term of a series: noise alone makes one point in seven look so (F test).
 constexpr double kNextTerm = 0.5;
-// Three times what chance does: of one in sixty of points at random the nearest ten are on a line.
-constexpr double kManyOfOneLine = 0.05;
 // ns a point, see resolveThreads().
-constexpr double kSpreadTime = 300.0;
+constexpr double kTellingTime = 500.0;
 
 std::vector<pcl::index_t> allRows(std::size_t size) {
   std::vector<pcl::index_t> rows(size);
@@ -64,34 +65,31 @@ SurfaceEstimation::SurfaceEstimation(const Surroundings& surroundings, const Clo
       rows_(rows != nullptr ? *rows : allRows(of_.table.size())),
       open_(rows_) {
   report_.traits.noise = noise;
-  report_.traits.lines = known_ != nullptr ? known_->lines : fewTell(in_spacings_) && seesLines();
+  report_.traits.lines = known_ != nullptr ? known_->lines : seesLines(of_);
+  // Noise asks for more neighbours than a line has nearby.
+  lines_ = report_.traits.lines && fewTell(in_spacings_);
 }
 
-// Whether a scanner saw the cloud by lines: the neighbours of many points are of one line.
-bool SurfaceEstimation::seesLines() const {
-  const std::vector<pcl::index_t> rows = sampleRows(of_.table.size());
-  const auto of_one_line = std::count_if(rows.begin(), rows.end(), [&](pcl::index_t r) {
-    return !spreads(of_, static_cast<std::size_t>(r), kTriangulationNeighbors);
-  });
-  return static_cast<double>(of_one_line) > kManyOfOneLine * static_cast<double>(rows.size());
-}
-
-// Of the open rows, which of them k neighbours tell a normal of: without lines all.
-void SurfaceEstimation::findSpread(int k) {
-  if (!report_.traits.lines) return;
-  spread_.resize(of_.table.size());
-  parallelFor(open_.size(), threads_, kSpreadTime, [&](std::size_t o) {
+// Of the open rows, which of them k neighbours tell a normal of by what was fitted to them: without
+// lines all.
+void SurfaceEstimation::findTelling(int k, Fitted fitted) {
+  if (!lines_) return;
+  telling_.resize(of_.table.size());
+  parallelFor(open_.size(), threads_, kTellingTime, [&](std::size_t o) {
     const auto row = static_cast<std::size_t>(open_[o]);
-    spread_[row] = spreads(of_, row, k) ? 1 : 0;
+    const bool tells = fitted == Fitted::PLANES ? spreads(of_, row, k)
+                                                : tellsSlope(of_, row, k, normalOf(open_[o]));
+    telling_[row] = tells ? 1 : 0;
   });
 }
 
-bool SurfaceEstimation::isSpread(std::size_t row) const {
-  return spread_.empty() || spread_[row] != 0;
+bool SurfaceEstimation::tells(std::size_t row) const {
+  return telling_.empty() || telling_[row] != 0;
 }
 
 AutomaticNormalReport SurfaceEstimation::run(std::vector<pcl::index_t>* unexplained) {
   takeQuadratics();
+  if (lines_) acrossLines();
   if (unexplained != nullptr) *unexplained = open_;
   if (isClean(in_spacings_)) {
     keepEdges();
@@ -136,23 +134,35 @@ std::size_t SurfaceEstimation::close(const Condition& condition) {
 }
 
 // Closes the points whose residuals noise explains, and whose neighbours tell a normal.
-// \param k neighbours that surfaces of so many coefficients are fitted to \return how many
+// \param k neighbours that something was fitted to \return how many
 template <typename Residual>
-std::size_t SurfaceEstimation::closeExplained(int k, int coefficients, const Residual& residual) {
-  const Explained explained(of_, noise_, k + 1 - coefficients);
-  findSpread(k);
+std::size_t SurfaceEstimation::closeExplained(int k, Fitted fitted, const Residual& residual) {
+  const Explained explained(of_, noise_, k + 1 - static_cast<int>(fitted));
+  findTelling(k, fitted);
   return close([&](std::size_t row) {
-    return explained(row, static_cast<double>(residual(row))) && isSpread(row);
+    return explained(row, static_cast<double>(residual(row))) && tells(row);
   });
 }
 
 void SurfaceEstimation::takeQuadratics() {
   for (const int k : quadraticSizes(in_spacings_, available())) {
     quadratics_.fitInto(normals_, of_, k, threads_, open_);
-    report_.surfaces.emplace_back(
-        k, closeExplained(k, 6, [&](std::size_t i) { return quadratics_.residuals[i]; }));
+    report_.surfaces.emplace_back(k, closeExplained(k, Fitted::QUADRATICS, [&](std::size_t i) {
+                                    return quadratics_.residuals[i];
+                                  }));
     report_.edge_k = k;
   }
+}
+
+// Along lines of a scan, larger surfaces where the smallest tell nothing.
+void SurfaceEstimation::acrossLines() {
+  const std::vector<pcl::index_t> taken =
+      takeAcrossLines(of_, index_, open_, noise_, threads_, normals_);
+  std::vector<pcl::index_t> left;
+  std::set_difference(open_.begin(), open_.end(), taken.begin(), taken.end(),
+                      std::back_inserter(left));
+  open_ = std::move(left);
+  report_.across = taken.size();
 }
 
 // Leaves open only what looks like an edge: where points are few for how much the surface bends,
@@ -170,7 +180,7 @@ void SurfaceEstimation::keepEdges() {
   const std::vector<pcl::index_t> rows = open_;
   report_.surfaces.back().second += close([&](std::size_t row) {
     const double plane = planeResidual(of_, row, options.k, normals_ + 4 * row);
-    return static_cast<double>(quadratics_.residuals[row]) < kBend * plane && isSpread(row);
+    return static_cast<double>(quadratics_.residuals[row]) < kBend * plane && tells(row);
   });
   for (std::size_t r = 0; r < rows.size(); ++r)
     std::copy_n(&quadratic[4 * r], 4, normalOf(rows[r]));
@@ -193,7 +203,8 @@ std::size_t SurfaceEstimation::countCubic(const std::vector<pcl::index_t>& rows,
 // Whether the cloud is of a surface without noise and smooth nearly everywhere, as a formula
 // makes it: then what quadratic surfaces leave is the next term of its series.
 bool SurfaceEstimation::isAnalytic() {
-  if (available() < kCubicNeighbors) return false;
+  // Those of lines fit better the less their points tell.
+  if (available() < kCubicNeighbors || lines_) return false;
   if (known_ != nullptr) return known_->analytic;
   const std::vector<pcl::index_t> rows = sampleRows(rows_);
   const std::vector<float> cubic = sampleResiduals(NormalEstimator::AWAS_CUBIC, of_.points,
@@ -212,9 +223,10 @@ void SurfaceEstimation::takeCubics() {
     const auto i = static_cast<std::size_t>(r);
     if (nearer(i)) cubics.copyNormal(i, normals_);
   }
-  report_.surfaces.back().second += closeExplained(kCubicNeighbors, 10, [&](std::size_t i) {
-    return nearer(i) ? cubics.residuals[i] : std::numeric_limits<float>::infinity();
-  });
+  report_.surfaces.back().second +=
+      closeExplained(kCubicNeighbors, Fitted::CUBICS, [&](std::size_t i) {
+        return nearer(i) ? cubics.residuals[i] : std::numeric_limits<float>::infinity();
+      });
 }
 
 // Planes where these fit.
@@ -223,7 +235,7 @@ void SurfaceEstimation::takePlanes() {
   options.k = kPlaneNeighbors;
   options.threads = threads_;
   estimateNormals(of_.at, of_.points, of_.table, options, normals_, nullptr, &open_);
-  report_.planes = closeExplained(kPlaneNeighbors, 3, [&](std::size_t row) {
+  report_.planes = closeExplained(kPlaneNeighbors, Fitted::PLANES, [&](std::size_t row) {
     return planeResidual(of_, row, kPlaneNeighbors, normals_ + 4 * row);
   });
 }
@@ -234,10 +246,10 @@ void SurfaceEstimation::triangulate() {
   options.estimator = NormalEstimator::LDT;
   options.k = report_.edge_k = kTriangulationNeighbors;
   estimateNormals(of_.at, of_.points, of_.table, options, normals_, nullptr, &open_);
-  findSpread(kTriangulationNeighbors);
+  findTelling(kTriangulationNeighbors, Fitted::PLANES);
   std::vector<pcl::index_t> lined;
   std::copy_if(open_.begin(), open_.end(), std::back_inserter(lined),
-               [&](pcl::index_t r) { return !isSpread(static_cast<std::size_t>(r)); });
+               [&](pcl::index_t r) { return !tells(static_cast<std::size_t>(r)); });
   report_.lined = takeSpreadPlanes(of_, index_, lined, threads_, normals_);
 }
 

@@ -43,20 +43,23 @@ class SurfaceEstimation {
   AutomaticNormalReport runPart(EdgeCubics& cubics);
 
  private:
+  /// By the number of their coefficients.
+  enum class Fitted { PLANES = 3, QUADRATICS = 6, CUBICS = 10 };
+
   int available() const { return of_.table.k() - 1; }
   float* normalOf(pcl::index_t row) const { return normals_ + 4 * static_cast<std::size_t>(row); }
 
   template <typename Condition>
   std::size_t close(const Condition& condition);
   template <typename Residual>
-  std::size_t closeExplained(int k, int coefficients, const Residual& residual);
+  std::size_t closeExplained(int k, Fitted fitted, const Residual& residual);
   template <typename Residual>
   std::size_t countCubic(const std::vector<pcl::index_t>& rows, const Residual& cubic,
                          double share) const;
-  bool seesLines() const;
-  void findSpread(int k);
-  bool isSpread(std::size_t row) const;
+  void findTelling(int k, Fitted fitted);
+  bool tells(std::size_t row) const;
   void takeQuadratics();
+  void acrossLines();
   void keepEdges();
   bool isAnalytic();
   void takeCubics();
@@ -73,10 +76,11 @@ class SurfaceEstimation {
   int threads_;
   float* normals_;
   AutomaticNormalReport report_;
+  bool lines_ = false;  ///< and without noise: few neighbours are of one line
   std::vector<pcl::index_t> rows_;
   std::vector<pcl::index_t> open_;
   Surfaces quadratics_;
-  std::vector<std::uint8_t> spread_;  ///< by row, of those that were open; empty = all are
+  std::vector<std::uint8_t> telling_;  ///< by row, of those that were open; empty = all are
 };
 
 }  // namespace segorient::detail

@@ -136,7 +136,7 @@ void Tile::run() {
                                         static_cast<double>(traits.surface_ratio)};
   record.final_traits.surfaces.analytic = traits.analytic != 0;
   record.final_traits.surfaces.cubic_edges = traits.cubic_edges != 0;
-  record.final_traits.surfaces.lines = traits.lines != 0;
+  record.traits.lines = record.final_traits.surfaces.lines = traits.lines != 0;
   record.final_traits.edges = traits.edges != 0;
   record.final_traits.edges_sampled = traits.edges_sampled != 0;
   record.typical_offset = traits.typical_offset;
