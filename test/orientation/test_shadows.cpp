@@ -229,6 +229,11 @@ TEST(Shadows, PlacesThatNothingIsHiddenFromAreAtOneBody) {
   EXPECT_FALSE(detail::areAtOneBody({beside, beside, beside}, false, false));
   EXPECT_TRUE(detail::areAtOneBody({beside, beside, beside}, false, true));
   EXPECT_FALSE(detail::areAtOneBody({beside, beside, beside}, true, true));
+  detail::Shadows above;
+  above.open = 0.8F;
+  EXPECT_TRUE(detail::areAtOneBody({above, above, above}, false, true));
+  EXPECT_TRUE(detail::areAtOneBody({above, above, beside}, true, true));
+  EXPECT_FALSE(detail::areAtOneBody({above, above, above}, true, false));
   free.open = 0.F;
   hides.open = 0.F;
   EXPECT_TRUE(free.enclose());

@@ -18,7 +18,7 @@ const std::vector<RevealedPlace>& CameraViews::cameras() {
   cameras_.emplace();
   for (const Apex& apex : findApexes(flat(), threads_)) {
     const Shadows shadows = findShadows(flat(), apex.place, threads_, !apex.whole);
-    if (apex.whole ? shadows.allow() : shadows.reveal()) {
+    if (apex.whole ? shadows.allow() || shadows.excuse() : shadows.reveal()) {
       cameras_->push_back({apex.place, shadows, apex.whole});
     }
   }

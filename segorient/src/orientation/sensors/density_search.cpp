@@ -234,13 +234,15 @@ bool areInABody(const SensorReport& found, const DensityPatches& patches, const 
     return false;
   }
   const bool has_walls = patches.haveWalls();
+  const bool on_its_way = kind == SensorKind::MOVING;
   std::vector<Shadows> seen;
   for (const FoundSensor& sensor : found.sensors) {
     seen.push_back(findShadows(flat, sensor.position, threads));
-    // In walls each place has to look like it.
-    if (has_walls && !seen.back().asOfABody(true, found.sensors.size() > 1)) return false;
+    // In walls each of several places has to look like it.
+    const bool tells = has_walls && !on_its_way;
+    if (tells && !seen.back().asOfABody(true, found.sensors.size() > 1)) return false;
   }
-  return areAtOneBody(seen, has_walls, kind == SensorKind::MOVING);
+  return areAtOneBody(seen, has_walls, on_its_way);
 }
 
 }  // namespace

@@ -41,6 +41,8 @@ constexpr float kMostOpen = 0.5F;
 // that, .02 and more of the points have something nearer beside them: of what furnishes the room.
 constexpr float kHole = 0.02F;
 constexpr float kFewBeside = 0.015F;
+// All that is there lies within 60 degrees around one direction: no scanner is on its way there.
+constexpr float kAbove = 0.75F;
 
 using Place = std::array<float, 3>;
 
@@ -130,14 +132,15 @@ bool areAtOneBody(const std::vector<Shadows>& places, bool has_walls, bool on_it
                   [&](const Shadows& s) { return s.asOfABody(has_walls, are_several); })) {
     return true;
   }
-  if (has_walls) return false;
   std::vector<float> open;
   std::vector<float> steps;
   for (const Shadows& s : places) {
     open.push_back(s.open);
     steps.push_back(s.steps);
   }
-  return median(steps) < kFewBeside && median(open) < (on_its_way ? kMostOpen : kHole);
+  if (median(steps) >= kFewBeside) return false;
+  const float typical = median(open);
+  return on_its_way ? !has_walls || typical > kAbove : !has_walls && typical < kHole;
 }
 
 Shadows findShadows(const FlatPoints& flat, const Place& place, int threads, bool to_reveal) {

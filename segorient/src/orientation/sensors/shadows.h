@@ -63,9 +63,9 @@ struct Shadows {
 };
 
 /// Whether places that sensors were found in are in one body, or beside it: each looks like it, or
-/// there are no walls, and from most of them nothing hides anything and there is something all
-/// around (of a sensor on its way in more than half of all directions).
-/// \param places not empty
+/// from most of them nothing hides anything, and there is something all around. Those of a sensor
+/// on its way are at a body that hides nothing, too, unless it has walls and is around them: an
+/// empty street is, true ones had .03 of the points or more beside what is nearer.
 bool areAtOneBody(const std::vector<Shadows>& places, bool has_walls, bool on_its_way);
 
 /// \param place in the points' unit
