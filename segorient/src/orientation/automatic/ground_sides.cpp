@@ -3,6 +3,7 @@
 #include "orientation/automatic/ground_sides.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -77,10 +78,16 @@ class Columns {
   float facingUp(const SheetSigns& sheets) const {
     float sum = 0.F;
     float count = 0.F;
-    forEachEnd(sheets, [&](std::uint32_t, float up, bool one_layer) {
+    std::array<float, 3> slope{0.F, 0.F, 0.F};  // of what faces up
+    forEachEnd(sheets, [&](std::uint32_t i, float up, bool one_layer) {
       count += 1.F;
-      if (one_layer) sum += up;
+      if (!one_layer) return;
+      sum += up;
+      const float* n = &sheets.field.normals[4 * std::size_t{i}];
+      for (std::size_t a = 0; a < 3; ++a) slope[a] += n[2] < 0.F ? -n[a] : n[a];
     });
+    // Land lies level as a whole, to 45 degrees.
+    if (std::hypot(slope[0], slope[1]) > slope[2]) return 0.F;
     return std::fabs(sum) > kByChance * std::sqrt(count) ? sum / count : 0.F;
   }
 

@@ -29,6 +29,8 @@ constexpr float kMostlyInner = 2.F / 3.F;
 // by two columns, edges of roofs and walls only lines: aircraft up to .06 of the columns, solids,
 // rooms and woods .2 and more.
 constexpr float kApart = 1.5F;
+// Columns of two spacings hold four points of a surface above: one in fifty is empty.
+constexpr float kOver = 2.F;
 constexpr float kFewLayered = 0.1F;
 // Layers closer than that, in the neighbourhood of a flat piece: plates have them at .6 of the
 // pieces and more, aircraft see them at .22, or at .42 where houses are as small as the spacing.
@@ -40,6 +42,7 @@ constexpr float kFewBacked = 0.5F;
 // Points that the extent is taken from.
 constexpr std::size_t kSample = 20000;
 
+constexpr float kMostColumns = 4e9F;  // along a side
 // Columns are numbered by x in the upper half of the bits, y in the lower.
 constexpr std::uint64_t columnAt(float x, float y) {
   return (static_cast<std::uint64_t>(x) << 32U) | static_cast<std::uint64_t>(y);
@@ -171,6 +174,33 @@ bool HeightField::sure() const {
 
 bool looksUpAt(const std::array<float, 3>& place, const std::array<float, 3>& middle) {
   return std::hypot(middle[0] - place[0], middle[1] - place[1]) < middle[2] - place[2];
+}
+
+std::vector<std::uint8_t> openToTheSky(const PointView& points, float spacing) {
+  std::vector<std::uint8_t> open(points.size, 1);
+  Box all;
+  for (std::size_t i = 0; i < points.size; ++i) all.add(points[i]);
+  const float side = kOver * spacing;
+  if (!(side > 0.F)) return open;
+  std::vector<std::pair<std::uint64_t, std::uint32_t>> columns(points.size);
+  for (std::size_t i = 0; i < points.size; ++i) {
+    const float x = std::min(kMostColumns, (points[i][0] - all.low[0]) / side);
+    const float y = std::min(kMostColumns, (points[i][1] - all.low[1]) / side);
+    columns[i] = {columnAt(x, y), static_cast<std::uint32_t>(i)};
+  }
+  std::sort(columns.begin(), columns.end());
+  for (std::size_t begin = 0; begin < columns.size();) {
+    std::size_t end = begin;
+    float top = points[columns[begin].second][2];
+    for (; end < columns.size() && columns[end].first == columns[begin].first; ++end) {
+      top = std::max(top, points[columns[end].second][2]);
+    }
+    for (; begin < end; ++begin) {
+      const std::uint32_t i = columns[begin].second;
+      open[i] = top - points[i][2] > kApart * side ? 0 : 1;
+    }
+  }
+  return open;
 }
 
 HeightField measureHeightField(PreparedCloud& cloud, const DensityPatches& patches) {

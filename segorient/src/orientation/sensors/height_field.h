@@ -3,6 +3,10 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
+#include <vector>
+
+#include <segorient/common/point_view.h>
 
 #include "orientation/sensors/density_patches.h"
 #include "search/prepared_cloud.h"
@@ -28,6 +32,11 @@ struct HeightField {
 /// Whether a camera at a place below a cloud that looks along +z sees the cloud's middle, 45
 /// degrees off its axis at most.
 bool looksUpAt(const std::array<float, 3>& place, const std::array<float, 3>& middle);
+
+/// Which points nothing is above, so that what sees the ground from there saw them, too: not those
+/// of undersides and steep sides.
+/// \param spacing of the points
+std::vector<std::uint8_t> openToTheSky(const PointView& points, float spacing);
 
 HeightField measureHeightField(PreparedCloud& cloud, const DensityPatches& patches);
 

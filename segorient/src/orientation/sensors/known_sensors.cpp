@@ -14,7 +14,9 @@
 
 #include "common/at.h"
 #include "common/in_double.h"
+#include "common/median.h"
 #include "common/unit_vector.h"
+#include "orientation/sensors/height_field.h"
 #include "orientation/sensors/number_places.h"
 #include "orientation/sensors/scan_checks.h"
 #include "orientation/sensors/shadows.h"
@@ -267,7 +269,10 @@ KnownSensors findKnownSensors(const PointView& points, const Neighborhoods& neig
   if (hints.place.faces_up) {
     KnownSensors above;
     above.toward.assign(3 * points.size, 0.F);
-    for (std::size_t i = 0; i < points.size; ++i) above.toward[3 * i + 2] = 1.F;
+    const float typical = median({spacing, spacing + points.size});
+    const std::vector<std::uint8_t> open = openToTheSky(points, typical);
+    for (std::size_t i = 0; i < points.size; ++i)
+      above.toward[3 * i + 2] = open[i] != 0 ? 1.F : 0.F;
     return above;
   }
   return Finder(points, neighborhoods, spacing, hints, threads).run();
