@@ -256,7 +256,7 @@ TEST(TurnToSensors, TheSurestBorderDecidesFirst) {
   std::vector<detail::Ballot> ballots(5);
   ballots[0] = {100.F, 100.F};
   std::vector<std::int8_t> signs{-1, 1, 1, -1, 1};
-  const std::vector<bool> decided = detail::turnToSensors(ballots, votes, signs);
+  const std::vector<bool> decided = detail::turnToSensors(ballots, votes, true, signs);
   EXPECT_EQ(decided, (std::vector<bool>{true, false, false, false, false}));
   EXPECT_EQ(signs, (std::vector<std::int8_t>{1, -1, -1, 1, 1}));
   // Two borders to decided ones, 4 of 10 for +, 3 of 3 for -: what all say together decides.
@@ -264,12 +264,12 @@ TEST(TurnToSensors, TheSurestBorderDecidesFirst) {
   std::vector<detail::Ballot> two(3);
   two[0] = two[1] = {100.F, 100.F};
   std::vector<std::int8_t> three{1, 1, -1};
-  detail::turnToSensors(two, both, three);
+  detail::turnToSensors(two, both, true, three);
   EXPECT_EQ(three[2], 1);
   // The segment's own points have a say, too.
   two[2] = {-2.F, 2.F};
   three = {1, 1, 1};
-  detail::turnToSensors(two, both, three);
+  detail::turnToSensors(two, both, true, three);
   EXPECT_EQ(three[2], -1);
 }
 

@@ -78,11 +78,10 @@ class Columns {
   float facingUp(const SheetSigns& sheets) const {
     float sum = 0.F;
     float count = 0.F;
-    std::array<float, 3> slope{0.F, 0.F, 0.F};  // of what faces up
+    std::array<float, 3> slope{0.F, 0.F, 0.F};  // of all, as if it faced up
     forEachEnd(sheets, [&](std::uint32_t i, float up, bool one_layer) {
       count += 1.F;
-      if (!one_layer) return;
-      sum += up;
+      if (one_layer) sum += up;
       const float* n = &sheets.field.normals[4 * std::size_t{i}];
       for (std::size_t a = 0; a < 3; ++a) slope[a] += n[2] < 0.F ? -n[a] : n[a];
     });

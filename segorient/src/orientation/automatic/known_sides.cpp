@@ -106,6 +106,16 @@ void turnWhatNoSegmentDecides(SheetSigns& sheets, const std::vector<Ballot>& bal
   }
 }
 
+// What stands on the ground, and whose borders to it hardly tell, faces up where it is seen from
+// above.
+void turnWhatStands(SheetSigns& sheets, const std::vector<Ballot>& ballots) {
+  std::vector<Ballot> up(sheets.clusters.size());
+  for (std::size_t s = 0; s < ballots.size(); ++s) {
+    up[at(sheets.clusters.of(s))].add(ballots[s], sheets.signs[s]);
+  }
+  sheets.turnClusters(sheets.outvoted(up, kSureBorders));
+}
+
 }  // namespace
 
 void followHints(SheetSigns& sheets) {
@@ -136,7 +146,9 @@ void followSensors(SheetSigns& sheets) {
   sheets.facing = facingOf(sheets.field, sheets.points.size, sheets.sensors);
   weighOnePlace(sheets, facingBySegment(sheets.facing, sheets.segmentation));
   const std::vector<Ballot> ballots = facingBySegment(sheets.facing, sheets.segmentation);
-  std::vector<bool> decided = turnToSensors(ballots, sheets.votes, sheets.signs);
+  const bool faces_up = sheets.hints.place.faces_up;
+  if (faces_up) turnWhatStands(sheets, ballots);
+  std::vector<bool> decided = turnToSensors(ballots, sheets.votes, !faces_up, sheets.signs);
   turnWhatNoSegmentDecides(sheets, ballots, decided);
   std::vector<Ballot> seen(sheets.windings.size());
   for (std::size_t s = 0; s < sheets.signs.size(); ++s) {
@@ -144,7 +156,7 @@ void followSensors(SheetSigns& sheets) {
   }
   for (std::size_t c = 0; c < seen.size(); ++c) {
     // That a sheet's upper side is the seen one is a convention, if a good one.
-    if (!(seen[c].total > 0.F) || sheets.hints.place.faces_up) continue;
+    if (!(seen[c].total > 0.F) || faces_up) continue;
     sheets.found.result.components[c].by = DecidedBy::HINTS;
     sheets.found.result.components[c].confidence = std::fabs(seen[c].share());
   }

@@ -104,7 +104,7 @@ std::vector<Ballot> facingBySegment(const std::vector<float>& facing,
 }
 
 std::vector<bool> turnToSensors(const std::vector<Ballot>& ballots,
-                                const std::vector<BorderVote>& votes,
+                                const std::vector<BorderVote>& votes, bool others_follow,
                                 std::vector<std::int8_t>& signs) {
   std::vector<bool> by_sensors(signs.size(), false);
   // Along its rim a segment has points that belong to the next one and were seen from elsewhere:
@@ -119,7 +119,7 @@ std::vector<bool> turnToSensors(const std::vector<Ballot>& ballots,
     by_sensors[s] = true;
     signs[s] = ballots[s].balance < 0.F ? std::int8_t{-1} : std::int8_t{1};
   }
-  followDecided(ballots, votes, by_sensors, signs);
+  if (others_follow) followDecided(ballots, votes, by_sensors, signs);
   return by_sensors;
 }
 

@@ -26,10 +26,11 @@ std::vector<Ballot> facingBySegment(const std::vector<float>& facing,
                                     const Segmentation& segmentation);
 
 /// The signs of segments of which sensors saw enough, and then of those that borders tie to them.
+/// \param others_follow whether those are turned, too
 /// \param signs of the segments, as the surface has them; changed
 /// \return which segments sensors decided
 std::vector<bool> turnToSensors(const std::vector<Ballot>& ballots,
-                                const std::vector<BorderVote>& votes,
+                                const std::vector<BorderVote>& votes, bool others_follow,
                                 std::vector<std::int8_t>& signs);
 
 /// Whether that many standard errors leave no doubt, so that the point need not ask its surface.
