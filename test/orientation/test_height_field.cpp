@@ -5,12 +5,17 @@
 #include <segorient/orientation/pipeline.h>
 #include <segorient/orientation/sensors.h>
 
+#include <Eigen/Core>
+
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <memory>
 #include <random>
 #include <vector>
 
+#include "orientation/sensors/height_field.h"
 #include "orientation/sensors/known_sensors.h"
 #include "search/index_of.h"
 
@@ -63,6 +68,72 @@ TEST(HeightField, FacesUpThoughNoSensorIsClaimed) {
   EXPECT_TRUE(report.sensors.empty());
   EXPECT_TRUE(report.faces_up) << report.why;
   EXPECT_GE(shareUp(rows, nullptr), 0.999);
+}
+
+// Ground of 10 x 10 with balls on it, whose undersides show down to where they touch it; evenly
+// sampled. Rows, and their normals.
+struct GroundWithBalls {
+  std::vector<float> rows;
+  std::vector<float> normals;
+
+  GroundWithBalls() {
+    std::mt19937 random(14);
+    std::uniform_real_distribution<float> unit(-1.F, 1.F);
+    std::normal_distribution<float> gauss;
+    for (int i = 0; i < 20000; ++i) {
+      const float x = 5.F * unit(random);
+      const float y = 5.F * unit(random);
+      if (std::hypot(std::fabs(x) - 2.F, y) > kTouches) add({x, y, 0.F}, {0.F, 0.F, 1.F});
+    }
+    for (const float x : {-2.F, 2.F}) {
+      for (int i = 0; i < 1600; ++i) {
+        Eigen::Vector3f out{gauss(random), gauss(random), gauss(random)};
+        out.normalize();
+        const Eigen::Vector3f at = kRadius * out + Eigen::Vector3f(x, 0.F, kHeight);
+        if (at.z() > 0.F) add(at, out);
+      }
+    }
+  }
+  double shareRight(const std::vector<float>& found) const {
+    std::size_t right = 0;
+    for (std::size_t i = 0; 3 * i < rows.size(); ++i) {
+      float cosine = 0.F;
+      for (std::size_t a = 0; a < 3; ++a) cosine += normals[3 * i + a] * found[4 * i + a];
+      right += cosine > 0.F ? 1 : 0;
+    }
+    return 3.0 * static_cast<double>(right) / static_cast<double>(rows.size());
+  }
+
+ private:
+  static constexpr float kRadius = 0.8F;
+  static constexpr float kHeight = 0.75F;    // of its middle
+  static constexpr float kTouches = 0.278F;  // radius of the circle that it meets the ground in
+
+  void add(const Eigen::Vector3f& at, const Eigen::Vector3f& out) {
+    rows.insert(rows.end(), at.data(), at.data() + 3);
+    normals.insert(normals.end(), out.data(), out.data() + 3);
+  }
+};
+
+TEST(HeightField, UndersidesOfWhatStandsOnItFaceDown) {
+  const GroundWithBalls scene;
+  const PointView points{scene.rows.data(), 3, scene.rows.size() / 3};
+  EXPECT_TRUE(findSensors(points).faces_up);
+  EXPECT_GE(scene.shareRight(orientCloud(points, nullptr, {}).normals), 0.995);
+}
+
+TEST(HeightField, NothingIsAboveWhatIsOpenToTheSky) {
+  const std::vector<float> one = plate(9000, 0.F);
+  const std::vector<std::uint8_t> all =
+      detail::openToTheSky({one.data(), 3, one.size() / 3}, 0.105F);
+  EXPECT_EQ(std::count(all.begin(), all.end(), 1), 9000);
+  const std::vector<float> two = plate(18000, 2.F);
+  const std::vector<std::uint8_t> upper =
+      detail::openToTheSky({two.data(), 3, two.size() / 3}, 0.105F);
+  for (std::size_t i = 0; i < upper.size(); i += 2) ASSERT_EQ(upper[i], 1) << i;
+  EXPECT_LE(std::count(upper.begin(), upper.end(), 1), 9000 + 450);
+  EXPECT_EQ(detail::openToTheSky({one.data(), 3, 5}, 0.F), std::vector<std::uint8_t>(5, 1));
+  EXPECT_TRUE(detail::openToTheSky({nullptr, 3, 0}, 1.F).empty());
 }
 
 TEST(HeightField, WhoeverNamesASideMeansIt) {

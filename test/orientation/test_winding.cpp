@@ -299,6 +299,30 @@ TEST(LooseParts, OneAfterTheOtherWhereTwoAreWrong) {
             (std::vector<std::int8_t>{1, -1, -1}));
 }
 
+// Above a wide sheet that faces up w is -1/2, so that a ball on it is as far off as an open surface
+// when it is right, and by another surface more when it is inside out.
+TEST(LooseParts, StandOnASheet) {
+  for (const float sign : {1.F, -1.F}) {
+    Balls scene;
+    for (int i = 0; i < 10000; ++i) {
+      const float p[4] = {0.2F * static_cast<float>(i % 100) - 9.9F,
+                          0.2F * static_cast<float>(i / 100) - 9.9F, 0.F, 0.F};
+      const float up[4] = {0.F, 0.F, 0.04F, 0.04F};
+      scene.xyz.insert(scene.xyz.end(), p, p + 4);
+      scene.dipoles.insert(scene.dipoles.end(), up, up + 4);
+      scene.spacing.push_back(0.2F);
+      scene.components.push_back(0);
+    }
+    const auto first = scene.components.size();
+    addBall(scene, {0, 0, 1.1F}, 1, 1000, sign);
+    std::fill(scene.components.begin() + static_cast<std::ptrdiff_t>(first), scene.components.end(),
+              1);
+    const auto turn = turnParts(viewOf(scene.xyz), scene.dipoles.data(), scene.spacing.data(),
+                                scene.components, 2, 1);
+    EXPECT_EQ(turn, (std::vector<std::int8_t>{1, sign < 0.F ? std::int8_t{-1} : std::int8_t{1}}));
+  }
+}
+
 TEST(LooseParts, FixedOnesStay) {
   const Bands bands({1.F, 1.F, -1.F});
   const auto turn = turnParts(viewOf(bands.ball.xyz), bands.ball.dipoles.data(),

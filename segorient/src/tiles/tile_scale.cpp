@@ -6,6 +6,8 @@
 #include <cmath>
 
 #include "common/at.h"
+#include "common/median.h"
+#include "orientation/sensors/height_field.h"
 
 namespace segorient::detail {
 namespace {
@@ -25,8 +27,10 @@ void copyEvidence(const Evidence& from, float* to) {
 
 // Of points of the halo: their own tile knows whether their sensors are to be believed; here it is
 // the surroundings that they are for.
-void towardSensor(const float* point, std::size_t i, const PointHints& hints, float* toward) {
-  if (hints.place.faces_up) toward[2] = 1.F;
+// \param open see openToTheSky(); empty where nothing says that what is open to it faces up
+void towardSensor(const float* point, std::size_t i, const PointHints& hints,
+                  const std::vector<std::uint8_t>& open, float* toward) {
+  if (!open.empty() && open[i] != 0) toward[2] = 1.F;
   const bool own = !hints.sensors.empty();
   if (!own && !hints.has_viewpoint) return;
   float squares = 0.F;
@@ -45,9 +49,10 @@ void towardSensor(const float* point, std::size_t i, const PointHints& hints, fl
 void TileScale::prepareRecord(const TileSigns& signs, std::uint32_t patch_points,
                               const PointHints& hints) {
   prepareRecord();
-  record.known = [this, &signs, &hints, patch_points](const Segmentation& pieces) {
+  record.known = [this, &signs, &hints, patch_points](const Segmentation& pieces,
+                                                      const std::vector<float>& spacing) {
     cutPatches(pieces, patch_points);
-    return orientAsKnown(pieces, signs, hints);
+    return orientAsKnown(pieces, spacing, signs, hints);
   };
 }
 
@@ -57,7 +62,8 @@ void TileScale::list(std::uint32_t patch_points, TileShare& out) {
   makePatches(out);
 }
 
-AutoOrientation TileScale::orientAsKnown(const Segmentation& pieces, const TileSigns& signs,
+AutoOrientation TileScale::orientAsKnown(const Segmentation& pieces,
+                                         const std::vector<float>& spacing, const TileSigns& signs,
                                          const PointHints& hints) const {
   AutoOrientation out;
   // As they are to be turned for the field: as they are, and inside out.
@@ -67,6 +73,8 @@ AutoOrientation TileScale::orientAsKnown(const Segmentation& pieces, const TileS
   out.result.point_confidences.assign(points.size, 0.F);
   out.result.point_components.assign(points.size, -1);
   if (!signs.toward.empty()) out.toward.assign(3 * points.size, 0.F);
+  std::vector<std::uint8_t> open;
+  if (hints.place.faces_up) open = openToTheSky(points, median(spacing));
   for (std::size_t i = 0; i < points.size; ++i) {
     const std::int32_t piece = pieces.labels[i];
     if (piece < 0 || at(piece) >= signs.pieces.size()) continue;
@@ -76,7 +84,7 @@ AutoOrientation TileScale::orientAsKnown(const Segmentation& pieces, const TileS
       sign = signs.patches[patch];
       if (!signs.toward.empty()) std::copy_n(&signs.toward[3 * patch], 3, &out.toward[3 * i]);
     } else if (!signs.toward.empty()) {
-      towardSensor(points[i], i, hints, &out.toward[3 * i]);
+      towardSensor(points[i], i, hints, open, &out.toward[3 * i]);
     }
     out.result.point_signs[i] = static_cast<std::int8_t>(sign * pieces.signs[i]);
     out.result.point_components[i] = signs.inside_out[at(piece)];

@@ -43,8 +43,8 @@ struct TileScale {
   void pieceNormal(std::size_t i, float* out) const;
 
  private:
-  AutoOrientation orientAsKnown(const Segmentation& pieces, const TileSigns& signs,
-                                const PointHints& hints) const;
+  AutoOrientation orientAsKnown(const Segmentation& pieces, const std::vector<float>& spacing,
+                                const TileSigns& signs, const PointHints& hints) const;
   void cutPatches(const Segmentation& pieces, std::uint32_t most);
   void listVotes(TileShare& out) const;
   void makePatches(TileShare& out) const;

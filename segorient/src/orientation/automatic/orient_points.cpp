@@ -82,7 +82,7 @@ AutoOrientation orientSegments(const PointView& points, const Neighborhoods& nei
   if (begin) begin("orientation", 0.62);
   AutoOrientation out =
       record != nullptr && record->known
-          ? record->known(segments)
+          ? record->known(segments, sheets.spacing)
           : orientSheets(points, neighborhoods, field, segments,
                          borderVotes(points, neighborhoods, field, segments, threads), points.size,
                          settings, hints, threads);

@@ -67,7 +67,8 @@ struct SheetRecord {
   const std::vector<float>* whole = nullptr;
   /// The orientation of the part's sheet segments as it was found for the whole; none where the
   /// part has to do with signs of its own.
-  std::function<AutoOrientation(const Segmentation&)> known;
+  std::function<AutoOrientation(const Segmentation& pieces, const std::vector<float>& spacing)>
+      known;
   /// Called with the part's oriented normals, where the whole asks for a coarser scale.
   std::function<void(const PointView&, AutoNormals&)> coarser;
   /// Called with the part's oriented normals in the place of what the field of all points tells

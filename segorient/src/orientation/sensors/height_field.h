@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <vector>
 
+#include <segorient/common/export.h>
 #include <segorient/common/point_view.h>
 
 #include "orientation/sensors/density_patches.h"
@@ -36,7 +37,8 @@ bool looksUpAt(const std::array<float, 3>& place, const std::array<float, 3>& mi
 /// Which points nothing is above, so that what sees the ground from there saw them, too: not those
 /// of undersides and steep sides.
 /// \param spacing of the points
-std::vector<std::uint8_t> openToTheSky(const PointView& points, float spacing);
+SEGORIENT_ORIENTATION_EXPORT std::vector<std::uint8_t> openToTheSky(const PointView& points,
+                                                                    float spacing);
 
 HeightField measureHeightField(PreparedCloud& cloud, const DensityPatches& patches);
 
