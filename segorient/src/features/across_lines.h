@@ -11,9 +11,9 @@
 
 namespace segorient::detail {
 
-/// Gives rows whose few neighbours are of two lines the quadratic surface of as few more of them
-/// as tell its slope, 32 at most, see tellsSlope(). Where noise explains none of these, rows keep
-/// what they have.
+/// Gives rows whose few neighbours tell no slope of a quadratic surface, as those of two lines, the
+/// surface of as few more of them as do, 32 at most, see tellsSlope(). Where noise explains none of
+/// these, rows keep what they have.
 /// \param index of the points, for what the table does not have, or null
 /// \param rows ascending \param noise as a length
 /// \param normals 4 floats a row of the table

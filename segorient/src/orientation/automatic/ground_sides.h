@@ -11,7 +11,8 @@ namespace segorient::detail {
 /// How far each component faces up as one layer over the xy plane does, such as open ground with
 /// what stands on it: the share of the columns of a grid that have one layer, which faces up, less
 /// the share of those where it faces down. Near 0 for what is closed, which has a top above each
-/// bottom, where only walls are, and where the layer as a whole is steeper than 45 degrees. 0 where the user says that the surface is closed.
+/// bottom, and where only walls are. 0 where the layer as a whole is steeper than 45 degrees, and
+/// where the user says that the surface is closed.
 std::vector<float> facingUp(const SheetSigns& sheets);
 
 /// What a layer of ground that is alone over its column says of the cluster that it belongs to: it

@@ -76,7 +76,8 @@ struct KnownSensors : SeenPoints {
 /// Scans are points with one sensor. A scan is not followed if its points contradict its sensor
 /// (shadows deny it, a place beside it explains their density far better, or some lie behind others
 /// or a smooth sheet would have to face both ways, unless their density confirms that it was
-/// there). PointHints::toward is taken as it is; what faces up is towards +z.
+/// there). PointHints::toward is taken as it is; of what faces up, points that nothing is above are
+/// towards +z, see openToTheSky().
 /// \param spacing one a point: mean distance to the 6 nearest
 KnownSensors findKnownSensors(const PointView& points, const Neighborhoods& neighborhoods,
                               const float* spacing, const PointHints& hints, int threads);

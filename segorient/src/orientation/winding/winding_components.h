@@ -44,7 +44,9 @@ std::vector<ComponentWinding> solveComponents(const PointView& points, const flo
 /// `residual`, if that is less).
 struct TurnRule {
   double gain = 1.0 / 3.0;  ///< the sum of squares around the part falls by more than this share
-  double residual = 0.2;    ///< and at its own points the mean square is no more than this then
+  /// And at its own points the mean square is no more than this then, or was 1 or more before: that
+  /// is what a closed surface has that is alone and inside out, whatever it stands on.
+  double residual = 0.2;
 };
 
 /// Turns over single parts where that brings the winding number much nearer to 1/2, in the
