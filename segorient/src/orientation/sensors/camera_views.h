@@ -26,8 +26,8 @@ class CameraViews {
   CameraViews(const PreparedCloud& cloud, int threads) : cloud_(cloud), threads_(threads) {}
 
   const FlatPoints& flat();
-  /// Where the sides of an image meet: all four, and shadows allow a sensor; or three, and they
-  /// reveal one. Whole ones first, then those that hide least.
+  /// Where the sides of an image meet: all four, and shadows allow or excuse a sensor; or three,
+  /// and they reveal one. Whole ones first, then those that hide least.
   const std::vector<RevealedPlace>& cameras();
 
  private:
