@@ -65,7 +65,8 @@ SurfaceEstimation::SurfaceEstimation(const Surroundings& surroundings, const Clo
       rows_(rows != nullptr ? *rows : allRows(of_.table.size())),
       open_(rows_) {
   report_.traits.noise = noise;
-  report_.traits.lines = known_ != nullptr ? known_->lines : seesLines(of_);
+  report_.traits.lines =
+      known_ != nullptr ? known_->lines : fewTell(in_spacings_) && seesLines(of_);
   // Noise asks for more neighbours than a line has nearby.
   lines_ = report_.traits.lines && fewTell(in_spacings_);
 }

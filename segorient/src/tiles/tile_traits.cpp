@@ -34,7 +34,7 @@ TileTraits measureTileTraits(const PointView& points, int k, const OrientationHi
   out.typical_offset = found.typical_offset;
   out.analytic = surfaces.analytic ? 1 : 0;
   out.cubic_edges = surfaces.cubic_edges ? 1 : 0;
-  out.lines = surfaces.lines ? 1U : 0U;
+  out.lines = found.sheets.lines ? 1U : 0U;
   out.surface_noise = static_cast<float>(surfaces.noise.length) * cloud.unit();
   out.surface_ratio = static_cast<float>(surfaces.noise.in_spacings);
   out.level = found.level;

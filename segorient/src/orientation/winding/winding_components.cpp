@@ -223,7 +223,7 @@ class Solver {
     const double share = gain(c);
     const double turned = ownResidual(c, true);
     // Of a closed surface that is alone and inside out it is 1, whatever open one it stands on.
-    const bool inside_out = ownResidual(c, false) >= 1.0;
+    const bool inside_out = share > TurnRule{}.gain && ownResidual(c, false) >= 1.0;
     if (share > rule.gain && (turned <= rule.residual || inside_out)) return true;
     // Where other parts around are turned wrongly as well, and still are, less of the sum is
     // gained. A plane of random points has .07 with noise of a spacing.
