@@ -30,6 +30,17 @@ Automatic automatic(const Sample& sample) {
   return result;
 }
 
+// With a table of k neighbours, and an index of the points for more.
+Automatic automaticWithIndex(const Sample& sample, int k) {
+  search::MedianHashIndex index;
+  index.build(sample.view(), nullptr, {});
+  Automatic result;
+  result.normals.resize(4 * sample.normals.size());
+  result.report = estimateNormalsAutomatically(sample.view(), index, neighborsOf(sample.view(), k),
+                                               0, result.normals.data());
+  return result;
+}
+
 double rmsOf(const Sample& sample, NormalEstimator estimator, int k) {
   LocalNormalOptions options;
   options.estimator = estimator;
@@ -220,14 +231,10 @@ TEST(AutomaticNormals, NeighborsOfOneLineTellNoNormal) {
   for (const auto& [apart, scatter] :
        {std::pair{0.15F, 0.001F}, std::pair{0.1F, 0.F}, std::pair{0.08F, 0.0003F}}) {
     const Sample sample = cylinderByLines(apart, scatter);
-    search::MedianHashIndex index;
-    index.build(sample.view(), nullptr, {});
-    std::vector<float> found(4 * sample.normals.size());
     for (const int k : {12, 32}) {
-      const AutomaticNormalReport report = estimateNormalsAutomatically(
-          sample.view(), index, neighborsOf(sample.view(), k), 0, found.data());
-      EXPECT_TRUE(report.traits.lines) << apart;
-      EXPECT_LT(rmsDegrees(sample, found), 1.0) << apart << " " << k;
+      const Automatic found = automaticWithIndex(sample, k);
+      EXPECT_TRUE(found.report.traits.lines) << apart;
+      EXPECT_LT(rmsDegrees(sample, found.normals), 1.0) << apart << " " << k;
     }
   }
   EXPECT_FALSE(automatic(torus(6000, 6)).report.traits.lines);
@@ -259,29 +266,21 @@ Sample torusByContours() {
 // through the points of a bent contour is the contour's.
 TEST(AutomaticNormals, NeighborsOfTwoContoursTellNoSlope) {
   const Sample sample = torusByContours();
-  search::MedianHashIndex index;
-  index.build(sample.view(), nullptr, {});
-  std::vector<float> found(4 * sample.normals.size());
   for (const int k : {12, 32}) {
-    const AutomaticNormalReport report = estimateNormalsAutomatically(
-        sample.view(), index, neighborsOf(sample.view(), k), 0, found.data());
-    EXPECT_TRUE(report.traits.lines);
-    EXPECT_GT(report.across, sample.normals.size() / 10) << k;
-    EXPECT_LT(rmsDegrees(sample, found), 3.0) << k;
+    const Automatic found = automaticWithIndex(sample, k);
+    EXPECT_TRUE(found.report.traits.lines);
+    EXPECT_GT(found.report.across, sample.normals.size() / 10) << k;
+    EXPECT_LT(rmsDegrees(sample, found.normals), 3.0) << k;
   }
 }
 
 TEST(AutomaticNormals, SeekMoreNeighborsWhereTheNoiseAsks) {
   for (const float noise : {0.F, 0.4F}) {
     const Sample sample = torus(6000, 6, noise * torusSpacing(6000));
-    search::MedianHashIndex index;
-    index.build(sample.view(), nullptr, {});
-    std::vector<float> found(4 * 6000);
-    const AutomaticNormalReport report = estimateNormalsAutomatically(
-        sample.view(), index, neighborsOf(sample.view(), 8), 0, found.data());
-    EXPECT_EQ(report.surfaces[0].first, noise > 0.F ? kMostAutomaticNeighbors : 10);
-    EXPECT_EQ(report.analytic, noise == 0.F);
-    EXPECT_EQ(found, automatic(sample).normals);
+    const Automatic found = automaticWithIndex(sample, 8);
+    EXPECT_EQ(found.report.surfaces[0].first, noise > 0.F ? kMostAutomaticNeighbors : 10);
+    EXPECT_EQ(found.report.analytic, noise == 0.F);
+    EXPECT_EQ(found.normals, automatic(sample).normals);
   }
 }
 

@@ -17,7 +17,7 @@ namespace segorient::detail {
 /// \param index of the points, for what the table does not have, or null
 /// \param rows ascending \param noise as a length
 /// \param normals 4 floats a row of the table
-/// \return the rows that got one, ascending
+/// \return the rows that got none, ascending
 std::vector<pcl::index_t> takeAcrossLines(const Surroundings& of,
                                           const search::MedianHashIndex* index,
                                           const std::vector<pcl::index_t>& rows, double noise,

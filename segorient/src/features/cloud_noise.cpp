@@ -113,8 +113,11 @@ CloudNoise sampleNoise(const PointView& points, const Neighborhoods& neighborhoo
           static_cast<double>(median(std::move(ratios))) / kMedianShare};
 }
 
-Explained::Explained(const Surroundings& of, double noise, int freedom)
-    : of_(of), noise_(noise), scatter_(1.0 + kTolerance / std::sqrt(2.0 * freedom)) {}
+Explained::Explained(const Surroundings& of, double noise, int k, Fitted fitted)
+    : of_(of),
+      noise_(noise),
+      // Freedom: points less coefficients.
+      scatter_(1.0 + kTolerance / std::sqrt(2.0 * (k + 1 - static_cast<int>(fitted)))) {}
 
 bool Explained::operator()(std::size_t row, double residual) const {
   if (residual <= scatter_ * noise_) return true;

@@ -63,12 +63,15 @@ SEGORIENT_FEATURES_EXPORT CloudNoise sampleNoise(const PointView& points,
 /// a quarter circle by six points, that is a hundredth.
 constexpr double kLeastNoise = 0.01;
 
+/// What is fitted to a neighbourhood, by the number of its coefficients.
+enum class Fitted { PLANES = 3, QUADRATICS = 6, CUBICS = 10 };
+
 /// Whether noise explains what a surface leaves of a neighbourhood: its standard deviation, with
 /// the scatter of such estimates.
 class Explained {
  public:
-  /// \param freedom points less coefficients
-  Explained(const Surroundings& of, double noise, int freedom);
+  /// \param k neighbours that it was fitted to
+  Explained(const Surroundings& of, double noise, int k, Fitted fitted);
 
   bool operator()(std::size_t row, double residual) const;
 

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <segorient/common/export.h>
+#include <segorient/common/neighborhoods.h>
 #include <segorient/common/point_view.h>
 #include <segorient/search/median_hash_index.h>
 
@@ -10,6 +11,11 @@
 #include <utility>
 
 namespace segorient::detail {
+
+/// A table of the nearest of some places, ascending, on several threads.
+/// \param entries of a row at most \param threads see resolveThreads()
+Neighborhoods nearestOfPlaces(const search::MedianHashIndex& index, const PointView& places,
+                              int entries, int threads);
 
 /// More neighbours than the table that all stages share has, for stages that need as many where
 /// there is noise: searched for when asked for, and not kept.

@@ -3,7 +3,6 @@
 #include "features/scan_scale.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstddef>
 #include <memory>
@@ -12,9 +11,9 @@
 
 #include "common/every_nth.h"
 #include "common/median.h"
-#include "common/parallel_for.h"
 #include "features/growing_scales.h"
 #include "features/grown_planes.h"
+#include "features/local_fit_job.h"
 #include "features/sheet_fit.h"
 
 namespace segorient::detail {
@@ -94,21 +93,17 @@ bool showsScanLines(const PointView& points, const Neighborhoods& nb, int thread
 }
 
 bool showsScanLines(const PointView& points, const search::MedianHashIndex& index, int threads) {
-  constexpr double kQueryTime = 2000.0;  // ns, see resolveThreads()
   if (points.size <= static_cast<std::size_t>(kNearest)) return false;
-  const EveryNth some(points.size, kLineSamples);
-  std::vector<float> at(4 * some.size(), 0.F);
+  std::vector<pcl::index_t> some;
+  for (const std::size_t i : EveryNth(points.size, kLineSamples)) {
+    some.push_back(static_cast<pcl::index_t>(i));
+  }
+  const std::vector<float> at = positionsOf(points, some);
+  const PointView places{at.data(), 4, some.size()};
+  const Neighborhoods nb = nearestOfPlaces(index, places, kNearest + 1, threads);
   Rows rows(some.size());
   std::iota(rows.begin(), rows.end(), 0);
-  Neighborhoods nb;
-  nb.reset(some.size(), kNearest + 1, false);
-  parallelFor(some.size(), threads, kQueryTime, [&](std::size_t s) {
-    std::array<float, kNearest + 1> squares;
-    const float* p = points[some[s]];
-    std::copy_n(p, 3, &at[4 * s]);
-    nb.setCount(s, index.nearestK(p, kNearest + 1, nb.mutableIndices(s), squares.data()));
-  });
-  return manyOnLines(kOnLine.fitRows({at.data(), 4, some.size()}, points, nb, rows, threads));
+  return manyOnLines(kOnLine.fitRows(places, points, nb, rows, threads));
 }
 
 bool isUneven(const PointView& points, const Neighborhoods& nb) {

@@ -4,13 +4,11 @@
 
 #include <Eigen/Core>
 #include <Eigen/Geometry>
-#include <algorithm>
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
-#include "common/vectors.h"
 #include "features/cholesky.h"
 
 namespace segorient::detail {

@@ -138,7 +138,7 @@ std::size_t SurfaceEstimation::close(const Condition& condition) {
 // \param k neighbours that something was fitted to \return how many
 template <typename Residual>
 std::size_t SurfaceEstimation::closeExplained(int k, Fitted fitted, const Residual& residual) {
-  const Explained explained(of_, noise_, k + 1 - static_cast<int>(fitted));
+  const Explained explained(of_, noise_, k, fitted);
   findTelling(k, fitted);
   return close([&](std::size_t row) {
     return explained(row, static_cast<double>(residual(row))) && tells(row);
@@ -157,13 +157,9 @@ void SurfaceEstimation::takeQuadratics() {
 
 // Along lines of a scan, larger surfaces where the smallest tell nothing.
 void SurfaceEstimation::acrossLines() {
-  const std::vector<pcl::index_t> taken =
-      takeAcrossLines(of_, index_, open_, noise_, threads_, normals_);
-  std::vector<pcl::index_t> left;
-  std::set_difference(open_.begin(), open_.end(), taken.begin(), taken.end(),
-                      std::back_inserter(left));
+  std::vector<pcl::index_t> left = takeAcrossLines(of_, index_, open_, noise_, threads_, normals_);
+  report_.across = open_.size() - left.size();
   open_ = std::move(left);
-  report_.across = taken.size();
 }
 
 // Leaves open only what looks like an edge: where points are few for how much the surface bends,

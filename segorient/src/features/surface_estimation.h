@@ -43,9 +43,6 @@ class SurfaceEstimation {
   AutomaticNormalReport runPart(EdgeCubics& cubics);
 
  private:
-  /// By the number of their coefficients.
-  enum class Fitted { PLANES = 3, QUADRATICS = 6, CUBICS = 10 };
-
   int available() const { return of_.table.k() - 1; }
   float* normalOf(pcl::index_t row) const { return normals_ + 4 * static_cast<std::size_t>(row); }
 

@@ -35,7 +35,7 @@ struct TileTraits {
   std::uint8_t judged = 0;         ///< whether signs contradict each other somewhere
   std::uint8_t edges_sampled = 0;  ///< whether there are points on sharp edges themselves
   std::uint8_t fine_field = 0;     ///< see NoiseField::fine
-  std::uint32_t lines = 0;         ///< see AutomaticNormalTraits; no hidden bytes: stored as it is
+  std::uint32_t lines = 0;         ///< see SheetTraits; no hidden bytes: stored as it is
   float surface_noise = 0.F;       ///< standard deviation, in the points' unit
   float surface_ratio = 0.F;       ///< the same, in spacings
   float typical_offset = 0.F;      ///< see FinishedSegments

@@ -16,7 +16,8 @@ void turnComponentsOut(SheetSigns& sheets);
 void followHints(SheetSigns& sheets);
 
 /// What a known sensor saw faces it: whole segments, whatever their borders say, and the segments
-/// around them as borders say.
+/// around them as borders say. Where nobody knows a sensor but the upper side of ground is the seen
+/// one, clusters follow as a whole, and no segments around.
 void followSensors(SheetSigns& sheets);
 
 /// Signs and confidences of segments, clusters and points, and the borders that contradict them. A

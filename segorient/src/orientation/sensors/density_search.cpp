@@ -238,9 +238,9 @@ bool areInABody(const SensorReport& found, const DensityPatches& patches, const 
   std::vector<Shadows> seen;
   for (const FoundSensor& sensor : found.sensors) {
     seen.push_back(findShadows(flat, sensor.position, threads));
-    // In walls each of several places has to look like it.
-    const bool tells = has_walls && !on_its_way;
-    if (tells && !seen.back().asOfABody(true, found.sensors.size() > 1)) return false;
+    // In walls each place has to look like it, but of a way the median does.
+    if (has_walls && !on_its_way && !seen.back().asOfABody(true, found.sensors.size() > 1))
+      return false;
   }
   return areAtOneBody(seen, has_walls, on_its_way);
 }

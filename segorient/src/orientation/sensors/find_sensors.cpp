@@ -25,7 +25,7 @@ using detail::setOnly;
 
 namespace {
 
-// A place in the cloud's unit that shadows reveal, or allow where a whole image tells of it.
+// A place in the cloud's unit that shadows reveal, or do not deny where a whole image tells of it.
 void setRevealed(const RevealedPlace& revealed, const char* why, detail::SeenShadows& seen,
                  SensorReport& out) {
   seen.of_sensor = revealed.shadows;
@@ -109,7 +109,7 @@ std::optional<std::array<float, 3>> suggestedAt(
   return std::nullopt;
 }
 
-// In the unit of the cloud. All four sides of an image tell of its camera if shadows allow it.
+// In the unit of the cloud. All four sides of an image tell of its camera unless shadows deny it.
 // Where that is a suggestion, densities are asked first, as they say more of it.
 SensorReport searchPositions(PreparedCloud& cloud, const SensorOptions& options,
                              detail::SeenShadows& seen) {

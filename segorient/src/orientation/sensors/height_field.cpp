@@ -29,9 +29,9 @@ constexpr float kMostlyInner = 2.F / 3.F;
 // by two columns, edges of roofs and walls only lines: aircraft up to .06 of the columns, solids,
 // rooms and woods .2 and more.
 constexpr float kApart = 1.5F;
+constexpr float kFewLayered = 0.1F;
 // Columns of two spacings hold four points of a surface above: one in fifty is empty.
 constexpr float kOver = 2.F;
-constexpr float kFewLayered = 0.1F;
 // Layers closer than that, in the neighbourhood of a flat piece: plates have them at .6 of the
 // pieces and more, aircraft see them at .22, or at .42 where houses are as small as the spacing.
 constexpr int kAround = 256;
@@ -46,6 +46,14 @@ constexpr float kMostColumns = 4e9F;  // along a side
 // Columns are numbered by x in the upper half of the bits, y in the lower.
 constexpr std::uint64_t columnAt(float x, float y) {
   return (static_cast<std::uint64_t>(x) << 32U) | static_cast<std::uint64_t>(y);
+}
+
+// Where the next column begins. \param entries a column and something of it each, sorted
+template <typename Entry>
+std::size_t endOfColumn(const std::vector<Entry>& entries, std::size_t begin) {
+  std::size_t end = begin + 1;
+  while (end < entries.size() && entries[end].first == entries[begin].first) ++end;
+  return end;
 }
 
 // How many of these, in rising order, are the first of a square of two by two.
@@ -89,10 +97,10 @@ void measureColumns(const PointView& points, const Box& ground, float side, Heig
   std::size_t filled = 0;
   std::vector<std::uint64_t> layered;
   for (std::size_t begin = 0; begin < heights.size();) {
-    std::size_t end = begin + 1;
+    const std::size_t end = endOfColumn(heights, begin);
     float gap = 0.F;
-    for (; end < heights.size() && heights[end].first == heights[begin].first; ++end) {
-      gap = std::max(gap, heights[end].second - heights[end - 1].second);
+    for (std::size_t i = begin + 1; i < end; ++i) {
+      gap = std::max(gap, heights[i].second - heights[i - 1].second);
     }
     columns.push_back(heights[begin].first);
     if (end - begin >= kFilled) {
@@ -190,10 +198,10 @@ std::vector<std::uint8_t> openToTheSky(const PointView& points, float spacing) {
   }
   std::sort(columns.begin(), columns.end());
   for (std::size_t begin = 0; begin < columns.size();) {
-    std::size_t end = begin;
+    const std::size_t end = endOfColumn(columns, begin);
     float top = points[columns[begin].second][2];
-    for (; end < columns.size() && columns[end].first == columns[begin].first; ++end) {
-      top = std::max(top, points[columns[end].second][2]);
+    for (std::size_t i = begin + 1; i < end; ++i) {
+      top = std::max(top, points[columns[i].second][2]);
     }
     for (; begin < end; ++begin) {
       const std::uint32_t i = columns[begin].second;

@@ -139,8 +139,8 @@ bool areAtOneBody(const std::vector<Shadows>& places, bool has_walls, bool on_it
     steps.push_back(s.steps);
   }
   if (median(steps) >= kFewBeside) return false;
-  const float typical = median(open);
-  return on_its_way ? !has_walls || typical > kAbove : !has_walls && typical < kHole;
+  if (on_its_way) return !has_walls || median(open) > kAbove;
+  return !has_walls && median(open) < kHole;
 }
 
 Shadows findShadows(const FlatPoints& flat, const Place& place, int threads, bool to_reveal) {

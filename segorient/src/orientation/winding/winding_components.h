@@ -51,7 +51,8 @@ struct TurnRule {
 
 /// Turns over single parts where that brings the winding number much nearer to 1/2, in the
 /// order of what they gain at first. At the points of a sheet that is all alone, (w - 1/2)^2 is
-/// 1/4: a limit below that leaves open surfaces as they are.
+/// 1/4: a limit below that leaves open surfaces as they are, and so does that their sum hardly
+/// falls.
 ///
 /// \param dipoles as above, of normals that point outward as far as known
 /// \param parts one a point: 0 to count - 1, or -1
