@@ -20,7 +20,9 @@ ROOMS = [
     ("segmentation", r"sheet_"),
     ("orientation/automatic", r""),
     ("orientation/winding", r""),
+    ("orientation/sensors", r""),
 ]
+SEARCH = "orientation/sensors"  # what `--no-sensors` leaves out is counted by itself
 BASES = {
     "geometry": "follows from shapes: angles, neighbours on a grid, numbers of coefficients",
     "sampling": "statistics of random points and votes: how many are enough, what chance alone does",
@@ -50,7 +52,7 @@ def constants(path):
                 end += 1
             line = " ".join(part.strip() for part in lines[number:end + 1])
         found = DEFINITION.match(line)
-        if found:
+        if found and '"' not in found.group(2):  # texts are no thresholds
             above = []
             at = number - 1
             while at >= 0 and lines[at].strip().startswith("//"):
@@ -82,7 +84,7 @@ def known_bases():
 
 def page():
     bases = known_bases()
-    sections, counts = [], dict.fromkeys(list(BASES) + ["?"], 0)
+    sections, counts = [], {room: dict.fromkeys(list(BASES) + ["?"], 0) for room in (False, True)}
     for folder, wanted in ROOMS:
         for path in sorted((SOURCES / folder).iterdir()):
             if path.suffix not in (".cpp", ".h", ".inl") or not re.match(wanted, path.name):
@@ -91,23 +93,25 @@ def page():
             for name, value, reason in constants(path):
                 count = seen[name] = seen.get(name, 0) + 1
                 basis = bases.get((file, name, count), "?")
-                counts[basis] += 1
+                counts[folder == SEARCH][basis] += 1
                 cell = reason.replace("|", "\\|")
                 rows.append(f"| `{name}` | `{value}` | {basis} | {cell} |")
             if rows:
                 sections.append(f"## `{file}`\n\n| constant | value | basis | reason |\n"
                                 "|---|---|---|---|\n" + "\n".join(rows))
-    total = sum(counts.values())
-    table = "\n".join(f"| {basis} | {counts[basis]} | {what} |" for basis, what in BASES.items())
+    signs, search = counts[False], counts[True]
+    table = "\n".join(f"| {basis} | {signs[basis]} | {search[basis]} | {what} |"
+                      for basis, what in BASES.items())
     head = ("# Constants of the default method {#constants_page}\n\n"
             "<!-- Written by test/structure/constants.py from the code; only the column `basis` is\n"
             "     written by hand. A test compares. -->\n\n"
-            f"Files are below `segorient/src/`. {total} constants, by what they rest on:\n\n"
-            "| basis | constants | means |\n|---|---|---|\n" + table +
+            f"Files are below `segorient/src/`. {sum(signs.values())} constants of normals, segments and\n"
+            f"signs and {sum(search.values())} of the search for sensors, by what they rest on:\n\n"
+            "| basis | signs | sensors | means |\n|---|---|---|---|\n" + table +
             "\n\nLengths are in local spacings, angles as cosines or radians, shares and confidences 0 "
             "to 1, unless the\nreason says otherwise. What users may set is not here: see the options "
             "in `include/segorient/`.\n\n")
-    return head + "\n\n".join(sections) + "\n", counts["?"]
+    return head + "\n\n".join(sections) + "\n", signs["?"] + search["?"]
 
 
 def main():

@@ -10,6 +10,7 @@
 #include "common/at.h"
 #include "common/box.h"
 #include "common/by_size.h"
+#include "common/directions.h"
 #include "orientation/winding/winding_number.h"
 
 namespace segorient {
@@ -61,7 +62,6 @@ void turnOutward(const std::vector<ExtremalPoint>& extremal, float gamma,
 // What an oriented point stands for, as a dipole: its neighbours' disc, shared among them.
 void setDipole(const PointView& points, const PointView& normals,
                const Neighborhoods& neighborhoods, std::size_t row, float weight, float* dipole) {
-  constexpr float kPi = 3.1415927F;
   const int count = neighborhoods.count(row);
   float squared = 0.F;
   if (count >= 2) {
@@ -69,7 +69,8 @@ void setDipole(const PointView& points, const PointView& normals,
     const float* q = points[static_cast<std::size_t>(neighborhoods.indices(row)[count - 1])];
     for (std::size_t a = 0; a < 3; ++a) squared += (q[a] - p[a]) * (q[a] - p[a]);
   }
-  dipole[3] = std::abs(weight) * kPi * squared / (static_cast<float>(count) - 0.5F);
+  dipole[3] =
+      std::abs(weight) * static_cast<float>(kPi) * squared / (static_cast<float>(count) - 0.5F);
   const float signed_area = weight < 0.F ? -dipole[3] : dipole[3];
   for (std::size_t a = 0; a < 3; ++a) dipole[a] = signed_area * normals[row][a];
 }

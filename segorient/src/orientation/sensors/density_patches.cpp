@@ -8,6 +8,7 @@
 #include <limits>
 #include <tuple>
 
+#include "common/directions.h"
 #include "common/every_nth.h"
 #include "common/median.h"
 #include "common/parallel_for.h"
@@ -23,10 +24,6 @@ constexpr std::size_t kSample = 3000;
 constexpr std::array<int, 3> kScales{24, 48, 96};
 constexpr float kMostlyFlat = 0.62F;   // so many are flat: no need for more neighbours
 constexpr float kNotMuchLess = 0.75F;  // of the flat ones: the more neighbours, the surer
-// Flat: the least eigenvalue is below this part of the next.
-constexpr double kFlatness = 0.05;
-// Not a line: single rings and scan lines have no density in the surface.
-constexpr double kWidth = 0.08;
 // Fits of five parameters to fewer independent densities than this may come about by chance.
 constexpr std::size_t kIndependent = 60;
 constexpr std::size_t kLeastFlat = 150;
@@ -55,15 +52,13 @@ Piece pieceOf(const PointView& points, const float* origin, const pcl::index_t* 
       symmetricEigen({m.xx / n - c[0] * c[0], m.xy / n - c[0] * c[1], m.xz / n - c[0] * c[2],
                       m.yy / n - c[1] * c[1], m.yz / n - c[1] * c[2], m.zz / n - c[2] * c[2]});
   Piece out;
-  out.flat =
-      eigen.values[0] < kFlatness * eigen.values[1] && eigen.values[1] > kWidth * eigen.values[2];
+  out.flat = isPieceOfSurface(eigen.values[0], eigen.values[1], eigen.values[2]);
   if (!out.flat) return out;
   for (std::size_t a = 0; a < 3; ++a) {
     out.center[a] = static_cast<float>(static_cast<double>(origin[a]) + c[a]);
     out.normal[a] = static_cast<float>(eigen.vectors[0][a]);
   }
   // An evenly filled disc of area A has variances A / (4 pi).
-  constexpr double kPi = 3.14159265358979323846;
   out.log_density =
       static_cast<float>(std::log(n / (4.0 * kPi * std::sqrt(eigen.values[1] * eigen.values[2]))));
   return out;
@@ -168,9 +163,9 @@ std::array<double, 3> DensityPatches::imageOf(const std::array<double, 3>& place
 bool DensityPatches::haveWalls() const {
   constexpr std::size_t kSome = 400;  // of the pieces, against all of them
   constexpr float kParallel = 0.98F;  // cosine: 11 degrees, of which a cylinder's strip is a 16th
-  constexpr float kInPlane = 3.F;     // spacings
-  constexpr double kWall = 0.1;
-  constexpr float kAcross = 0.5F;
+  constexpr float kInPlane = 3.F;     // spacings: noise, and what a plane is tilted by
+  constexpr double kWall = 0.1;       // of the pieces: a room has six, and furniture
+  constexpr float kAcross = 0.5F;     // cosine: 60 degrees and more
   const EveryNth some(size(), kSome);
   std::vector<std::size_t> walls;  // pieces in them
   for (const std::size_t i : some) {

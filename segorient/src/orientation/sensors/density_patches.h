@@ -60,6 +60,17 @@ DensityPatches densityPatches(const PointView& points, const search::MedianHashI
 /// same density everywhere: counts of k vary by their root.
 float chanceDeviation(int k);
 
+/// Whether points of these variances, ascending, have a density on a surface: they are flat, unlike
+/// at edges and in noise as deep as they spread, and no single ring or scan line.
+template <typename Real>
+bool isPieceOfSurface(Real least, Real middle, Real most) {
+  // Noise as deep as a quarter of the radius, and lines three and a half times as far apart as the
+  // points on them, are as much.
+  constexpr auto kFlat = static_cast<Real>(0.05);
+  constexpr auto kWide = static_cast<Real>(0.08);
+  return least < kFlat * middle && middle > kWide * most;
+}
+
 /// What lies farther from the median is another surface's density, or no surface: a factor of 4.5.
 constexpr float kDeviationCut = 1.5F;
 

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "common/directions.h"
 #include "common/dot.h"
 #include "common/median.h"
 #include "common/parallel_for.h"
@@ -18,12 +19,6 @@ namespace {
 // In direction: in a thinned cloud what is near has fewer points to an angle than what is far, at a
 // fifth of its distance one of 25.
 constexpr int kAround = 256;
-// A surface that is seen at less rises by many spacings, and ends nowhere for sure.
-constexpr float kLeastIncidence = 0.15F;
-// Spacings that a step takes at least, and the part of a cloud's depth that it does: steps of depth
-// cameras, and their noise.
-constexpr float kStepSpacings = 4.F;
-constexpr float kStepDepth = 0.03F;
 // Spacings of what is nearer: what is farther away from all of it is not beside it.
 constexpr float kReach = 3.F;
 // Spacings from the place, within which the points of a surface lie in all directions.
@@ -34,10 +29,8 @@ constexpr float kNearest = 5.F;
 DepthSteps::DepthSteps(const FlatPoints& flat, const std::array<float, 3>& place, int threads)
     : flat_(flat), seen_(seeFrom(place, flat.view(), threads)), directions_(seen_.index(threads)) {}
 
-// Directions all around, by the golden angle.
 float DepthSteps::openShare() const {
-  constexpr int kDirections = 1000;
-  constexpr float kGolden = 2.39996323F;
+  constexpr std::size_t kDirections = 1000;  // shares of a two-hundredth are five of them
   // Where it is on a surface itself, there is something all around. A stray point is none.
   int near = 0;
   for (std::size_t i = 0; i < flat_.size(); ++i) {
@@ -45,11 +38,10 @@ float DepthSteps::openShare() const {
   }
   if (near > FlatPoints::kPlane) return 0.F;
   int open = 0;
-  for (int k = 0; k < kDirections; ++k) {
-    const float z = 1.F - (2.F * static_cast<float>(k) + 1.F) / static_cast<float>(kDirections);
-    const float r = std::sqrt(1.F - z * z);
-    const float turn = kGolden * static_cast<float>(k);
-    const std::array<float, 4> ray{r * std::cos(turn), r * std::sin(turn), z, 0.F};
+  for (std::size_t k = 0; k < kDirections; ++k) {
+    const std::array<double, 3> u = evenDirection(k, kDirections);
+    const std::array<float, 4> ray{static_cast<float>(u[0]), static_cast<float>(u[1]),
+                                   static_cast<float>(u[2]), 0.F};
     const search::Nearest nearest(directions_, ray.data());
     if (nearest.point < 0) return 1.F;
     const auto q = static_cast<std::size_t>(nearest.point);
@@ -67,24 +59,22 @@ struct DepthSteps::Across {
 };
 
 DepthSteps::Step DepthSteps::at(std::size_t i, Side side) const {
-  constexpr std::size_t kTwo = 2;  // a single one that floats is no surface
   const float* u = &seen_.direction[4 * i];
   const float incidence = std::fabs(dot(flat_.normal(i), u));
   // A place in the plane of a face sees nothing of it, only holes in it.
   if (incidence < kLeastIncidence) return Step::NONE;
-  const float steps = kStepDepth * std::min(seen_.distance[i], seen_.depth);
-  const float margin = std::max(kStepSpacings * flat_.spacing(i) / incidence, steps);
+  const float margin = depthStep(flat_.spacing(i), incidence, seen_.distance[i], seen_.depth);
   std::array<pcl::index_t, kAround> rows;
   std::array<float, kAround> squares;
   const int found = directions_.nearestK(u, kAround, rows.data(), squares.data());
   const Around around{rows.data(), squares.data(), static_cast<std::size_t>(std::max(found, 0))};
   const Across across = lookAcross(i, side, margin, around);
-  if (across.on_surfaces.size() < kTwo) return Step::NONE;
+  if (across.on_surfaces.size() < kNoStray) return Step::NONE;
   std::vector<float> widths;
   for (const std::size_t q : across.on_surfaces) widths.push_back(flat_.spacing(q));
   const float width = std::max(median(widths), flat_.spacing(i));
   const float gap = gapOf(i, side, across.widest, around);
-  if (!(gap > std::max(kStepSpacings * width, steps))) return Step::NONE;
+  if (!(gap > depthStep(width, 1.F, seen_.distance[i], seen_.depth))) return Step::NONE;
   if (isWithin(i, across.on_surfaces)) return Step::COVERED;
   return isWithin(i, across.all) ? Step::HIDDEN : Step::BESIDE;
 }
@@ -134,8 +124,8 @@ std::vector<DepthSteps::Step> DepthSteps::of(const std::vector<std::size_t>& poi
 
 // Whether a point's direction is among those of others, rather than beside them all.
 bool DepthSteps::isWithin(std::size_t i, const std::vector<std::size_t>& others) const {
-  constexpr float kPi = 3.14159265F;
-  constexpr float kHalf = 0.9F * kPi;  // less than that: at the rim, errors decide
+  constexpr float kCircle = 2.F * static_cast<float>(kPi);  // radians
+  constexpr float kHalf = 0.45F * kCircle;  // less than half: at the rim, errors decide
   if (others.size() < 3) return false;
   const float* u = &seen_.direction[4 * i];
   std::size_t least = 0;
@@ -154,7 +144,7 @@ bool DepthSteps::isWithin(std::size_t i, const std::vector<std::size_t>& others)
     angles.push_back(std::atan2(off.dot(y), off.dot(x)));
   }
   std::sort(angles.begin(), angles.end());
-  float widest = angles.front() + 2.F * kPi - angles.back();
+  float widest = angles.front() + kCircle - angles.back();
   for (std::size_t k = 1; k < angles.size(); ++k) {
     widest = std::max(widest, angles[k] - angles[k - 1]);
   }

@@ -39,7 +39,7 @@ bool isTowards(const float* toward, const float* place, const float* from) {
 }  // namespace
 
 bool leavesDoubt(const std::vector<KnownSensor>& scans, const PreparedCloud& cloud) {
-  constexpr double kFewUnknown = 0.01;
+  constexpr double kFewUnknown = 0.01;  // of the points: what strays may be
   std::size_t followed = 0;
   for (const KnownSensor& scan : scans) {
     if (!isConfirmed(scan)) return true;

@@ -58,7 +58,7 @@ std::size_t endOfColumn(const std::vector<Entry>& entries, std::size_t begin) {
 
 // How many of these, in rising order, are the first of a square of two by two.
 std::size_t countSquares(const std::vector<std::uint64_t>& columns) {
-  constexpr std::uint64_t kNextX = columnAt(1.F, 0.F);
+  constexpr std::uint64_t kNextX = columnAt(1.F, 0.F);  // from a column to the next
   constexpr std::uint64_t kNextY = columnAt(0.F, 1.F);
   const auto has = [&](std::uint64_t column) {
     return std::binary_search(columns.begin(), columns.end(), column);
@@ -71,7 +71,7 @@ std::size_t countSquares(const std::vector<std::uint64_t>& columns) {
 
 // Which share of these, in rising order, have all eight beside them.
 float shareInner(const std::vector<std::uint64_t>& columns) {
-  constexpr std::uint64_t kNextX = columnAt(1.F, 0.F);
+  constexpr std::uint64_t kNextX = columnAt(1.F, 0.F);  // from a column to the next
   const auto hasThree = [&](std::uint64_t middle) {
     const auto at = std::lower_bound(columns.begin(), columns.end(), middle - 1);
     return columns.end() - at >= 3 && at[0] == middle - 1 && at[1] == middle && at[2] == middle + 1;
@@ -151,8 +151,9 @@ std::size_t countBehind(const Offset* offsets, std::size_t count, float spacing)
 
 float shareBacked(const PointView& points, const search::MedianHashIndex& index,
                   const DensityPatches& patches) {
+  // A share of so many is known to a thirtieth, of the least to a twentieth.
   constexpr std::size_t kPieces = 300;
-  constexpr std::size_t kLeastPieces = 100;  // a share of them is known to a twentieth
+  constexpr std::size_t kLeastPieces = 100;
   if (patches.size() < kLeastPieces) return 1.F;
   const DensityPatches some = patches.thinned(kPieces);
   std::array<pcl::index_t, kAround> rows{};

@@ -41,7 +41,8 @@ constexpr float kSureTrack = 0.43F;
 constexpr float kVariesTilted = 4.F;
 constexpr float kVariesMuch = 8.F;
 constexpr float kSureWhereMuch = 0.4F;
-constexpr std::array<double, 3> kUp{0.0, 0.0, 1.0};
+
+constexpr std::array<double, 3> kUp{0.0, 0.0, 1.0};  // a direction, not a threshold
 
 // Of each point, -1 = none.
 std::vector<std::int32_t> nearestPieces(const PointView& points, const DensityPatches& patches,
@@ -110,7 +111,7 @@ void lookFromAbove(PreparedCloud& cloud, const DensityPatches& patches,
 // Whether it does from most of them.
 bool lookLikeABody(const std::vector<std::array<double, 3>>& places, const DensityPatches& patches,
                    const PointView& points, int threads) {
-  constexpr std::size_t kLooks = 8;
+  constexpr std::size_t kLooks = 8;  // at some of them: most of so many are most of all
   const detail::FlatPoints flat(points, threads);
   const bool has_walls = patches.haveWalls();
   const std::size_t looks = std::min(kLooks, places.size());
@@ -125,7 +126,7 @@ bool lookLikeABody(const std::vector<std::array<double, 3>>& places, const Densi
 // Nobody knows the places, but the sides.
 void lookWithin(const PointView& points, const DensityPatches& all, const detail::Extent& extent,
                 const detail::Occupancy& occupancy, int threads, SensorReport& report) {
-  constexpr std::size_t kPieces = 800;
+  constexpr std::size_t kPieces = 800;  // as many as there are places, since time is their product
   const DensityPatches patches = all.thinned(kPieces);
   const detail::SeenWithin seen = detail::seenWithin(patches, occupancy, extent, threads);
   if (seen.directions.empty()) return;

@@ -15,7 +15,7 @@ inline void addRow(const float* row, float weight, std::size_t length, float* su
 
 /// kSums parts of the scalar product.
 inline void multiplyRows(const float* a, const float* b, std::size_t length, float* parts) {
-  constexpr std::size_t kRegisters = kSums / kWidth;
+  constexpr std::size_t kRegisters = kSums / kWidth;  // for the sums
   Lanes sums[kRegisters] = {};
   for (std::size_t i = 0; i < length; i += kSums) {
     for (std::size_t r = 0; r < kRegisters; ++r) {

@@ -9,6 +9,7 @@
 #include <numeric>
 #include <utility>
 
+#include "common/directions.h"
 #include "common/median.h"
 #include "common/parallel_for.h"
 #include "orientation/sensors/sampling_law.h"
@@ -24,9 +25,9 @@ constexpr float kHopeless = 0.8F;
 using Position = std::array<double, 3>;
 using Line = std::vector<double>;  // x, y of one end, x, y of the other, z
 
-constexpr std::size_t kPieces = 500;
-constexpr int kPlaces = 9;       // a line of places is as good as a path once they are near
-constexpr int kElevations = 72;  // bins of 2.5 degrees: 16 beams are 2 degrees apart
+constexpr std::size_t kPieces = 500;  // a hundred for each of the five unknowns of a line
+constexpr int kPlaces = 9;            // a line of places is as good as a path once they are near
+constexpr int kElevations = 72;       // bins of 2.5 degrees: 16 beams are 2 degrees apart
 constexpr int kBeamRounds = 6;
 constexpr float kPrior = 0.02F;  // of an even share of the pieces: empty bins stay as they are
 // Of path lengths, as parts of the scene's: from standing nearly still on, each about twice the
@@ -45,7 +46,6 @@ class ElevationBins {
   ElevationBins() {
     for (int i = 0; i < kFine; ++i) {
       const double sine = (2.0 * i + 1.0) / kFine - 1.0;
-      constexpr double kPi = 3.14159265358979323846;
       const int bin = static_cast<int>((std::asin(sine) / kPi + 0.5) * kElevations);
       table_[static_cast<std::size_t>(i)] =
           static_cast<std::uint8_t>(std::min(bin, kElevations - 1));
@@ -57,7 +57,7 @@ class ElevationBins {
   }
 
  private:
-  static constexpr int kFine = 1024;
+  static constexpr int kFine = 1024;  // an eighth of a degree, a twentieth of a bin
   std::array<std::uint8_t, kFine> table_{};
 };
 

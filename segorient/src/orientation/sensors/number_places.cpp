@@ -67,7 +67,7 @@ std::vector<Place> numberPlaces(const std::vector<float>& places_of_points,
 std::vector<std::int32_t> splitByScan(const std::vector<std::int32_t>& scan_of_points,
                                       std::size_t least, std::vector<Place>& places,
                                       std::vector<std::int32_t>& of) {
-  constexpr std::int32_t kNotSeen = -2;
+  constexpr std::int32_t kNotSeen = -2;  // no scan, and not none (-1)
   std::vector<std::int32_t> scan_of(places.size(), scan_of_points.empty() ? -1 : kNotSeen);
   // Points of the scans that a place has beside its first.
   std::map<std::pair<std::int32_t, std::int32_t>, std::size_t> others;

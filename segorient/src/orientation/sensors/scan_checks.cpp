@@ -107,39 +107,31 @@ std::vector<std::uint8_t> Scan::hidden() const {
 }
 
 bool Scan::isHidden(std::size_t i, const search::MedianHashIndex& directions) const {
-  constexpr int kAround = 24;      // in angle: of a nearer surface, and of the point's own
-  constexpr int kTwo = 2;          // a single point that floats before the others hides nothing
-  constexpr float kLeast = 0.15F;  // a surface that is seen at less rises by many spacings
+  constexpr int kAround = 24;  // in angle: of a nearer surface, and of the point's own
   Row row;
   nearest(i, kPlane + 1, row);
   const Plane plane = planeOf(view_, i, row.indices, row.count);
   const float incidence =
       plane.valid ? std::fabs(dot(plane.normal.data(), &seen_.direction[4 * i])) : 1.F;
-  // Four spacings before it, along the surface, and a thirtieth of its distance, or of the extent
-  // of what is seen from far away: steps of depth.
   const float d = seen_.distance[i];
-  const float margin =
-      std::max(4.F * spacingOf(i) / std::max(incidence, kLeast), 0.03F * std::min(d, extent_));
+  const float margin = depthStep(spacingOf(i), incidence, d, extent_);
   std::array<pcl::index_t, kAround> around;
   std::array<float, kAround> squares;
   const int found =
       directions.nearestK(&seen_.direction[4 * i], kAround, around.data(), squares.data());
-  int before = 0;
-  for (int j = 0; j < found && before < kTwo; ++j) {
+  std::size_t before = 0;
+  for (int j = 0; j < found && before < kNoStray; ++j) {
     const auto at = static_cast<std::size_t>(j);
     const auto q = static_cast<std::size_t>(around[at]);
     if (seen_.distance[q] >= d - margin) continue;
     const float reach = spacingOf(q) / seen_.distance[q];
     before += squares[at] < reach * reach ? 1 : 0;
   }
-  return before >= kTwo;
+  return before >= kNoStray;
 }
 
 Scan::Density Scan::density() const {
-  // Patches that are flat and span two directions: others have no density on a surface.
-  constexpr float kFlat = 0.05F;
-  constexpr float kWide = 0.08F;
-  constexpr std::size_t kFewest = 50;
+  constexpr std::size_t kFewest = 50;  // patches: their mean deviation is sure to a tenth
   // Equal angles crowd at the poles of the sensor's axis: no nearer than 6 degrees.
   constexpr float kPole = 0.1F;
   constexpr std::size_t kLaws = 5;  // no axis, three axes, an image
@@ -161,7 +153,7 @@ Scan::Density Scan::density() const {
     const Eigen::Vector3f& l = plane.lambda;
     const float spacing =
         meanDistance(view_, i, row.indices + 1, std::min(row.count - 1, kFirstRing));
-    if (!plane.valid || !(l[0] < kFlat * l[1]) || !(l[1] > kWide * l[2])) continue;
+    if (!plane.valid || !isPieceOfSurface(l[0], l[1], l[2])) continue;
     if (!(seen_.distance[i] > 0.F) || !(spacing > 0.F)) continue;
     const float* u = &seen_.direction[4 * i];
     const float log_density = -0.5F * std::log(l[1] * l[2]) - 2.F * std::log(spacing);
@@ -205,8 +197,9 @@ bool Scan::stoodElsewhere() const {
 std::vector<ScanPairs> findContraryPairs(const PointView& points, const Neighborhoods& nb,
                                          const float* spacing, const std::vector<float>& toward,
                                          const std::vector<std::int32_t>& scan, int threads) {
+  // Enough to find a hundredth of the pairs of each two of some twenty scans.
   constexpr std::size_t kPairSamples = 40000;
-  constexpr int kAround = 8;
+  constexpr int kAround = 8;         // the nearest: of one sheet
   constexpr float kClear = 0.3F;     // 17 degrees above grazing
   constexpr float kParallel = 0.9F;  // and no edge between them
   constexpr float kOffset = 0.7F;    // spacings: less than what walls are apart

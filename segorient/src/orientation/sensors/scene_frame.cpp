@@ -74,7 +74,7 @@ Axis meanAlong(const DensityPatches& patches, const Axis& line) {
 // there is one
 std::optional<Axis> lineOfMost(const DensityPatches& patches, const Axis* across, float thickness,
                                float least) {
-  constexpr int kRounds = 3;
+  constexpr int kRounds = 3;  // of a mean shift
   Axis best{};
   std::size_t most = 0;
   for (std::size_t i = 0; i < patches.size(); ++i) {

@@ -86,7 +86,7 @@ std::optional<std::array<float, 3>> onlyPlace(const OrientationHints& hints, std
 
 bool contradictsPlace(const PreparedCloud& cloud, const SensorReport& report,
                       const std::array<float, 3>& place) {
-  constexpr std::size_t kSample = 1000;
+  constexpr std::size_t kSample = 1000;  // a mean of so many is sure to a hundredth
   if (!report.sure()) return false;
   const auto unit = static_cast<double>(cloud.unit());
   const auto directionTo = [unit](const float* from, const std::array<float, 3>& to) {

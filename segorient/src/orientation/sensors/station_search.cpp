@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "common/by_size.h"
+#include "common/directions.h"
 #include "common/parallel_for.h"
 
 namespace segorient::detail {
@@ -44,16 +45,14 @@ std::vector<Place> lawsAt(const Position& position) {
 }
 
 std::vector<Position> shells(const Position& middle, double extent) {
-  constexpr int kDirections = 90;
-  constexpr double kGolden = 3.14159265358979323846 * 3.2360679774997896964;  // 2 pi times .618..
+  constexpr std::size_t kDirections =
+      90;  // 24 degrees apart: less than a valley is wide from there
   std::vector<Position> out;
   for (const double radius : {0.4, 0.6, 0.8, 1.1, 1.5, 2.1}) {
-    for (int k = 0; k < kDirections; ++k) {
-      const double z = 1.0 - (2.0 * k + 1.0) / kDirections;
-      const double r = std::sqrt(1.0 - z * z);
-      out.push_back({middle[0] + radius * extent * r * std::cos(kGolden * k),
-                     middle[1] + radius * extent * r * std::sin(kGolden * k),
-                     middle[2] + radius * extent * z});
+    for (std::size_t k = 0; k < kDirections; ++k) {
+      Position place = evenDirection(k, kDirections);
+      for (std::size_t a = 0; a < 3; ++a) place[a] = middle[a] + radius * extent * place[a];
+      out.push_back(place);
     }
   }
   return out;
@@ -61,7 +60,7 @@ std::vector<Position> shells(const Position& middle, double extent) {
 
 // Of one place, see resolveThreads().
 double timeAt(const DensityPatches& patches) {
-  constexpr double kTermTime = 10.0;
+  constexpr double kTermTime = 10.0;  // ns a piece
   return kTermTime * static_cast<double>(patches.size());
 }
 
@@ -189,8 +188,8 @@ FittedPlace fitAt(const DensityPatches& patches, const Position& position) {
 }
 
 FittedPlace fitBeside(const DensityPatches& patches, const FittedPlace& place) {
-  constexpr double kStep = 0.02;
-  constexpr int kEvaluations = 200;
+  constexpr double kStep = 0.02;     // of the extent: poses are off by less, mixed up ones by more
+  constexpr int kEvaluations = 200;  // forty for each of five unknowns
   FittedPlace beside = place;
   beside.cost =
       refinePlace(patches, kStep * extentOf(patches).diagonal(), true, kEvaluations, beside.place);

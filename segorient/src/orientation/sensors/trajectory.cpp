@@ -10,10 +10,10 @@
 namespace segorient {
 namespace {
 
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
-constexpr double kWeek = 604800.0;         // seconds
-constexpr double kGpsEpoch = 315964800.0;  // 1980-01-06 in Unix time
-constexpr double kLasShift = 1e9;          // LAS: "adjusted standard GPS time"
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();  // no place
+constexpr double kWeek = 604800.0;                                 // seconds
+constexpr double kGpsEpoch = 315964800.0;                          // 1980-01-06 in Unix time
+constexpr double kLasShift = 1e9;  // LAS: "adjusted standard GPS time"
 
 bool isFinite(const Trajectory::Pose& p) {
   return std::isfinite(p.time) && std::isfinite(p.position[0]) && std::isfinite(p.position[1]) &&

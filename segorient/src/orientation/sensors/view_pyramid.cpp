@@ -10,6 +10,7 @@
 #include <limits>
 #include <numeric>
 
+#include "common/directions.h"
 #include "common/every_nth.h"
 #include "common/median.h"
 #include "common/parallel_for.h"
@@ -133,7 +134,7 @@ class Columns {
   }
 
  private:
-  static constexpr std::size_t kLanes = 16;
+  static constexpr std::size_t kLanes = 16;  // floats in the widest registers
   std::array<std::vector<float>, 3> column_;
   std::vector<float> behind_;
   std::size_t size_ = 0;
@@ -141,15 +142,11 @@ class Columns {
   float highest_ = 0.F;
 };
 
-// A spiral from pole to pole.
 std::vector<Vector> directionsAllAround() {
-  const double golden = 3.14159265358979323846 * (1.0 + std::sqrt(5.0));
   std::vector<Vector> out;
   for (std::size_t i = 0; i < kDirections; ++i) {
-    const double at = static_cast<double>(i) + 0.5;
-    const double z = 1.0 - 2.0 * at / static_cast<double>(kDirections);
-    const double r = std::sqrt(1.0 - z * z);
-    out.emplace_back(r * std::cos(golden * at), r * std::sin(golden * at), z);
+    const std::array<double, 3> u = evenDirection(i, kDirections);
+    out.emplace_back(u[0], u[1], u[2]);
   }
   return out;
 }
