@@ -21,8 +21,9 @@ namespace {
 
 using Vector = Eigen::Vector3d;
 
-// Directions that bounding planes are looked for in: 8 degrees apart.
-constexpr std::size_t kDirections = 600;
+// Directions that bounding planes are looked for in: 4 degrees apart, since a side of the image and
+// another plane may be ten apart.
+constexpr std::size_t kDirections = 2400;
 // Points that planes are fitted to, where the sides of an image have some hundred each, and that
 // they are looked for with.
 constexpr std::size_t kPoints = 8192;
@@ -38,7 +39,7 @@ constexpr double kCut = 1.0 / 3.0;
 constexpr double kLongest = 8.0;
 // Of the planes that cut, those with most points; of the places that sides of an image meet
 // in, those that most planes and points meet in.
-constexpr std::size_t kMostPlanes = 10;
+constexpr std::size_t kMostPlanes = 20;
 constexpr std::size_t kMostApexes = 8;
 // Volume that the normals of three planes span: with less, they do not say where they meet.
 constexpr double kLeastVolume = 0.1;
@@ -198,7 +199,7 @@ class BoundFinder {
  private:
   // Those that more points are near the bounding plane of than of all around.
   std::vector<Vector> startDirections() {
-    constexpr double kAround = 0.985;  // 10 degrees: the next ones
+    constexpr double kAround = 0.996;  // 5 degrees: the next ones
     const std::vector<Vector> directions = directionsAllAround();
     std::vector<std::size_t> near(directions.size());
     for (std::size_t d = 0; d < directions.size(); ++d) {
@@ -237,7 +238,7 @@ class BoundFinder {
       return -points.nearness(reach);
     };
     // As far as the next start at first, then by what moves as much of the cloud.
-    const double step = 0.08 * std::min(1.0, reach / coarse_);
+    const double step = 0.04 * std::min(1.0, reach / coarse_);
     std::vector<double> by{0.0, 0.0};
     minimize(cost, {step, step}, kEvaluations, by);
     bound.normal = turned(by);
