@@ -64,7 +64,7 @@ float chanceDeviation(int k);
 /// at edges and in noise as deep as they spread, and no single ring or scan line.
 template <typename Real>
 bool isPieceOfSurface(Real least, Real middle, Real most) {
-  // Noise as deep as a quarter of the radius, and lines three and a half times as far apart as the
+  // Noise as deep as a ninth of the radius, and lines three and a half times as far apart as the
   // points on them, are as much.
   constexpr auto kFlat = static_cast<Real>(0.05);
   constexpr auto kWide = static_cast<Real>(0.08);

@@ -20,7 +20,7 @@ namespace {
 
 using Position = std::array<double, 3>;
 
-// Of m weights the mean logarithm is log(m) / rounds below the best at most: .03.
+// Plain updates of m weights leave the mean logarithm log(m) / rounds below the best at most: .03.
 constexpr int kRounds = 200;
 // By then weights of places without a sensor have fallen by orders of magnitude.
 constexpr int kRoundsBeforePruning = 30;

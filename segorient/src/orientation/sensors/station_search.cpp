@@ -45,8 +45,7 @@ std::vector<Place> lawsAt(const Position& position) {
 }
 
 std::vector<Position> shells(const Position& middle, double extent) {
-  constexpr std::size_t kDirections =
-      90;  // 24 degrees apart: less than a valley is wide from there
+  constexpr std::size_t kDirections = 90;  // 20 degrees apart
   std::vector<Position> out;
   for (const double radius : {0.4, 0.6, 0.8, 1.1, 1.5, 2.1}) {
     for (std::size_t k = 0; k < kDirections; ++k) {

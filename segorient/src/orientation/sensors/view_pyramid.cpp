@@ -39,7 +39,7 @@ constexpr double kCut = 1.0 / 3.0;
 constexpr double kLongest = 8.0;
 // Of the planes that cut, those with most points; of the places that sides of an image meet
 // in, those that most planes and points meet in.
-constexpr std::size_t kMostPlanes = 20;
+constexpr std::size_t kMostPlanes = 10;
 constexpr std::size_t kMostApexes = 8;
 // Volume that the normals of three planes span: with less, they do not say where they meet.
 constexpr double kLeastVolume = 0.1;
