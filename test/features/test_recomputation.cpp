@@ -216,7 +216,7 @@ TEST_P(AnyRule, BadInputChangesNothing) {
   EXPECT_EQ(s.normals, normals);
   // Missing normals are no obstacle.
   Segmented gaps = segmentedCube(6000, 8, 0.F);
-  for (std::size_t i = 0; i < 4 * 6000; i += 40) {
+  for (std::size_t i = 0; i < std::size_t{4} * 6000; i += 40) {
     std::fill_n(&gaps.normals[i], 4, std::numeric_limits<float>::quiet_NaN());
   }
   EXPECT_GT(gaps.recompute(options, 1).recomputed, 100U);

@@ -143,8 +143,9 @@ inline Scan viewFrom(const Vector& eye, double heading, const Room& room = {}) {
   const Vector forward{std::cos(heading), std::sin(heading), 0.0};
   const Vector right{std::sin(heading), -std::cos(heading), 0.0};
   for (std::size_t i = 0; i < kWidth * kHeight; ++i) {
+    const std::size_t row = i / kWidth;
     const double u = (static_cast<double>(i % kWidth) - 60.0) / 100.0;
-    const double v = (static_cast<double>(i / kWidth) - 45.0) / 100.0;
+    const double v = (static_cast<double>(row) - 45.0) / 100.0;
     if (i % 50 == 7) {
       scan.addNothing();
     } else {

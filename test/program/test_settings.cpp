@@ -139,8 +139,9 @@ std::vector<float> someCloud() {
     for (const float v : {flat * std::cos(turn), flat * std::sin(turn), r * z}) xyz.push_back(v);
   }
   for (int i = 0; i < 900; ++i) {
+    const int row = i / 30;
     const float u = static_cast<float>(i % 30) / 15.F - 1.F;
-    const float v = static_cast<float>(i / 30) / 15.F - 1.F;
+    const float v = static_cast<float>(row) / 15.F - 1.F;
     const float w = 0.005F * std::sin(53.F * static_cast<float>(i));
     for (const float c : {u + 1.5F, v, w}) xyz.push_back(c);
     for (const float c : {u + 1.5F, -1.F + w, v + 1.F}) xyz.push_back(c);
@@ -211,7 +212,8 @@ TEST(Settings, AnglesOfSegmentsAreNotNamed) {
 TEST(Settings, TheClassesWarn) {
   auto cloud = pcl::make_shared<pcl::PointCloud<pcl::PointXYZ>>();
   for (int i = 0; i < 100; ++i) {
-    cloud->emplace_back(static_cast<float>(i % 10), static_cast<float>(i / 10), 0.F);
+    const int row = i / 10;
+    cloud->emplace_back(static_cast<float>(i % 10), static_cast<float>(row), 0.F);
   }
   OrientedNormalEstimation<pcl::PointXYZ, pcl::Normal> estimation;
   estimation.setInputCloud(cloud);

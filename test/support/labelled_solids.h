@@ -167,6 +167,7 @@ inline LabelledCloud sample(const std::string& name, const std::vector<Face>& fa
   LabelledCloud cloud;
   cloud.name = name;
   std::vector<double> areas;
+  areas.reserve(faces.size());
   for (const Face& f : faces) areas.push_back(f.area);
   for (const double a : areas) cloud.area += a;
   cloud.spacing = std::sqrt(cloud.area / static_cast<double>(n));

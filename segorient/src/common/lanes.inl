@@ -77,6 +77,8 @@ inline Lanes squareRoot(Lanes a) {
 #endif
 }
 
+// Operators cannot stand in parentheses.
+// NOLINTBEGIN(bugprone-macro-parentheses)
 #define SEGORIENT_TWICE(result, op)                           \
   inline result operator op(const Twice& a, const Twice& b) { \
     return {a.first op b.first, a.second op b.second};        \
@@ -94,6 +96,7 @@ SEGORIENT_TWICE(TwiceMask, >=)
 SEGORIENT_TWICE(TwiceMask, ==)
 SEGORIENT_TWICE(TwiceMask, !=)
 #undef SEGORIENT_TWICE
+// NOLINTEND(bugprone-macro-parentheses)
 inline Twice operator+(float a, const Twice& b) {
   return {a + b.first, a + b.second};
 }

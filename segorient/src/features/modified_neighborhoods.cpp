@@ -31,6 +31,7 @@ std::vector<SymmetricEigen3> referenceNormals(const RecomputationScene& scene) {
     sums[static_cast<std::size_t>(label)].add(n);
   }
   std::vector<SymmetricEigen3> result;
+  result.reserve(sums.size());
   for (const SymmetricMatrix3& m : sums) result.push_back(symmetricEigen(m));
   return result;
 }

@@ -30,7 +30,8 @@ inline void putPairs(std::uint64_t low, std::uint64_t high, unsigned int mask, v
   high >>= 32U * ((~mask >> 2U) & 1U);
   char* const at = static_cast<char*>(out);
   copyBytes(at, &low, sizeof(low));
-  copyBytes(at + 4 * ((mask & 1U) + ((mask >> 1U) & 1U)), &high, sizeof(high));
+  const std::size_t first = (mask & 1U) + ((mask >> 1U) & 1U);
+  copyBytes(at + 4 * first, &high, sizeof(high));
 }
 inline std::size_t lanesIn(unsigned int mask) {
   return (0x4332322132212110ULL >> (4 * mask)) & 15U;

@@ -22,7 +22,7 @@ constexpr std::size_t kLeastWitnesses = 3;
 /// from them, so that twice as far there are normals that an edge has no part in.
 constexpr int kReach = 24;
 /// The neighbours' rows and the point's own one.
-constexpr std::size_t kMostAround = (kReach + 1) * (kReach + 1);
+constexpr std::size_t kMostAround = std::size_t{kReach + 1} * (kReach + 1);
 /// 80 degrees. The normal of a point right at an edge may lean far over; near a right angle to the
 /// reference normal its sign would be arbitrary.
 constexpr double kMostLean = 1.3962634;

@@ -256,7 +256,7 @@ JoinedTiles TileJoiner::join(const JoinOptions& options) {
   field.reliable = patches.reliable.data();
   field.residual =
       options.traits.level > 0.F ? options.traits.level_residual : options.traits.residual;
-  std::vector<BorderVote> votes = detail::gatherVotes(std::move(i.votes), std::move(i.piece_ties));
+  std::vector<BorderVote> votes = detail::gatherVotes(std::move(i.votes), i.piece_ties);
   // A border is near any point of one of its pieces.
   std::vector<pcl::index_t> some_point(i.piece_sizes.size(), 0);
   for (std::size_t p = patches.cloud.size(); p-- > 0;) {

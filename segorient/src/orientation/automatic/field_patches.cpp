@@ -80,7 +80,9 @@ std::vector<std::uint8_t> takeBetterPatches(const FieldSolver& solver, const Eve
     double area = 0.0;
     for (const std::uint32_t c : patch) {
       area += static_cast<double>(cells.areas[c]);
-      for (std::size_t a = 0; a < 3; ++a) change[4 * c + a] = other[4 * c + a] - normals[4 * c + a];
+      for (std::size_t at = 4 * std::size_t{c}, end = at + 3; at < end; ++at) {
+        change[at] = other[at] - normals[at];
+      }
     }
     const Rows near = cellsAround(cells.points(), patch);
     const std::vector<float> means = solver.meansNear(change, patch, near);

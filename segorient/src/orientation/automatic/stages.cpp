@@ -32,7 +32,8 @@ constexpr int kDenoisingNeighbors = 48;
 void findNeighbors(PreparedCloud& cloud, const PipelineOptions& options, const SheetRecord* record,
                    std::vector<float>& smoothed, Neighborhoods& of_smoothed, AutoStages& out) {
   out.k = options.k > 0 ? options.k : kSheetNeighbors;
-  const auto entries = static_cast<int>(std::min<std::size_t>(cloud.size(), out.k + 1U));
+  const auto entries =
+      static_cast<int>(std::min(cloud.size(), static_cast<std::size_t>(out.k) + 1));
   const bool known = cloud.size() > 0 && cloud.neighborhoods().size() == cloud.size() &&
                      cloud.neighborhoods().k() == entries;
   out.k = known ? entries - 1 : cloud.findNeighbors(out.k, false);

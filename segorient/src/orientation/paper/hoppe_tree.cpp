@@ -47,7 +47,7 @@ class SignedSets {
     int rest = total;
     while (i != root) {  // shortens the path
       const auto next = static_cast<std::size_t>(parent_[i]);
-      const int own = sign_[i];
+      const std::int8_t own = sign_[i];
       parent_[i] = static_cast<pcl::index_t>(root);
       sign_[i] = static_cast<std::int8_t>(rest);
       rest *= own;
@@ -104,7 +104,8 @@ void pointHighestUp(const PointView& points, const PointView& normals, Orientati
   }
   for (std::size_t i = 0; i < points.size; ++i) {
     if (result.point_components[i] < 0) continue;
-    const int sign = result.components[static_cast<std::size_t>(result.point_components[i])].sign;
+    const std::int8_t sign =
+        result.components[static_cast<std::size_t>(result.point_components[i])].sign;
     result.point_signs[i] = static_cast<std::int8_t>(sign * result.point_signs[i]);
   }
 }

@@ -79,12 +79,13 @@ void setDipole(const PointView& points, const PointView& normals,
 // neither matters nor can be told.
 constexpr std::size_t kMostNested = 64;
 constexpr std::size_t kProbes = 24;  // points of the inner component
-constexpr std::size_t kSources =
-    4096;  // points of the outer one: 1 / 64 of the radius apart on a sphere
+// points of the outer one: 1 / 64 of the radius apart on a sphere
+constexpr std::size_t kSources = 4096;
 
 // Components by how many others' boxes contain theirs: outer ones first.
 std::vector<std::size_t> outerFirst(const std::vector<Box>& boxes) {
   std::vector<std::ptrdiff_t> depth;
+  depth.reserve(boxes.size());
   for (const Box& own : boxes) {
     depth.push_back(std::count_if(boxes.begin(), boxes.end(),
                                   [&](const Box& other) { return other.encloses(own); }));

@@ -40,7 +40,8 @@ Pixels samplePixels(const PointView& points, std::size_t width) {
     const float* p = points[i];
     out.points.emplace_back(static_cast<double>(p[0]), static_cast<double>(p[1]),
                             static_cast<double>(p[2]));
-    out.places.emplace_back(static_cast<double>(i % width), static_cast<double>(i / width));
+    const std::size_t line = i / width;
+    out.places.emplace_back(static_cast<double>(i % width), static_cast<double>(line));
   }
   return out;
 }
@@ -70,7 +71,7 @@ bool solve(const Pixels& pixels, Projection& out) {
   for (std::size_t i = 0; i < pixels.points.size(); ++i) {
     Eigen::Vector4d p;
     p << pixels.points[i], 1.0;
-    for (int axis = 0; axis < 2; ++axis) {
+    for (Eigen::Index axis = 0; axis < 2; ++axis) {
       Eigen::Matrix<double, 12, 1> row = Eigen::Matrix<double, 12, 1>::Zero();
       row.segment<4>(4 * axis) = p;
       row.segment<4>(8) = -pixels.places[i][axis] * p;
@@ -82,7 +83,7 @@ bool solve(const Pixels& pixels, Projection& out) {
   const auto& values = solver.eigenvalues();
   const double least = std::max(values[0], 1e-14 * values[11]);
   if (!(values[1] > kSecond * least)) return false;
-  for (int r = 0; r < 3; ++r)
+  for (Eigen::Index r = 0; r < 3; ++r)
     out.row(r) = solver.eigenvectors().col(0).segment<4>(4 * r).transpose();
   return true;
 }

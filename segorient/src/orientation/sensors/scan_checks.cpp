@@ -251,6 +251,7 @@ std::vector<ScanPairs> findContraryPairs(const PointView& points, const Neighbor
     }
   }
   std::vector<ScanPairs> out;
+  out.reserve(counts.size());
   for (const auto& [ends, count] : counts) {
     out.push_back({ends.first, ends.second, count.first, count.second});
   }

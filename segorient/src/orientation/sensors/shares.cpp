@@ -44,6 +44,7 @@ PieceOrigins strongestPlaces(const DensityPatches& patches,
                              const std::vector<std::array<double, 3>>& places,
                              const std::vector<std::vector<float>>& rows) {
   std::vector<std::vector<float>> heights;
+  heights.reserve(places.size());
   for (const std::array<double, 3>& place : places) heights.push_back(patches.heightsOver(place));
   PieceOrigins out;
   out.place.resize(patches.size());

@@ -67,8 +67,9 @@ std::vector<float> FieldSolver::meansNear(const std::vector<float>& normals,
                                           const std::vector<std::uint32_t>& near) const {
   std::vector<float> dipoles(normals.size(), 0.F);
   for (const std::uint32_t p : rows) {
-    for (std::size_t a = 0; a < 3; ++a) dipoles[4 * p + a] = areas_[p] * normals[4 * p + a];
-    dipoles[4 * p + 3] = areas_[p];
+    const std::size_t at = 4 * std::size_t{p};
+    for (std::size_t a = 0; a < 3; ++a) dipoles[at + a] = areas_[p] * normals[at + a];
+    dipoles[at + 3] = areas_[p];
   }
   std::vector<float> places;
   for (const std::uint32_t p : near) places.insert(places.end(), points_[p], points_[p] + 4);

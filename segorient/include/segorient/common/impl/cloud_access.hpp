@@ -20,9 +20,9 @@ class CloudPoints {
   /// \param cloud must outlive this object
   explicit CloudPoints(const pcl::PointCloud<PointT>& cloud) { assign(cloud); }
   CloudPoints(const CloudPoints&) = delete;  // the view may be of our own copy
-  CloudPoints(CloudPoints&&) = default;
+  CloudPoints(CloudPoints&&) noexcept = default;
   CloudPoints& operator=(const CloudPoints&) = delete;
-  CloudPoints& operator=(CloudPoints&&) = default;
+  CloudPoints& operator=(CloudPoints&&) noexcept = default;
 
   void assign(const pcl::PointCloud<PointT>& cloud) {
     view_ = PointView{};
@@ -82,9 +82,9 @@ class CloudNormals {
   /// \param cloud must outlive this object
   explicit CloudNormals(const pcl::PointCloud<PointNT>& cloud) { assign(cloud); }
   CloudNormals(const CloudNormals&) = delete;  // the view may be of our own copy
-  CloudNormals(CloudNormals&&) = default;
+  CloudNormals(CloudNormals&&) noexcept = default;
   CloudNormals& operator=(const CloudNormals&) = delete;
-  CloudNormals& operator=(CloudNormals&&) = default;
+  CloudNormals& operator=(CloudNormals&&) noexcept = default;
 
   void assign(const pcl::PointCloud<PointNT>& cloud) {
     view_ = NormalView{};
