@@ -204,7 +204,7 @@ std::uint8_t lasType(const Field& f) {
 }
 
 void putText(const std::string& text, std::size_t most, std::uint8_t* to) {
-  std::memcpy(to, text.data(), std::min(text.size(), most));
+  std::copy_n(text.data(), std::min(text.size(), most), to);
 }
 
 }  // namespace

@@ -33,7 +33,7 @@ Color shade(std::uint32_t rgb, const Vec& normal) {
   static const Vec kLight = normalized({-0.35F, -0.45F, 1.F});
   const float light = kAmbient + (1.F - kAmbient) * std::abs(dot(normal, kLight));
   const auto channel = [&](unsigned shift) {
-    return static_cast<std::uint8_t>(static_cast<float>(rgb >> shift & 255U) * light + 0.5F);
+    return static_cast<std::uint8_t>(std::lround(static_cast<float>(rgb >> shift & 255U) * light));
   };
   return {channel(16), channel(8), channel(0)};
 }

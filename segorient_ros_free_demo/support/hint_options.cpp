@@ -111,6 +111,7 @@ TrajectoryJoin addViewpoints(const Trajectory& trajectory, const std::string& pa
 
 CloudTable HintOptions::read(const std::vector<std::string>& paths, bool quiet) const {
   std::vector<CloudTable> clouds;
+  clouds.reserve(paths.size());
   for (const std::string& path : paths) clouds.push_back(readUsableCloud(path));
   const std::string name = paths.size() == 1 ? paths[0] : paths[0] + " and others";
   CloudTable table = paths.size() == 1

@@ -101,7 +101,7 @@ inline GolombCode GolombCode::best(const std::vector<std::uint32_t>& numbers, un
   std::uint64_t least = ~std::uint64_t{0};
   for (unsigned bits = 0; bits <= most; ++bits) {
     std::uint64_t sum = 0;
-    for (const std::uint32_t n : numbers) sum += 2 * bitsOf((n >> bits) + 1);
+    for (const std::uint32_t n : numbers) sum += std::uint64_t{2} * bitsOf((n >> bits) + 1);
     sum += numbers.size() * bits;
     if (sum < least) best = GolombCode(bits);
     least = std::min(least, sum);

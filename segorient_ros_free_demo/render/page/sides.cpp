@@ -213,7 +213,7 @@ class Counting {
     return sum;
   }
   Side judgeOne(std::size_t i, const std::vector<Sights>& around) const {
-    if (!std::isfinite(normals_[3 * rows_[i]])) return Side::Open;
+    if (!std::isfinite(normals_[3 * std::size_t{rows_[i]}])) return Side::Open;
     const Sum sum = sumAround(i, [&](std::size_t at) { return around[at]; });
     const auto [front, back, points] = sum.sights;
     const int more = std::max(front, back);
