@@ -52,6 +52,20 @@ inline double hit(const Box& box, const Vector& from, const Vector& along, Vecto
   return nearest;
 }
 
+// The same of several boxes.
+inline double hit(const std::vector<Box>& boxes, const Vector& from, const Vector& along,
+                  Vector& normal) {
+  double nearest = std::numeric_limits<double>::infinity();
+  for (const Box& box : boxes) {
+    Vector n{};
+    const double t = hit(box, from, along, n);
+    if (t >= nearest) continue;
+    nearest = t;
+    normal = n;
+  }
+  return nearest;
+}
+
 // What a scanner of equal angles sees; noise along the ray.
 inline void scan(const std::vector<Box>& boxes, const Vector& from, int lines, double noise,
                  unsigned seed, Scans& out) {
@@ -65,15 +79,8 @@ inline void scan(const std::vector<Box>& boxes, const Vector& from, int lines, d
       const double azimuth = M_PI * (z + 0.31) / lines;
       const Vector along{std::cos(elevation) * std::cos(azimuth),
                          std::cos(elevation) * std::sin(azimuth), std::sin(elevation)};
-      double nearest = std::numeric_limits<double>::infinity();
       Vector normal{};
-      for (const Box& box : boxes) {
-        Vector n{};
-        const double t = hit(box, from, along, n);
-        if (t >= nearest) continue;
-        nearest = t;
-        normal = n;
-      }
+      const double nearest = hit(boxes, from, along, normal);
       if (!std::isfinite(nearest)) continue;
       const double t = nearest + (noise > 0.0 ? gauss(rng) : 0.0);
       for (std::size_t a = 0; a < 3; ++a) {

@@ -14,11 +14,11 @@
 #include <random>
 #include <vector>
 
+#include "common/directions.h"
+
 namespace segorient {
 
 using Vector = std::array<double, 3>;
-
-constexpr double kPi = 3.14159265358979323846;
 
 // A room 6 x 4 x 3 with a cupboard, seen from inside.
 struct Room {

@@ -116,7 +116,6 @@ std::vector<float> city(float height) {
 // Vertices by latitude and longitude have the density of a scan from within; but no tripod left a
 // hole, and nothing hides anything.
 TEST(Shadows, VerticesByLatitudeAreNoScanFromWithin) {
-  constexpr double kPi = 3.14159265358979;
   constexpr int kAround = 160;
   constexpr int kRings = 60;
   for (const double height : {2.0, 3.0, 4.5}) {

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "scanned_boxes.h"
+#include "sensor_scans.h"
 
 namespace segorient::test {
 namespace {
@@ -26,18 +27,17 @@ std::vector<float> seenAtStops(const Street& street, const std::vector<Vector>& 
   constexpr int kBeams = 32;
   constexpr int kAzimuths = 600;
   constexpr double kReach = 60.0;
-  const double degree = std::acos(-1.0) / 180.0;
+  constexpr double kDegree = kPi / 180.0;
   std::vector<float> out;
   for (std::size_t s = 0; s < stops.size(); ++s) {
     for (int b = 0; b < kBeams; ++b) {
-      const double elevation = degree * (-25.0 + 40.0 * b / (kBeams - 1));
+      const double elevation = kDegree * (-25.0 + 40.0 * b / (kBeams - 1));
       for (int z = 0; z < kAzimuths; ++z) {
-        const double azimuth = degree * (0.05 + 0.1 * static_cast<double>(s) + 0.6 * z);
+        const double azimuth = kDegree * (0.05 + 0.1 * static_cast<double>(s) + 0.6 * z);
         const Vector ray{std::cos(elevation) * std::cos(azimuth),
                          std::cos(elevation) * std::sin(azimuth), std::sin(elevation)};
-        double t = std::numeric_limits<double>::infinity();
         Vector normal{};
-        for (const Box& box : street.boxes) t = std::min(t, hit(box, stops[s], ray, normal));
+        const double t = hit(street.boxes, stops[s], ray, normal);
         if (!(t < kReach)) continue;
         for (std::size_t a = 0; a < 3; ++a) {
           out.push_back(static_cast<float>(stops[s][a] + t * ray[a]));
@@ -60,11 +60,7 @@ TEST_P(Stops, AreALineRatherThanStationsElsewhere) {
   for (const FoundSensor& sensor : report.sensors) {
     EXPECT_TRUE(sensor.sure);
     double nearest = std::numeric_limits<double>::infinity();
-    for (const Vector& stop : stops) {
-      nearest = std::min(nearest, std::hypot(static_cast<double>(sensor.position[0]) - stop[0],
-                                             static_cast<double>(sensor.position[1]) - stop[1],
-                                             static_cast<double>(sensor.position[2]) - stop[2]));
-    }
+    for (const Vector& stop : stops) nearest = std::min(nearest, distanceTo(sensor, stop));
     EXPECT_LT(nearest, kBetween) << report.why;
   }
 }
