@@ -174,6 +174,25 @@ TEST(HeightField, WhatStandsUprightIsNone) {
   EXPECT_FALSE(findSensors({rows.data(), 3, rows.size() / 3}).faces_up);
 }
 
+// A street as those see it who drive through: from above, walls would have few points.
+TEST(HeightField, WhatIsBetweenWallsIsNone) {
+  std::mt19937 random(13);
+  std::uniform_real_distribution<float> unit(0.F, 1.F);
+  std::vector<float> rows;
+  for (std::size_t i = 0; i < 30000; ++i) {
+    const float x = 40.F * unit(random);
+    const float across = 26.F * unit(random) - 8.F;  // up a wall, over the ground, up the other one
+    const float y = std::clamp(across, 0.F, 10.F);
+    rows.insert(rows.end(), {x, y, std::fabs(across - y)});
+  }
+  EXPECT_FALSE(findSensors({rows.data(), 3, rows.size() / 3}).faces_up);
+  std::vector<float> ground;
+  for (std::size_t i = 0; i < rows.size(); i += 3) {
+    if (rows[i + 2] < 0.5F) ground.insert(ground.end(), &rows[i], &rows[i] + 3);
+  }
+  EXPECT_TRUE(findSensors({ground.data(), 3, ground.size() / 3}).faces_up);
+}
+
 // Points under trees lie behind others, which those who fly above see all the same. A place that
 // somebody gives is to be doubted for that, one that was found by layers has been.
 TEST(HeightField, WhoWasFoundAboveMaySeeThroughTrees) {

@@ -52,12 +52,57 @@ TEST(KnownSensors, MixedUpPosesAreFoundAndLeftToTheSurface) {
   EXPECT_GE(shareOutward(mixed.normals, around.scans.normals), 0.998);
   for (const KnownSensor& s : mixed.report.known_sensors) {
     EXPECT_TRUE(s.used || std::fabs(s.position[0]) > 3.F);
+    EXPECT_EQ(s.confirmed, s.used);
     EXPECT_EQ(s.seen, s.used ? s.points : 0U);
   }
   const auto refused =
       std::count_if(mixed.report.known_sensors.begin(), mixed.report.known_sensors.end(),
                     [](const KnownSensor& s) { return !s.used; });
   EXPECT_EQ(refused, 2);
+}
+
+// Where most poses are refused, none is followed that nothing confirms.
+TEST(KnownSensors, PosesThatAreAllMixedUpTurnNothing) {
+  const Around around;
+  for (const std::array<int, 4>& poses :
+       {std::array<int, 4>{1, 2, 3, 0}, std::array<int, 4>{3, 0, 1, 2}}) {
+    const OrientedCloud mixed = orient(around.scans.xyz, around.withPoses(poses));
+    EXPECT_GE(shareOutward(mixed.normals, around.scans.normals), 0.998);
+    for (const KnownSensor& s : mixed.report.known_sensors) EXPECT_FALSE(s.used) << s.position[0];
+  }
+}
+
+// A scanner of one upright plane that goes along a passage: single profiles have no density.
+TEST(KnownSensors, ProfilesOfFewPointsAreLookedAtTogether) {
+  const std::vector<Box> passage{{{-1, -2, -1.6}, {21, 2, 2}},
+                                 {{6, 0.8, -1.6}, {7, 1.6, 0.2}},
+                                 {{13, -1.7, -1.6}, {14.5, -0.9, 0.6}}};
+  std::mt19937 random(3);
+  std::normal_distribution<double> noise(0.0, 0.01);
+  Scans scans;
+  constexpr int kRays = 260;
+  for (int pose = 0; pose < 250; ++pose) {
+    const Vector from{0.5 + 0.08 * pose, 0.1, 0.0};
+    for (int ray = 0; ray < kRays; ++ray) {
+      const double angle = 2.0 * M_PI * (ray + 0.3) / kRays;
+      const Vector along{1e-6, std::cos(angle), std::sin(angle)};
+      Vector normal{};
+      const double t = hit(passage, from, along, normal) + noise(random);
+      for (std::size_t a = 0; a < 3; ++a) {
+        scans.xyz.push_back(static_cast<float>(from[a] + t * along[a]));
+        scans.normals.push_back(static_cast<float>(normal[a]));
+        scans.sensors.push_back(static_cast<float>(from[a]));
+      }
+      scans.xyz.push_back(0.F);
+      scans.normals.push_back(0.F);
+      scans.scan.push_back(pose);
+    }
+  }
+  const OrientedCloud cloud = orient(scans.xyz, eachItsOwn(scans));
+  EXPECT_GE(shareOutward(cloud.normals, scans.normals), 0.998);
+  ASSERT_EQ(cloud.report.known_sensors.size(), 1U);
+  EXPECT_TRUE(cloud.report.known_sensors[0].moving);
+  EXPECT_TRUE(cloud.report.known_sensors[0].used);
 }
 
 TEST(KnownSensors, AViewpointInsideASolidChangesNothingAndIsReported) {

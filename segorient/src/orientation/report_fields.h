@@ -124,6 +124,7 @@ void fieldsOf(const KnownSensor& s, const Origin& origin, Field&& field) {
   field("used", s.used);
   field("moving", s.moving);
   field("scan", s.scan);
+  field("confirmed", s.confirmed);
   field("hidden", s.hidden);
   field("contrary", s.contrary);
   field("density", s.density);

@@ -27,6 +27,9 @@ struct KnownSensor {
   /// it.
   bool used = true;
   bool moving = false;  ///< many places together
+  /// Its density shows that it was there, or what it sees is seen from the same side by others of
+  /// which that is shown, and so on.
+  bool confirmed = false;
   /// The scan that its points are of, as OrientationHints::scans numbers them; -1 = unknown, or of
   /// several.
   std::int32_t scan = -1;

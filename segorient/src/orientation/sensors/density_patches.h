@@ -32,7 +32,13 @@ struct DensityPatches {
   /// Appends a piece, without its sparsity.
   void add(const float* center, const float* normal, float density);
 
-  /// How far a place is in front of each piece's plane; below 0 behind it.
+  /// How far a point is in front of a piece's plane; below 0 behind it.
+  float heightOf(const float* point, std::size_t piece) const {
+    return (point[0] - x[piece]) * nx[piece] + (point[1] - y[piece]) * ny[piece] +
+           (point[2] - z[piece]) * nz[piece];
+  }
+
+  /// The same of a place over each of them.
   std::vector<float> heightsOver(const std::array<double, 3>& place) const;
 
   /// A place's image across the plane of the nearest piece.

@@ -21,7 +21,7 @@ namespace {
 
 bool isConfirmed(const KnownSensor& scan) {
   // Places with few points each are not looked at one by one.
-  return scan.used && (scan.moving || scan.density < kConfirmed);
+  return scan.used && (scan.moving || scan.confirmed || scan.density < kConfirmed);
 }
 
 bool hasPlace(const std::vector<float>& places, std::size_t row) {
@@ -63,11 +63,16 @@ std::optional<OrientationHints> completePlaces(const OrientationHints& given,
       ++elsewhere[at(seen.sensor_of[i])];
     }
   }
+  const auto isElsewhere = [&](std::size_t s) { return 2 * elsewhere[s] > scans[s].points; };
+  std::size_t refuting = 0;
+  for (std::size_t s = 0; s < scans.size(); ++s) {
+    if (scans[s].confirmed && isElsewhere(s)) refuting += scans[s].points;
+  }
+  if (2 * refuting > cloud.size()) return std::nullopt;
   const bool mixed_up =
       std::any_of(scans.begin(), scans.end(), [](const KnownSensor& s) { return !s.used; });
   for (std::size_t s = 0; s < scans.size(); ++s) {
-    if (scans[s].used && (mixed_up || !isConfirmed(scans[s])) &&
-        2 * elsewhere[s] > scans[s].points) {
+    if (scans[s].used && (mixed_up || !isConfirmed(scans[s])) && isElsewhere(s)) {
       scans[s].used = false;
     }
   }

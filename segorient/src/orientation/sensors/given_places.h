@@ -23,6 +23,7 @@ bool leavesDoubt(const std::vector<KnownSensor>& scans, const PreparedCloud& clo
 /// have none take it, and all rows of scans that are not used, or that it contradicts. It may
 /// contradict a scan that nothing confirms, and any once one is not used, as poses that were mixed
 /// up are wrong together. It does if most of the scan's points were seen from another direction.
+/// What contradicts confirmed scans of most points takes no place.
 /// \param given viewpoints by row \param found the same, of sensors that are sure
 /// \param seen by the sensors that were given: both members are filled
 /// \param scans the sensors; what is contradicted is no longer used

@@ -12,6 +12,7 @@
 
 #include "common/dot.h"
 #include "common/every_nth.h"
+#include "common/median.h"
 
 namespace segorient::detail {
 namespace {
@@ -30,6 +31,11 @@ constexpr float kMostlyInner = 2.F / 3.F;
 // rooms and woods .2 and more.
 constexpr float kApart = 1.5F;
 constexpr float kFewLayered = 0.1F;
+// What is seen from above has much the same number of points in each column, however steep: woods
+// have .1 of them in columns of more than so many times the median, evenly sampled solids on the
+// ground up to .3, streets and rooms between their walls .5 and more.
+constexpr float kCrowded = 6.F;
+constexpr float kFewUpright = 0.4F;
 // Columns of two spacings hold four points of a surface above: one in fifty is empty.
 constexpr float kOver = 2.F;
 // Layers closer than that, in the neighbourhood of a flat piece: plates have them at .6 of the
@@ -82,6 +88,18 @@ float shareInner(const std::vector<std::uint64_t>& columns) {
   return static_cast<float>(inner) / static_cast<float>(columns.size());
 }
 
+// Share of the points in columns that hold many times what the median does.
+float shareCrowded(const std::vector<float>& sizes) {
+  const float most = kCrowded * median(sizes);
+  float all = 0.F;
+  float crowded = 0.F;
+  for (const float size : sizes) {
+    all += size;
+    if (size > most) crowded += size;
+  }
+  return crowded / all;
+}
+
 void measureColumns(const PointView& points, const Box& ground, float side, HeightField& out) {
   std::vector<std::pair<std::uint64_t, float>> heights;
   for (std::size_t i = 0; i < points.size; ++i) {
@@ -94,7 +112,7 @@ void measureColumns(const PointView& points, const Box& ground, float side, Heig
   }
   std::sort(heights.begin(), heights.end());
   std::vector<std::uint64_t> columns;
-  std::size_t filled = 0;
+  std::vector<float> filled;  // how many points they hold
   std::vector<std::uint64_t> layered;
   for (std::size_t begin = 0; begin < heights.size();) {
     const std::size_t end = endOfColumn(heights, begin);
@@ -104,15 +122,17 @@ void measureColumns(const PointView& points, const Box& ground, float side, Heig
     }
     columns.push_back(heights[begin].first);
     if (end - begin >= kFilled) {
-      ++filled;
+      filled.push_back(static_cast<float>(end - begin));
       if (gap > kApart * side) layered.push_back(heights[begin].first);
     }
     begin = end;
   }
-  if (filled == 0) return;
-  out.filled = static_cast<float>(filled) / static_cast<float>(columns.size());
+  if (filled.empty()) return;
+  const auto count = static_cast<float>(filled.size());
+  out.filled = count / static_cast<float>(columns.size());
   out.inner = shareInner(columns);
-  out.layered = static_cast<float>(countSquares(layered)) / static_cast<float>(filled);
+  out.layered = static_cast<float>(countSquares(layered)) / count;
+  out.upright = shareCrowded(filled);
 }
 
 // Of a point from the middle of a flat piece: along its plane, and across it.
@@ -178,7 +198,7 @@ float shareBacked(const PointView& points, const search::MedianHashIndex& index,
 
 bool HeightField::sure() const {
   return relief <= kMostRelief && filled >= kMostlyFilled && inner >= kMostlyInner &&
-         layered <= kFewLayered && backed <= kFewBacked;
+         layered <= kFewLayered && upright <= kFewUpright && backed <= kFewBacked;
 }
 
 bool looksUpAt(const std::array<float, 3>& place, const std::array<float, 3>& middle) {
@@ -222,7 +242,7 @@ HeightField measureHeightField(PreparedCloud& cloud, const DensityPatches& patch
   // Cheap things first: most clouds end here.
   if (out.relief > kMostRelief) return out;
   measureColumns(points, ground, kColumn * patches.spacing, out);
-  if (out.layered <= kFewLayered && out.inner >= kMostlyInner) {
+  if (out.layered <= kFewLayered && out.upright <= kFewUpright && out.inner >= kMostlyInner) {
     out.backed = shareBacked(points, cloud.index(), patches);
   }
   return out;

@@ -23,6 +23,7 @@ struct HeightField {
   float filled = 0.F;   ///< share of the columns that have some points and not just one or two
   float layered = 1.F;  ///< share of those that have two layers far apart, as their neighbours do
   float inner = 0.F;    ///< share of columns that have others on all sides
+  float upright = 1.F;  ///< share of points in columns that hold far more than others, as of walls
   float backed = 1.F;   ///< share of flat pieces with another layer close behind or before them
 
   /// Whether nearly all of it is one surface that faces up. An open sheet looks the same: that a

@@ -14,6 +14,7 @@
 #include "orientation/sensors/height_field.h"
 #include "orientation/sensors/moving_sensor.h"
 #include "orientation/sensors/occupancy.h"
+#include "orientation/sensors/places_of_points.h"
 #include "orientation/sensors/seen_within.h"
 #include "orientation/sensors/several_stations.h"
 #include "orientation/sensors/shadows.h"
@@ -23,6 +24,7 @@
 namespace segorient {
 
 using detail::DensityPatches;
+using detail::FramedPoints;
 using detail::toFloat;
 
 namespace {
@@ -61,17 +63,14 @@ std::vector<std::int32_t> nearestPieces(const PointView& points, const DensityPa
                            threads);
 }
 
-// For each point what is known of the nearest piece.
-void assignPlaces(const PointView& points, const DensityPatches& patches,
+// What the pieces tell of each point.
+void assignPlaces(const FramedPoints& cloud, const DensityPatches& patches,
                   const detail::PieceOrigins& origins, int threads, SensorReport& report) {
-  report.sensor_of = nearestPieces(points, patches, threads);
-  report.either_side.assign(points.size, 0);
-  for (std::size_t i = 0; i < points.size; ++i) {
-    std::int32_t& s = report.sensor_of[i];
-    if (s < 0) continue;
-    report.either_side[i] = origins.either_side[static_cast<std::size_t>(s)];
-    s = origins.place[static_cast<std::size_t>(s)];
-  }
+  std::vector<std::array<float, 3>> places;
+  for (const FoundSensor& sensor : report.sensors) places.push_back(sensor.position);
+  detail::PointPlaces found = detail::placesOfPoints(cloud, patches, origins, places, threads);
+  report.sensor_of = std::move(found.place);
+  report.either_side = std::move(found.either_side);
   for (const std::int32_t s : report.sensor_of) {
     if (s >= 0) ++report.sensors[static_cast<std::size_t>(s)].points;
   }
@@ -198,16 +197,16 @@ std::optional<detail::Track> trackInSight(const DensityPatches& patches,
   return settled;
 }
 
-void addTrack(const PointView& points, const DensityPatches& patches,
+void addTrack(const FramedPoints& cloud, const DensityPatches& patches,
               const detail::Occupancy& occupancy, const detail::Track& track, int threads,
               SensorReport& report) {
   addSensors(track.places, SensorKind::MOVING, kUp, track.cost / report.deviation, report);
-  assignPlaces(points, patches, detail::originsOf(patches, occupancy, track), threads, report);
+  assignPlaces(cloud, patches, detail::originsOf(patches, occupancy, track), threads, report);
   report.why = "places along a line explain the densities";
 }
 
 // Few places of a sensor on its way may pass for stations, elsewhere.
-bool addStationsOrTrack(const PointView& points, const DensityPatches& patches,
+bool addStationsOrTrack(const FramedPoints& cloud, const DensityPatches& patches,
                         const detail::Extent& extent, const detail::Occupancy& occupancy,
                         int threads, SensorReport& report) {
   const std::optional<detail::Stations> stations =
@@ -220,13 +219,13 @@ bool addStationsOrTrack(const PointView& points, const DensityPatches& patches,
     const std::optional<detail::Track> track =
         trackInSight(patches, extent, occupancy, report, threads);
     if (track && track->cost < (are_two ? kLessThanTwo : kLessThanMore) * stations->cost) {
-      addTrack(points, patches, occupancy, *track, threads, report);
+      addTrack(cloud, patches, occupancy, *track, threads, report);
       return true;
     }
   }
   const float ratio = stations->cost / report.deviation;
   addSensors(stations->positions, SensorKind::STATION, kUp, ratio, report);
-  assignPlaces(points, patches, detail::originsOf(patches, occupancy, *stations), threads, report);
+  assignPlaces(cloud, patches, detail::originsOf(patches, occupancy, *stations), threads, report);
   report.why = "several places explain the densities";
   return true;
 }
@@ -251,7 +250,7 @@ struct TurnedScene {
 };
 
 // Scanners that tilt turn about a level axis.
-void lookForTilted(PreparedCloud& cloud, const DensityPatches& patches,
+void lookForTilted(const FramedPoints& cloud, const DensityPatches& patches,
                    const detail::Extent& extent, const detail::Occupancy& occupancy, int threads,
                    SensorReport& report) {
   if (report.deviation < kVariesTilted * report.chance) return;
@@ -269,8 +268,7 @@ void lookForTilted(PreparedCloud& cloud, const DensityPatches& patches,
   if (ratio > (much ? kSureWhereMuch : kSureSeveral)) return;
   if (!areInside(best->positions, extent)) return;
   addSensors(best->positions, SensorKind::STATION, best->rays.axis, ratio, report);
-  assignPlaces(cloud.points(), patches, detail::originsOf(patches, occupancy, *best), threads,
-               report);
+  assignPlaces(cloud, patches, detail::originsOf(patches, occupancy, *best), threads, report);
   report.why = "several places of scanners that tilt explain the densities";
 }
 
@@ -280,29 +278,33 @@ void detail::findSeveral(PreparedCloud& cloud, const DensityPatches& patches, bo
                          int threads, SensorReport& report) {
   const detail::Extent extent = detail::extentOf(patches);
   const detail::Occupancy occupancy(cloud.points(), patches, extent);
-  if (addStationsOrTrack(cloud.points(), patches, extent, occupancy, threads, report)) return;
+  const FramedPoints framed{cloud.points(), cloud.points(), cloud.index()};
+  if (addStationsOrTrack(framed, patches, extent, occupancy, threads, report)) return;
   const std::optional<detail::Track> track =
       trackInSight(patches, extent, occupancy, report, threads);
   if (!track) lookFromAbove(cloud, patches, extent, report);
   // Tilting scanners that stand in a row look somewhat like a line.
   const bool is_clear = track && track->cost <= kSureSeveral * report.deviation;
   if (has_axes && report.sensors.empty() && !is_clear) {
-    lookForTilted(cloud, patches, extent, occupancy, threads, report);
+    lookForTilted(framed, patches, extent, occupancy, threads, report);
   }
   if (track && report.sensors.empty()) {
-    addTrack(cloud.points(), patches, occupancy, *track, threads, report);
+    addTrack(framed, patches, occupancy, *track, threads, report);
   }
   if (report.sensors.empty()) {
     lookWithin(cloud.points(), patches, extent, occupancy, threads, report);
   }
 }
 
-void detail::findSeveralTurned(SceneFrame frame, const PreparedCloud& cloud,
+void detail::findSeveralTurned(SceneFrame frame, PreparedCloud& cloud,
                                const DensityPatches& patches, int threads, SensorReport& report) {
   std::vector<TurnedScene> scenes;
   for (std::size_t up = 0; up < 3; ++up, frame = frame.rolled()) {
     scenes.emplace_back(frame, cloud.points(), patches, threads);
   }
+  const auto framed = [&cloud](const TurnedScene& scene) {
+    return FramedPoints{scene.points(), cloud.points(), cloud.index()};
+  };
   const auto keepBetter = [&report](const TurnedScene& scene, SensorReport found) {
     scene.frame.back(found);
     const bool is_best =
@@ -312,7 +314,7 @@ void detail::findSeveralTurned(SceneFrame frame, const PreparedCloud& cloud,
   const SensorReport nothing = report;
   for (const TurnedScene& scene : scenes) {
     SensorReport found = nothing;
-    if (addStationsOrTrack(scene.points(), scene.patches, scene.extent, scene.occupancy, threads,
+    if (addStationsOrTrack(framed(scene), scene.patches, scene.extent, scene.occupancy, threads,
                            found)) {
       keepBetter(scene, std::move(found));
     }
@@ -324,7 +326,7 @@ void detail::findSeveralTurned(SceneFrame frame, const PreparedCloud& cloud,
         trackInSight(scene.patches, scene.extent, scene.occupancy, report, threads);
     if (!track) continue;
     SensorReport found = nothing;
-    addTrack(scene.points(), scene.patches, scene.occupancy, *track, threads, found);
+    addTrack(framed(scene), scene.patches, scene.occupancy, *track, threads, found);
     keepBetter(scene, std::move(found));
   }
   if (!report.sensors.empty()) return;

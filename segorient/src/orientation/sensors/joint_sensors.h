@@ -21,7 +21,7 @@ void findSeveral(PreparedCloud& cloud, const DensityPatches& patches, bool has_a
 /// Several stations, or a scanner on its way, or the side, of a scene that lies otherwise in the
 /// cloud's coordinates. Which of the frame's axes is up its largest plane does not tell for sure,
 /// as that may be a wall: the one that explains most.
-void findSeveralTurned(SceneFrame frame, const PreparedCloud& cloud, const DensityPatches& patches,
+void findSeveralTurned(SceneFrame frame, PreparedCloud& cloud, const DensityPatches& patches,
                        int threads, SensorReport& report);
 
 }  // namespace segorient::detail

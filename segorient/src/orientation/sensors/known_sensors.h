@@ -76,9 +76,11 @@ struct KnownSensors : SeenPoints {
 /// Scans are points with one sensor. A scan is not followed if its points contradict its sensor
 /// (shadows deny it, a place beside it explains their density far better, or some lie behind others
 /// or a smooth sheet would have to face both ways, unless their density confirms that it was
-/// there). PointHints::toward is taken as it is; of what faces up, points that nothing is above are
-/// towards +z, see openToTheSky().
-/// \param spacing one a point: mean distance to the 6 nearest
+/// there, or where surfaces end allows it). Where some are not, poses may have been mixed up:
+/// unless most points are of scans that are confirmed, as KnownSensor has it, others are not
+/// followed either if nothing speaks for them. PointHints::toward is taken as it is; of what faces
+/// up, points that nothing is above are towards +z, see openToTheSky(). \param spacing one a point:
+/// mean distance to the 6 nearest
 KnownSensors findKnownSensors(const PointView& points, const Neighborhoods& neighborhoods,
                               const float* spacing, const PointHints& hints, int threads);
 
