@@ -32,6 +32,11 @@ namespace {
 // What may be left of the deviation. Several stations have more to adapt: true ones in rooms and
 // yards left .03 to .28, or nothing but chance; wrong ones around single bodies .33 and more.
 constexpr float kSureSeveral = 0.3F;
+// So many stations, where they explain enough. Who goes through a building with a scanner has more,
+// which can adapt to much: 13 true ones left .11, false ones of vertices by rows .16 and more.
+constexpr std::size_t kSome = 10;
+constexpr std::size_t kMany = 20;
+constexpr float kSureMany = 0.14F;
 // What a scanner has below it, it sees all of, or from 60 or 45 degrees on: sines.
 constexpr std::array<float, 3> kLowest{detail::kNoLowest, -0.866F, -0.707F};
 // Along a line inside the scene, with free beams: true ones left .05 to .40 in sight, others .47
@@ -113,17 +118,18 @@ void lookFromAbove(PreparedCloud& cloud, const DensityPatches& patches,
   report.why = "one uneven surface over the ground, as it is seen from above";
 }
 
-// Whether it does from most of them.
-bool lookLikeABody(const std::vector<std::array<double, 3>>& places, const DensityPatches& patches,
-                   const PointView& points, int threads) {
+// Whether most of them are in a body. What a sensor on its way did not see from one of its places
+// it saw from others: that surfaces go on behind others says nothing.
+bool areInABody(const std::vector<std::array<double, 3>>& places, const DensityPatches& patches,
+                const PointView& points, int threads) {
   constexpr std::size_t kLooks = 8;  // at some of them: most of so many are most of all
   const detail::FlatPoints flat(points, threads);
   const bool has_walls = patches.haveWalls();
   const std::size_t looks = std::min(kLooks, places.size());
   std::size_t like = 0;
   for (std::size_t k = 0; k < looks; ++k) {
-    like +=
-        detail::findShadows(flat, detail::toFloat(places[k]), threads).asOfABody(has_walls) ? 1 : 0;
+    const detail::Shadows seen = detail::findShadows(flat, detail::toFloat(places[k]), threads);
+    like += seen.hideNothing(has_walls) ? 1 : 0;
   }
   return 2 * like > looks;
 }
@@ -135,7 +141,7 @@ void lookWithin(const PointView& points, const DensityPatches& all, const detail
   const DensityPatches patches = all.thinned(kPieces);
   const detail::SeenWithin seen = detail::seenWithin(patches, occupancy, extent, threads);
   if (seen.directions.empty()) return;
-  if (lookLikeABody(seen.places, patches, points, threads)) return;
+  if (areInABody(seen.places, patches, points, threads)) return;
   const std::vector<std::int32_t> piece = nearestPieces(points, patches, threads);
   report.directions.assign(3 * points.size, 0.F);
   for (std::size_t i = 0; i < piece.size(); ++i) {
@@ -176,7 +182,7 @@ std::optional<detail::Stations> searchUprightStations(const DensityPatches& patc
     if (lowest != detail::kNoLowest && (enough || !patches.haveWalls())) break;
     const detail::Place rays{{}, kUp, detail::SamplingLaw::ANGLE_GRID, lowest};
     const std::optional<detail::Stations> found =
-        detail::searchStations(patches, occupancy, rays, threads);
+        detail::searchStations(patches, occupancy, rays, kSome, threads);
     // What one station does not see nobody tells of.
     const bool tells = found && (lowest == detail::kNoLowest || found->positions.size() > 1);
     if (tells && (!best || found->cost < best->cost)) best = found;
@@ -205,6 +211,15 @@ void addTrack(const FramedPoints& cloud, const DensityPatches& patches,
   report.why = "places along a line explain the densities";
 }
 
+void addStations(const FramedPoints& cloud, const DensityPatches& patches,
+                 const detail::Occupancy& occupancy, const detail::Stations& stations, int threads,
+                 SensorReport& report) {
+  const float ratio = stations.cost / report.deviation;
+  addSensors(stations.positions, SensorKind::STATION, stations.rays.axis, ratio, report);
+  assignPlaces(cloud, patches, detail::originsOf(patches, occupancy, stations), threads, report);
+  report.why = "several places explain the densities";
+}
+
 // Few places of a sensor on its way may pass for stations, elsewhere.
 bool addStationsOrTrack(const FramedPoints& cloud, const DensityPatches& patches,
                         const detail::Extent& extent, const detail::Occupancy& occupancy,
@@ -223,10 +238,19 @@ bool addStationsOrTrack(const FramedPoints& cloud, const DensityPatches& patches
       return true;
     }
   }
-  const float ratio = stations->cost / report.deviation;
-  addSensors(stations->positions, SensorKind::STATION, kUp, ratio, report);
-  assignPlaces(cloud, patches, detail::originsOf(patches, occupancy, *stations), threads, report);
-  report.why = "several places explain the densities";
+  addStations(cloud, patches, occupancy, *stations, threads, report);
+  return true;
+}
+
+bool addManyStations(const FramedPoints& cloud, const DensityPatches& patches,
+                     const detail::Extent& extent, const detail::Occupancy& occupancy, int threads,
+                     SensorReport& report) {
+  const detail::Place rays{{}, kUp, detail::SamplingLaw::ANGLE_GRID};
+  const std::optional<detail::Stations> stations =
+      detail::searchStations(patches, occupancy, rays, kMany, threads);
+  if (!stations || stations->cost > kSureMany * report.deviation) return false;
+  if (areOutside(stations->positions, extent)) return false;
+  addStations(cloud, patches, occupancy, *stations, threads, report);
   return true;
 }
 
@@ -259,7 +283,7 @@ void lookForTilted(const FramedPoints& cloud, const DensityPatches& patches,
     std::array<double, 3> axis{0.0, 0.0, 0.0};
     axis[a] = 1.0;
     const std::optional<detail::Stations> found = detail::searchStations(
-        patches, occupancy, {{}, axis, detail::SamplingLaw::ANGLE_GRID}, threads);
+        patches, occupancy, {{}, axis, detail::SamplingLaw::ANGLE_GRID}, kSome, threads);
     if (found && (!best || found->cost < best->cost)) best = found;
   }
   if (!best) return;
@@ -267,8 +291,7 @@ void lookForTilted(const FramedPoints& cloud, const DensityPatches& patches,
   const bool much = report.deviation >= kVariesMuch * report.chance;
   if (ratio > (much ? kSureWhereMuch : kSureSeveral)) return;
   if (!areInside(best->positions, extent)) return;
-  addSensors(best->positions, SensorKind::STATION, best->rays.axis, ratio, report);
-  assignPlaces(cloud, patches, detail::originsOf(patches, occupancy, *best), threads, report);
+  addStations(cloud, patches, occupancy, *best, threads, report);
   report.why = "several places of scanners that tilt explain the densities";
 }
 
@@ -282,6 +305,7 @@ void detail::findSeveral(PreparedCloud& cloud, const DensityPatches& patches, bo
   if (addStationsOrTrack(framed, patches, extent, occupancy, threads, report)) return;
   const std::optional<detail::Track> track =
       trackInSight(patches, extent, occupancy, report, threads);
+  if (!track && addManyStations(framed, patches, extent, occupancy, threads, report)) return;
   if (!track) lookFromAbove(cloud, patches, extent, report);
   // Tilting scanners that stand in a row look somewhat like a line.
   const bool is_clear = track && track->cost <= kSureSeveral * report.deviation;

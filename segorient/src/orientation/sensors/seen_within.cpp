@@ -25,8 +25,10 @@ constexpr double kSure = 3.0;
 // faces have points, .71.
 constexpr double kOneSided = 0.73;
 // Where all of it comes from one side the surface is convex: nothing in it hides anything, and a
-// body that was seen all around looks like that as well.
+// body that was seen all around looks like that as well. Unless places do not see most of it, as
+// behind the walls of a room.
 constexpr double kConvex = 0.995;
+constexpr double kMostHidden = 0.5;
 
 // What the same density everywhere loses against the densities there, as a mean logarithm: where
 // bodies touch two layers lie in one place, which is .06 at most, and chance .02 more. Scans that
@@ -131,6 +133,22 @@ Sides sidesOf(const DensityPatches& patches, const Explained& within) {
   return out;
 }
 
+// Share of the pieces that the places do not see.
+double shareHidden(const DensityPatches& patches, const Occupancy& occupancy,
+                   const Explained& within) {
+  std::vector<float> seen(patches.size());
+  double hidden = 0.0;
+  double all = 0.0;
+  for (std::size_t j = 0; j < within.mixture.size(); ++j) {
+    occupancy.visibility(patches, within.places[within.mixture.place[j]], seen.data());
+    const auto weight = static_cast<double>(within.mixture.weights[j]);
+    const auto behind = std::count_if(seen.begin(), seen.end(), [](float v) { return v < 1.F; });
+    hidden += weight * static_cast<double>(behind);
+    all += weight * static_cast<double>(seen.size());
+  }
+  return hidden / all;
+}
+
 std::vector<Position> heaviestOf(const Explained& within) {
   std::vector<std::size_t> order(within.mixture.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
@@ -151,7 +169,8 @@ SeenWithin seenWithin(const DensityPatches& patches, const Occupancy& occupancy,
   const Explained within(patches, occupancy, placesInside(extent, kMixedInside), threads);
   if (lossOf(within.logs) > kMostLeft * of_constant) return {};
   Sides sides = sidesOf(patches, within);
-  if (sides.one_sided < kOneSided || sides.one_sided > kConvex) return {};
+  if (sides.one_sided < kOneSided) return {};
+  if (sides.one_sided > kConvex && shareHidden(patches, occupancy, within) < kMostHidden) return {};
   const Explained around(patches, occupancy, placesOutside(extent), threads);
   if (advantage(within.logs, around.logs) < kSure) return {};
   return {std::move(sides.directions), heaviestOf(within)};

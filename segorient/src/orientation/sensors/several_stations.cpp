@@ -252,11 +252,11 @@ void settle(const DensityPatches& patches, const Occupancy& occupancy, const Ext
 }  // namespace
 
 std::optional<Stations> searchStations(const DensityPatches& patches, const Occupancy& occupancy,
-                                       const Place& rays, int threads) {
+                                       const Place& rays, std::size_t most, int threads) {
   const Extent extent = extentOf(patches);
   const double step = kStep * extent.diagonal();
   const DensityPatches some = patches.thinned(kPieces);
-  Sum sum(some, occupancy, rays, mixturePlaces(some, occupancy, extent, rays, threads));
+  Sum sum(some, occupancy, rays, mixturePlaces(some, occupancy, extent, rays, most, threads));
   if (sum.positions().empty()) return std::nullopt;
   sum.refine(step);
   sum.setAlternatives(placesInside(extent, kAlternatives), threads);
@@ -273,9 +273,9 @@ std::optional<Stations> searchStations(const DensityPatches& patches, const Occu
     if (sum.positions().size() == 1) break;
     sum.dropOne();
   }
-  const float most = least + kGain * deviation(some.log_density);
-  const auto fewest =
-      std::find_if(tried.rbegin(), tried.rend(), [&](const Stations& t) { return t.cost <= most; });
+  const float enough = least + kGain * deviation(some.log_density);
+  const auto fewest = std::find_if(tried.rbegin(), tried.rend(),
+                                   [&](const Stations& t) { return t.cost <= enough; });
   if (fewest == tried.rend()) return std::nullopt;  // costs are no numbers
   Stations out = *fewest;
   settle(patches, occupancy, extent, out);

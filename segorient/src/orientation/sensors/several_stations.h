@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <optional>
 #include <vector>
 
@@ -23,8 +24,9 @@ struct Stations {
 /// The smallest number of stations that explains the densities as well as any number does; nothing
 /// where there is none to start from.
 /// \param rays of all of them, its position unused
+/// \param most of them
 std::optional<Stations> searchStations(const DensityPatches& patches, const Occupancy& occupancy,
-                                       const Place& rays, int threads);
+                                       const Place& rays, std::size_t most, int threads);
 
 /// Which of the stations the pieces were seen from.
 PieceOrigins originsOf(const DensityPatches& patches, const Occupancy& occupancy,

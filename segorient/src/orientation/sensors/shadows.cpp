@@ -106,12 +106,16 @@ bool Shadows::contradict() const {
   return steps > 0.F && covered > kContradicts * steps;
 }
 
+bool Shadows::hideNothing(bool has_walls) const {
+  return open < kHole && !has_walls && steps < kFewBeside;
+}
+
 bool Shadows::asOfABody(bool has_walls, bool is_one_of_several) const {
   const bool enclosed = open < kHole;
-  // In a room others saw what is hidden from one: .46 to .66 in the middle of three.
-  const bool is_alone = !has_walls || !is_one_of_several;
-  return (enclosed && !has_walls && steps < kFewBeside) ||
-         covered > (enclosed && is_alone ? kDenied : kMostHidden) * steps;
+  // Others saw what is hidden from one: .46 to .66 in a room, in the middle of three, and up to .77
+  // where they stood in several rooms.
+  const bool is_alone = !is_one_of_several;
+  return hideNothing(has_walls) || covered > (enclosed && is_alone ? kDenied : kMostHidden) * steps;
 }
 
 bool Shadows::allow() const {

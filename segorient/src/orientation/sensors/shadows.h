@@ -45,6 +45,9 @@ struct Shadows {
   /// Whether more of them go on, however few they are, than as seen from where a sensor stood: of a
   /// place that densities tell of.
   bool contradict() const;
+  /// Whether there is a surface in all directions, and nothing of it hides anything: as in a body,
+  /// or in an empty room, which has walls.
+  bool hideNothing(bool has_walls) const;
   /// Whether it looks as from within a body: there is a surface in all directions, and nothing of
   /// it hides anything, as no tripod leaves a room, or what should be hidden is there; or as from
   /// beside one, all of which is there.

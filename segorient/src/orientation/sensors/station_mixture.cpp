@@ -27,7 +27,6 @@ constexpr int kRoundsBeforePruning = 30;
 constexpr float kNegligible = 1e-4F;  // of all weights
 constexpr float kShare = 0.003F;      // of all weights, of a place that is looked at afterwards
 constexpr double kTogether = 0.07;    // of the extent: the grid's cells are as wide
-constexpr std::size_t kMostPlaces = 10;
 // As many as the widest registers hold, whatever the machine's are: the same sums everywhere.
 constexpr std::size_t kSums = 16;
 
@@ -161,7 +160,8 @@ Mixture mixtureOf(const DensityPatches& patches, const Occupancy& occupancy,
 }
 
 std::vector<Position> mixturePlaces(const DensityPatches& patches, const Occupancy& occupancy,
-                                    const Extent& extent, const Place& rays, int threads) {
+                                    const Extent& extent, const Place& rays, std::size_t most,
+                                    int threads) {
   const std::vector<Position> places = placesAround(extent, kMixedInside);
   const Mixture mixture = mixtureOf(patches, occupancy, places, rays, threads);
   const std::vector<float>& weights = mixture.weights;
@@ -181,7 +181,7 @@ std::vector<Position> mixturePlaces(const DensityPatches& patches, const Occupan
                    [](const Heap& a, const Heap& b) { return a.weight > b.weight; });
   std::vector<Position> out;
   for (const Heap& h : heaps) {
-    if (out.size() < kMostPlaces) out.push_back(h.mean());
+    if (out.size() < most) out.push_back(h.mean());
   }
   return out;
 }

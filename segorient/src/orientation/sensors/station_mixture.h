@@ -37,8 +37,9 @@ Mixture mixtureOf(const DensityPatches& patches, const Occupancy& occupancy,
 /// Places whose mixture explains the densities, each with any weight, those near each other taken
 /// together: a start for searchStations(), the heaviest first.
 /// \param rays of all of them, its position unused
+/// \param most of them
 std::vector<std::array<double, 3>> mixturePlaces(const DensityPatches& patches,
                                                  const Occupancy& occupancy, const Extent& extent,
-                                                 const Place& rays, int threads);
+                                                 const Place& rays, std::size_t most, int threads);
 
 }  // namespace segorient::detail
