@@ -44,6 +44,8 @@ constexpr float kVaries = 0.3F;
 // At true places of single scans the ratio is .03 to .4, and up to .6 where clouds were thinned; of
 // poses that were mixed up or shifted, those that turn points about leave .61 and more.
 constexpr float kShown = 0.5F;
+// Of the points, one in so many: a scan out of twenty. Fewer do not show that poses were mixed up.
+constexpr std::size_t kFewRefused = 20;
 // Pairs of two scans, of eight each point, that tell of a hundredth of them.
 constexpr double kEnoughPairs = 1000.0;
 
@@ -250,7 +252,7 @@ class Finder {
     }
   }
 
-  // Poses that were mixed up are wrong together: where one is refused, others need more than that
+  // Poses that were mixed up are wrong together: where some are refused, others need more than that
   // nothing contradicts them, and where most are, they need to be confirmed. Most points of a scan
   // that was mixed with others may still be its own, and have its density. Where most points are of
   // confirmed scans, those show who is wrong.
@@ -263,7 +265,7 @@ class Finder {
       if (!scan.used) refused += scan.points;
       if (scan.used && scan.confirmed) confirmed += scan.points;
     }
-    if (refused == 0 || 2 * confirmed > all || hints_.place.along_way) return;
+    if (kFewRefused * refused < all || 2 * confirmed > all || hints_.place.along_way) return;
     for (std::size_t s = 0; s < out_.scans.size(); ++s) {
       KnownSensor& scan = out_.scans[s];
       if (!scan.used || scan.moving || scan.confirmed) continue;
