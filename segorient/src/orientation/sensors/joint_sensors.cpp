@@ -33,10 +33,11 @@ namespace {
 // yards left .03 to .28, or nothing but chance; wrong ones around single bodies .33 and more.
 constexpr float kSureSeveral = 0.3F;
 // So many stations, where they explain enough. Who goes through a building with a scanner has more,
-// which can adapt to much: 13 true ones left .11, false ones of vertices by rows .16 and more.
+// which can adapt to much: 13 true ones left .11 to .17, false ones of vertices by rows .22 and
+// more.
 constexpr std::size_t kSome = 10;
 constexpr std::size_t kMany = 20;
-constexpr float kSureMany = 0.14F;
+constexpr float kSureMany = 0.19F;
 // What a scanner has below it, it sees all of, or from 60 or 45 degrees on: sines.
 constexpr std::array<float, 3> kLowest{detail::kNoLowest, -0.866F, -0.707F};
 // Along a line inside the scene, with free beams: true ones left .05 to .40 in sight, others .47
