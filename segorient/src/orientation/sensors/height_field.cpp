@@ -91,13 +91,13 @@ float shareInner(const std::vector<std::uint64_t>& columns) {
 // Share of the points in columns that hold many times what the median does.
 float shareCrowded(const std::vector<float>& sizes) {
   const float most = kCrowded * median(sizes);
-  float all = 0.F;
-  float crowded = 0.F;
+  double all = 0.0;
+  double crowded = 0.0;
   for (const float size : sizes) {
-    all += size;
-    if (size > most) crowded += size;
+    all += static_cast<double>(size);
+    if (size > most) crowded += static_cast<double>(size);
   }
-  return crowded / all;
+  return static_cast<float>(crowded / all);
 }
 
 void measureColumns(const PointView& points, const Box& ground, float side, HeightField& out) {

@@ -33,8 +33,8 @@ namespace {
 // yards left .03 to .28, or nothing but chance; wrong ones around single bodies .33 and more.
 constexpr float kSureSeveral = 0.3F;
 // So many stations, where they explain enough. Who goes through a building with a scanner has more,
-// which can adapt to much: 13 true ones left .11 to .17, false ones of vertices by rows .22 and
-// more.
+// which can adapt to much: in five buildings 13 true ones left .11 to .17, false ones of bodies as
+// vertices by rows .22 and more.
 constexpr std::size_t kSome = 10;
 constexpr std::size_t kMany = 20;
 constexpr float kSureMany = 0.19F;
@@ -243,6 +243,7 @@ bool addStationsOrTrack(const FramedPoints& cloud, const DensityPatches& patches
   return true;
 }
 
+// Where neither few of them nor a line explain enough.
 bool addManyStations(const FramedPoints& cloud, const DensityPatches& patches,
                      const detail::Extent& extent, const detail::Occupancy& occupancy, int threads,
                      SensorReport& report) {

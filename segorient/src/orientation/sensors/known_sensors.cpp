@@ -79,6 +79,7 @@ class Finder {
     for (std::size_t i = 0; i < hints_.either_side.size(); ++i) {
       if (hints_.either_side[i] != 0) std::fill_n(&out_.toward[3 * i], 3, 0.F);
     }
+    if (out_.one_place) out_.scans[0].confirmed = out_.confirmed;
     out_.countSeen();
     return std::move(out_);
   }
@@ -216,6 +217,7 @@ class Finder {
       }
       if (worst == n) break;
       out_.scans[worst].used = false;
+      out_.scans[worst].confirmed = false;
       for (const ScanPairs& p : pairs) {
         if (p.other != worst || p.scan == worst) continue;
         all[p.scan] -= p.pairs;
@@ -227,7 +229,7 @@ class Finder {
   }
 
   // Scans whose density confirms their sensor, those that see what these see from the same side,
-  // and so on. What else was said against them then counts for nothing.
+  // and so on.
   void confirm(const std::vector<ScanPairs>& pairs) {
     for (KnownSensor& scan : out_.scans) {
       scan.confirmed = scan.used && scan.density < kShown && scan.hidden <= kMostHidden;

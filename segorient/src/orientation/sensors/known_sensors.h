@@ -78,9 +78,11 @@ struct KnownSensors : SeenPoints {
 /// or a smooth sheet would have to face both ways, unless their density confirms that it was
 /// there, or where surfaces end allows it). Where some are not, poses may have been mixed up:
 /// unless most points are of scans that are confirmed, as KnownSensor has it, others are not
-/// followed either if nothing speaks for them. PointHints::toward is taken as it is; of what faces
-/// up, points that nothing is above are towards +z, see openToTheSky(). \param spacing one a point:
-/// mean distance to the 6 nearest
+/// followed either if nothing speaks for them.
+///
+/// PointHints::toward is taken as it is; of what faces up, points that nothing is above are towards
+/// +z, see openToTheSky().
+/// \param spacing one a point: mean distance to the 6 nearest
 KnownSensors findKnownSensors(const PointView& points, const Neighborhoods& neighborhoods,
                               const float* spacing, const PointHints& hints, int threads);
 

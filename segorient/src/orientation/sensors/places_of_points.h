@@ -27,10 +27,10 @@ struct PointPlaces {
   std::vector<std::uint8_t> either_side;  ///< as PieceOrigins has it
 };
 
-/// What the nearest piece of surface says. Of a thin wall with a room on either side there may be
-/// no piece, and those around it were seen from both rooms: a point that lies in the plane of none
-/// of them has no place if those of the pieces are not on one side of its own plane.
-/// \param places those that `origins` is about
+/// What the nearest piece of surface says, or one in whose plane the point lies. Of a thin wall
+/// with a room on either side there may be no piece, and those around it were seen from both rooms:
+/// a point that lies in the plane of none of them has no place if those of the pieces are not on
+/// one side of its own plane. \param places those that `origins` is about
 PointPlaces placesOfPoints(const FramedPoints& cloud, const DensityPatches& patches,
                            const PieceOrigins& origins,
                            const std::vector<std::array<float, 3>>& places, int threads);
