@@ -22,10 +22,10 @@ TEST(PlacesOfPoints, BothSidesOfAThinWallFaceTheirRooms) {
                                {{1, 2.4, 0}, {2.6, 3.2, 0.8}},
                                {{7, 0.5, 0}, {8.2, 1.3, 0.8}}};
   Scans scans;
-  scan(rooms, {1.2, 1.1, 1.4}, 100, 0.004, 1, scans);
-  scan(rooms, {3.6, 2.8, 1.5}, 100, 0.004, 2, scans);
-  scan(rooms, {6.1, 2.9, 1.4}, 100, 0.004, 3, scans);
-  scan(rooms, {8.6, 1.9, 1.6}, 100, 0.004, 4, scans);
+  scan(rooms, {1.2, 1.1, 1.4}, 56, 0.004, 1, scans);
+  scan(rooms, {3.6, 2.8, 1.5}, 56, 0.004, 2, scans);
+  scan(rooms, {6.1, 2.9, 1.4}, 56, 0.004, 3, scans);
+  scan(rooms, {8.6, 1.9, 1.6}, 56, 0.004, 4, scans);
   const OrientedCloud cloud = orient(scans.xyz, {});
   ASSERT_EQ(cloud.report.sensors.sensors.size(), 4U) << cloud.report.sensors.why;
   EXPECT_GE(shareOutward(cloud.normals, scans.normals), 0.99);
