@@ -66,6 +66,19 @@ inline double hit(const std::vector<Box>& boxes, const Vector& from, const Vecto
   return nearest;
 }
 
+// What a ray meets after a distance, by the scan of that number.
+inline void addPoint(const Vector& from, const Vector& along, double distance, const Vector& normal,
+                     int number, Scans& out) {
+  for (std::size_t a = 0; a < 3; ++a) {
+    out.xyz.push_back(static_cast<float>(from[a] + distance * along[a]));
+    out.normals.push_back(static_cast<float>(normal[a]));
+    out.sensors.push_back(static_cast<float>(from[a]));
+  }
+  out.xyz.push_back(0.F);
+  out.normals.push_back(0.F);
+  out.scan.push_back(number);
+}
+
 // What a scanner of equal angles sees; noise along the ray.
 inline void scan(const std::vector<Box>& boxes, const Vector& from, int lines, double noise,
                  unsigned seed, Scans& out) {
@@ -82,15 +95,7 @@ inline void scan(const std::vector<Box>& boxes, const Vector& from, int lines, d
       Vector normal{};
       const double nearest = hit(boxes, from, along, normal);
       if (!std::isfinite(nearest)) continue;
-      const double t = nearest + (noise > 0.0 ? gauss(rng) : 0.0);
-      for (std::size_t a = 0; a < 3; ++a) {
-        out.xyz.push_back(static_cast<float>(from[a] + t * along[a]));
-        out.normals.push_back(static_cast<float>(normal[a]));
-        out.sensors.push_back(static_cast<float>(from[a]));
-      }
-      out.xyz.push_back(0.F);
-      out.normals.push_back(0.F);
-      out.scan.push_back(number);
+      addPoint(from, along, nearest + (noise > 0.0 ? gauss(rng) : 0.0), normal, number, out);
     }
   }
 }

@@ -24,6 +24,16 @@ double distanceToNearest(const SensorReport& report, const Vector& truth) {
   return nearest;
 }
 
+// Each point counts for the sensor that it has; of few beside edges there is no telling.
+void expectNearlyAllShared(const SensorReport& report) {
+  std::size_t points = 0;
+  for (const FoundSensor& s : report.sensors) points += s.points;
+  const std::vector<std::int32_t>& of = report.sensor_of;
+  const auto with = std::count_if(of.begin(), of.end(), [](std::int32_t s) { return s >= 0; });
+  EXPECT_EQ(points, static_cast<std::size_t>(with));
+  EXPECT_GE(static_cast<double>(points), 0.999 * static_cast<double>(of.size()));
+}
+
 class SeveralStations : public testing::TestWithParam<double> {};
 
 // Also where no wall runs along an axis.
@@ -49,17 +59,15 @@ TEST_P(SeveralStations, AreFoundAndShareThePoints) {
   for (Vector& t : truth) turn(t.data());
   const SensorReport report = findSensors(scan.view());
   ASSERT_EQ(report.sensors.size(), truth.size());
-  std::size_t points = 0;
   for (const Vector& t : truth) {
     EXPECT_LT(distanceToNearest(report, t), 0.1);
   }
   for (std::size_t s = 0; s < report.sensors.size(); ++s) {
     EXPECT_TRUE(report.sensors[s].sure);
-    points += report.sensors[s].points;
     EXPECT_GE(report.sensors[0].points, report.sensors[s].points);
   }
-  // Of few points beside edges there is no telling.
-  EXPECT_GE(static_cast<double>(points), 0.999 * static_cast<double>(scan.view().size));
+  ASSERT_EQ(report.sensor_of.size(), scan.view().size);
+  expectNearlyAllShared(report);
   // Walls were seen from one side only.
   ASSERT_EQ(report.either_side.size(), scan.view().size);
   const auto unsure = std::count(report.either_side.begin(), report.either_side.end(), 1);
@@ -107,16 +115,15 @@ TEST_P(MovingScanner, IsFoundAlongItsWay) {
   Scan scan = scanAlong(poses, way.room);
   const SensorReport report = findSensors(scan.view());
   ASSERT_GT(report.sensors.size(), 1U) << report.why;
-  std::size_t points = 0;
   for (const FoundSensor& s : report.sensors) {
     EXPECT_TRUE(s.sure);
     double nearest = 1e30;
     for (const Vector& pose : poses) nearest = std::min(nearest, distanceTo(s, pose));
     // Between two poses, and .1 of the room's height.
     EXPECT_LT(nearest, 0.5 * way.step[0] + 0.1 * way.room.size[2]);
-    points += s.points;
   }
-  EXPECT_GE(static_cast<double>(points), 0.999 * static_cast<double>(scan.view().size));
+  ASSERT_EQ(report.sensor_of.size(), scan.view().size);
+  expectNearlyAllShared(report);
 }
 
 INSTANTIATE_TEST_SUITE_P(

@@ -88,14 +88,7 @@ TEST(KnownSensors, ProfilesOfFewPointsAreLookedAtTogether) {
       const Vector along{1e-6, std::cos(angle), std::sin(angle)};
       Vector normal{};
       const double t = hit(passage, from, along, normal) + noise(random);
-      for (std::size_t a = 0; a < 3; ++a) {
-        scans.xyz.push_back(static_cast<float>(from[a] + t * along[a]));
-        scans.normals.push_back(static_cast<float>(normal[a]));
-        scans.sensors.push_back(static_cast<float>(from[a]));
-      }
-      scans.xyz.push_back(0.F);
-      scans.normals.push_back(0.F);
-      scans.scan.push_back(pose);
+      addPoint(from, along, t, normal, pose, scans);
     }
   }
   const OrientedCloud cloud = orient(scans.xyz, eachItsOwn(scans));

@@ -75,13 +75,7 @@ TEST(PlacesOfPoints, RoomsThatAScannerWasCarriedThroughAreSeenFromWithin) {
       for (double& v : along) v /= length;
       Vector normal{};
       const double t = hit(rooms, from, along, normal) + 0.005 * gauss(random);
-      for (std::size_t a = 0; a < 3; ++a) {
-        scans.xyz.push_back(static_cast<float>(from[a] + t * along[a]));
-        scans.normals.push_back(static_cast<float>(normal[a]));
-      }
-      scans.xyz.push_back(0.F);
-      scans.normals.push_back(0.F);
-      scans.scan.push_back(pose);
+      addPoint(from, along, t, normal, pose, scans);
     }
   }
   EXPECT_GE(shareOutward(orient(scans.xyz, {}).normals, scans.normals), 0.93);

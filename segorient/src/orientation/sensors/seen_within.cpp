@@ -28,7 +28,7 @@ constexpr double kOneSided = 0.73;
 // body that was seen all around looks like that as well. Unless places do not see most of it, as
 // behind the walls of a room.
 constexpr double kConvex = 0.995;
-constexpr double kMostHidden = 0.5;
+constexpr double kBehindWalls = 0.5;
 
 // What the same density everywhere loses against the densities there, as a mean logarithm: where
 // bodies touch two layers lie in one place, which is .06 at most, and chance .02 more. Scans that
@@ -171,7 +171,8 @@ SeenWithin seenWithin(const DensityPatches& patches, const Occupancy& occupancy,
   if (lossOf(within.logs) > kMostLeft * of_constant) return {};
   Sides sides = sidesOf(patches, within);
   if (sides.one_sided < kOneSided) return {};
-  if (sides.one_sided > kConvex && shareHidden(patches, occupancy, within) < kMostHidden) return {};
+  if (sides.one_sided > kConvex && shareHidden(patches, occupancy, within) < kBehindWalls)
+    return {};
   const Explained around(patches, occupancy, placesOutside(extent), threads);
   if (advantage(within.logs, around.logs) < kSure) return {};
   return {std::move(sides.directions), heaviestOf(within)};
