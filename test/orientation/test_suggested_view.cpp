@@ -79,6 +79,18 @@ TEST(SuggestedView, NobodySeesFromTooFarOrWithin) {
   EXPECT_EQ(shareAlong(wallAt({1.F, 12.F, 1.F}, 9000), {0.F, -1.F, 0.F}, hints), far);
 }
 
+// A wall behind another one was not seen from there.
+TEST(SuggestedView, NobodySeesThroughWalls) {
+  const auto wallsAt = [](float y) {
+    std::vector<float> rows = wallAt({0.2F, y, 0.1F}, 5000);
+    const std::vector<float> other = wallAt({0.2F, y + 1.F, 0.1F}, 5000);
+    rows.insert(rows.end(), other.begin(), other.end());
+    return rows;
+  };
+  const Floats before{0.F, -1.F, 0.F};
+  EXPECT_EQ(shareAlong(wallsAt(3.F), before), shareAlong(wallsAt(-4.F), before));
+}
+
 TEST(SuggestedView, ASideThatIsNamedGoesBefore) {
   const std::vector<float> rows = wallAt({0.F, 3.F, 0.F}, 9000);
   const auto hints = std::make_shared<OrientationHints>();

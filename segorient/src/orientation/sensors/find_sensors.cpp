@@ -49,8 +49,9 @@ std::optional<RevealedPlace> trySuggestedShadows(const PreparedCloud& cloud,
     const std::array<float, 3> s = cloud.inUnit(suggestion);
     const detail::Shadows shadows = detail::findShadows(views.flat(), s, options.threads, true);
     if (shadows.reveal()) return RevealedPlace{s, shadows};
-    seen.suit_first =
-        seen.suit_first || (&suggestion == &options.suggestions.front() && shadows.suit());
+    if (&suggestion != &options.suggestions.front()) continue;
+    seen.suit_first = shadows.suit();
+    seen.deny_first = shadows.deny();
   }
   return std::nullopt;
 }

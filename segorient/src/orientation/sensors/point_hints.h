@@ -32,7 +32,8 @@ struct CloudPlace {
   /// Whether a search found no place, but that all was seen from within: each point's direction is
   /// then that to where it was seen from.
   bool seen_within = false;
-  /// Whether a search found nothing at all, so that the suggested place is as good as any.
+  /// Whether a search found nothing at all, so that the suggested place is as good as any, unless
+  /// shadows deny it.
   bool may_be_suggested = false;
   bool suggestion_suits = false;  ///< see SeenShadows::suit_first
 };

@@ -23,6 +23,8 @@ struct SeenShadows {
   bool whole_image = false;
   /// Found: shadows suit the first suggestion, though they do not reveal it.
   bool suit_first = false;
+  /// Found: shadows deny the first suggestion.
+  bool deny_first = false;
 };
 
 /// findSensors() of a cloud that is prepared.
