@@ -247,6 +247,27 @@ TEST(CoarseLevels, LeaveTheTwoSidesOfAWallApart) {
   EXPECT_GE(right(noisy), right(noisy, false));
 }
 
+// Both sides of the gap face each other, which a level takes for one sheet.
+TEST(CoarseLevels, LeaveTwoBlocksApart) {
+  const double spacing = 0.03;
+  std::mt19937 rng(41);
+  std::uniform_real_distribution<double> unit(-0.5, 0.5);
+  Cloud cloud;
+  for (const double middle : {5.0, 6.0 + 0.8 * spacing}) {
+    for (int i = 0; i < static_cast<int>(6.0 / (spacing * spacing)); ++i) {
+      const std::size_t axis = rng() % 3;
+      const double side = rng() % 2 == 0 ? 1.0 : -1.0;
+      Vector p{unit(rng), unit(rng), unit(rng)};
+      Vector n{};
+      p[axis] = 0.5 * side;
+      n[axis] = side;
+      p[0] += middle;
+      cloud.add(p, n);
+    }
+  }
+  EXPECT_GT(right(cloud), 0.998);
+}
+
 TEST(CoarseLevels, DependOnNeitherThreadsNorOrder) {
   const Cloud cloud = twoScans(4000, 0.75, 5);
   const OrientedCloud one = orient(cloud.xyz, true, 1);

@@ -230,6 +230,23 @@ TEST(ComponentSigns, AlternateInNestedShellsWhateverTheyWere) {
   }
 }
 
+// Alone the two surfaces around the gap are a hollow sphere. Together they have more points than
+// the body around them, and come first.
+TEST(ComponentSigns, KnowABallInItsSocket) {
+  for (const float turned : {1.F, -1.F}) {
+    Balls balls;
+    addBall(balls, {0, 0, 0}, 0.8, 2000, turned);
+    addBall(balls, {0, 0, 0}, 0.86, 2300, -turned);
+    std::fill(balls.components.begin(), balls.components.end(), 0);
+    addBall(balls, {0, 0, 0}, 1, 3100, 1.F);
+    const auto result = solveComponents(viewOf(balls.xyz), balls.dipoles.data(),
+                                        balls.spacing.data(), balls.components, 2);
+    EXPECT_EQ(static_cast<float>(result[0].sign), turned);
+    EXPECT_EQ(result[1].sign, 1);
+    EXPECT_GT(result[0].evidence, 0.5F);
+  }
+}
+
 TEST(ComponentSigns, TurnHundredsOfPartsOutward) {
   Balls balls;
   for (int i = 0; i < 300; ++i) {

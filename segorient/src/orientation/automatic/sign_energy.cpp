@@ -110,21 +110,19 @@ SignJudge::SignJudge(const PointView& points, const Neighborhoods& neighborhoods
     share[c] = cellArea(view, around, c) / share[c];
   }
   for (std::size_t i = 0; i < points.size; ++i) areas_[i] = share[cells.cell_of[i]];
-  for (const std::size_t c : EveryNth(cells.kept.size(), kSamples)) {
-    samples_.push_back(cells.kept[c]);
-  }
+  even_ = cells.kept;
 }
 
-SignEnergy SignJudge::judge(const std::vector<float>& normals) const {
-  SignEnergy energy;
-  energy.pairs = opposedPairs(points_, neighborhoods_, normals, threads_);
+float SignJudge::outsideAt(const std::vector<std::uint32_t>& rows,
+                           const std::vector<float>& normals) const {
   const std::vector<float> dipoles = dipolesOf(normals, areas_);
   WindingNumber winding;
   winding.build(points_, dipoles.data(), {}, threads_);
   std::vector<float> in_front;
-  for (const std::size_t s : samples_) {
-    const float* p = points_[s];
-    const float* n = &normals[4 * s];
+  for (const std::size_t k : EveryNth(rows.size(), kSamples)) {
+    const std::size_t i = rows[k];
+    const float* p = points_[i];
+    const float* n = &normals[4 * i];
     if (!isFinite(n)) continue;
     const float far = kCell * sixth_;  // nearer, single cells stand out
     for (std::size_t a = 0; a < 3; ++a) in_front.push_back(p[a] + far * n[a]);
@@ -135,8 +133,11 @@ SignEnergy SignJudge::judge(const std::vector<float>& normals) const {
   for (const float w : winding.evaluate({in_front.data(), 3, count}, radii, threads_)) {
     sum += static_cast<double>(std::min(std::fabs(w), 0.5F));
   }
-  if (count > 0) energy.outside = static_cast<float>(sum / static_cast<double>(count));
-  return energy;
+  return count > 0 ? static_cast<float>(sum / static_cast<double>(count)) : 0.F;
+}
+
+SignEnergy SignJudge::judge(const std::vector<float>& normals) const {
+  return {outsideAt(even_, normals), opposedPairs(points_, neighborhoods_, normals, threads_)};
 }
 
 }  // namespace segorient::detail

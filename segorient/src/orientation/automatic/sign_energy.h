@@ -55,14 +55,16 @@ class SignJudge {
 
   /// \param normals 4 floats a point: oriented unit normal; NaN where none
   SignEnergy judge(const std::vector<float>& normals) const;
+  /// SignEnergy::outside of these points, by some thousand of them; 0 of none.
+  float outsideAt(const std::vector<std::uint32_t>& rows, const std::vector<float>& normals) const;
 
  private:
   PointView points_;
   const Neighborhoods& neighborhoods_;
   int threads_;
-  float sixth_ = 0.F;         // median distance to the sixth neighbour
-  std::vector<float> areas_;  // of each point
-  std::vector<std::uint32_t> samples_;
+  float sixth_ = 0.F;                // median distance to the sixth neighbour
+  std::vector<float> areas_;         // of each point
+  std::vector<std::uint32_t> even_;  // an even subset
 };
 
 }  // namespace segorient::detail

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <cstddef>
 #include <limits>
+#include <numeric>
 #include <utility>
 
 #include "common/box.h"
@@ -55,23 +56,22 @@ class Solver {
     takeSamples();
     evaluateAll();
     insertOneByOne();
+    // What came early did not know of what encloses it: a ball in its socket is a hollow sphere
+    // until the body around them is there.
+    std::vector<std::size_t> order(rows_.size());
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    turnInOrder(order, {});
     return results();
   }
 
   std::vector<std::int8_t> turnParts(std::size_t fixed, const TurnRule& rule) {
     windAsTurned();
-    std::vector<std::pair<double, std::size_t>> order;
-    for (std::size_t c = fixed; c < rows_.size(); ++c) order.emplace_back(-gain(c), c);
-    std::sort(order.begin(), order.end());
-    bool moved = true;
-    for (int round = 0; round < kRounds && moved; ++round) {
-      moved = false;
-      for (const auto& [first_gain, c] : order) {
-        if (!gainsEnough(c, rule)) continue;
-        flip(c);
-        moved = true;
-      }
-    }
+    std::vector<std::pair<double, std::size_t>> by_gain;
+    for (std::size_t c = fixed; c < rows_.size(); ++c) by_gain.emplace_back(-gain(c), c);
+    std::sort(by_gain.begin(), by_gain.end());
+    std::vector<std::size_t> order;
+    for (const auto& [first_gain, c] : by_gain) order.push_back(c);
+    turnInOrder(order, rule);
     return {signs_.begin(), signs_.end()};
   }
 
@@ -171,6 +171,18 @@ class Solver {
       }
       signs_[c] = minus < plus ? -1 : 1;
       for (const Reach& r : reach_[c]) field_[r.sample] += signs_[c] * static_cast<double>(r.w);
+    }
+  }
+
+  void turnInOrder(const std::vector<std::size_t>& order, const TurnRule& rule) {
+    bool moved = true;
+    for (int round = 0; round < kRounds && moved; ++round) {
+      moved = false;
+      for (const std::size_t c : order) {
+        if (!gainsEnough(c, rule)) continue;
+        flip(c);
+        moved = true;
+      }
     }
   }
 

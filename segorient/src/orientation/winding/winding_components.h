@@ -27,8 +27,9 @@ struct ComponentWinding {
 
 /// Chooses the signs of components so that the winding number of all of them together is 1/2 on the
 /// surface: minimises the mean of (sum_c s_c w_c(x) - 1/2)^2 over sample points x. This knows the
-/// outside, cavities, nested and linked parts. Near-linear: a component is evaluated only where it
-/// is near, since the field of a closed surface vanishes outside of it.
+/// outside, cavities, nested and linked parts. One by one, the largest first, and then all over
+/// again by TurnRule: the first ones did not know of those around them. Near-linear: a component is
+/// evaluated only where it is near, since the field of a closed surface vanishes outside of it.
 ///
 /// \param points near ones side by side (CompactCloud's order)
 /// \param dipoles 4 floats a point: normal times area, area; 0 where there is no normal
