@@ -99,6 +99,81 @@ TEST(SeenWithin, ABodyWasNotSeenFromItsInside) {
   EXPECT_GT(static_cast<double>(outward), 0.99 * static_cast<double>(points.size));
 }
 
+// A ball with spikes, which hide each other.
+class SpikedBall {
+ public:
+  explicit SpikedBall(unsigned seed) : random_(seed) {
+    for (int i = 0; i < 30; ++i) spikes_.push_back(anywhere());
+  }
+
+  /// Its image from some place three units away, and what errors are common then.
+  void addImage(int width, std::vector<float>& rows) {
+    const Vector from = anywhere();
+    const Vector right = across(from, anywhere());
+    const Vector up = across(from, right, 1.0);
+    std::normal_distribution<double> error;
+    for (int i = 0; i < width * width; ++i) {
+      const double u = (i % width + 0.5) / width - 0.5;
+      const double v = (i / width + 0.5) / width - 0.5;
+      Vector ray{};
+      for (std::size_t a = 0; a < 3; ++a) ray[a] = -from[a] + 0.9 * (u * right[a] + v * up[a]);
+      const double length = std::sqrt(product(ray, ray));
+      double t = 0.0;
+      double near = 1.0;
+      while (t < 6.0 && near > 1e-4) {
+        Vector p{};
+        for (std::size_t a = 0; a < 3; ++a) p[a] = 3.0 * from[a] + t * ray[a] / length;
+        near = distance(p);
+        t += 0.8 * near;
+        if (near > 1e-4) continue;
+        for (const double x : p) rows.push_back(static_cast<float>(x + 0.005 * error(random_)));
+      }
+    }
+  }
+
+ private:
+  static double product(const Vector& a, const Vector& b) {
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+  }
+  static Vector across(const Vector& a, const Vector& b, double length = 0.0) {
+    Vector out{a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
+    if (length == 0.0) length = std::sqrt(product(out, out));
+    for (double& v : out) v /= length;
+    return out;
+  }
+  Vector anywhere() {
+    std::normal_distribution<double> normal;
+    Vector out{normal(random_), normal(random_), normal(random_)};
+    const double length = std::sqrt(product(out, out));
+    for (double& v : out) v /= length;
+    return out;
+  }
+  double distance(const Vector& p) const {
+    const double squares = product(p, p);
+    double out = std::sqrt(squares) - 0.45;
+    for (const Vector& spike : spikes_) {
+      const double t = product(p, spike);
+      const double width = std::max(0.0, 0.11 * (1.0 - t / 1.05));
+      const double off = std::sqrt(std::max(0.0, squares - t * t)) - width;
+      out = std::min(out, std::max(off, -t));
+    }
+    return out;
+  }
+
+  std::mt19937 random_;
+  std::vector<Vector> spikes_;
+};
+
+TEST(SeenWithin, SpikesWereSeenFromAround) {
+  for (const unsigned seed : {2U, 4U}) {
+    SpikedBall ball(seed);
+    std::vector<float> rows;
+    for (int image = 0; image < 2; ++image) ball.addImage(210, rows);
+    const SensorReport report = findSensors({rows.data(), 3, rows.size() / 3});
+    EXPECT_TRUE(report.directions.empty()) << seed << " " << report.why;
+  }
+}
+
 // Boxes that stand one on another, each sampled at random all over: there are two layers where they
 // touch, so that density is uneven without a sensor.
 std::vector<float> stackedBoxes(int count, int per_box, double noise) {

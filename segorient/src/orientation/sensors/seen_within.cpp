@@ -174,6 +174,8 @@ SeenWithin seenWithin(const DensityPatches& patches, const Occupancy& occupancy,
   if (sides.one_sided > kConvex && shareHidden(patches, occupancy, within) < kBehindWalls)
     return {};
   const Explained around(patches, occupancy, placesOutside(extent), threads);
+  // What places around may have left as well is no sign of places within: spikes hide each other.
+  if (lossOf(around.logs) <= kMostLeft * of_constant) return {};
   if (advantage(within.logs, around.logs) < kSure) return {};
   return {std::move(sides.directions), heaviestOf(within)};
 }
