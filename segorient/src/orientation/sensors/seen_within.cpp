@@ -24,6 +24,9 @@ constexpr double kSure = 3.0;
 // is .43 to .72, as places in them leave the same; of one that is built of bricks, all of whose
 // faces have points, .71.
 constexpr double kOneSided = 0.73;
+// The same where places around may have left as well: of rooms, streets and yards that were thinned
+// .90 and more; of balls with spikes, which hide each other, .80 and less.
+constexpr double kOneSidedOfEither = 0.85;
 // Where all of it comes from one side the surface is convex: nothing in it hides anything, and a
 // body that was seen all around looks like that as well. Unless places do not see most of it, as
 // behind the walls of a room.
@@ -174,8 +177,8 @@ SeenWithin seenWithin(const DensityPatches& patches, const Occupancy& occupancy,
   if (sides.one_sided > kConvex && shareHidden(patches, occupancy, within) < kBehindWalls)
     return {};
   const Explained around(patches, occupancy, placesOutside(extent), threads);
-  // What places around may have left as well is no sign of places within: spikes hide each other.
-  if (lossOf(around.logs) <= kMostLeft * of_constant) return {};
+  const bool either = lossOf(around.logs) <= kMostLeft * of_constant;
+  if (either && sides.one_sided < kOneSidedOfEither) return {};
   if (advantage(within.logs, around.logs) < kSure) return {};
   return {std::move(sides.directions), heaviestOf(within)};
 }
