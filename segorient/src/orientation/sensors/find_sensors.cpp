@@ -49,9 +49,7 @@ std::optional<RevealedPlace> trySuggestedShadows(const PreparedCloud& cloud,
     const std::array<float, 3> s = cloud.inUnit(suggestion);
     const detail::Shadows shadows = detail::findShadows(views.flat(), s, options.threads, true);
     if (shadows.reveal()) return RevealedPlace{s, shadows};
-    if (&suggestion != &options.suggestions.front()) continue;
-    seen.suit_first = shadows.suit();
-    seen.deny_first = shadows.deny();
+    if (&suggestion == &options.suggestions.front()) seen.of_first = shadows;
   }
   return std::nullopt;
 }

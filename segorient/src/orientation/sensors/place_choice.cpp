@@ -53,8 +53,8 @@ PlaceChoice findOthers(const PointView& points, OrientationHints hints, Prepared
   out.place.faces_up = out.sensors.faces_up;
   out.place.seen_within = !hints.normals.empty();
   const bool found = out.sensors.sure() || out.place.faces_up || out.place.seen_within;
-  out.place.may_be_suggested = !found && !hints.suggested.empty() && !seen.deny_first;
-  out.place.suggestion_suits = seen.suit_first;
+  out.place.may_be_suggested = !found && !hints.suggested.empty() && !seen.of_first.deny();
+  out.place.suggestion_suits = seen.of_first.suit();
   if (out.sensors.sensors.empty()) out.sensors.sensor_of = {};
   out.hints = std::move(hints);
   out.place.shadows = seen.of_sensor;

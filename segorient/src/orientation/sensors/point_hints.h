@@ -35,7 +35,7 @@ struct CloudPlace {
   /// Whether a search found nothing at all, so that the suggested place is as good as any, unless
   /// shadows deny it.
   bool may_be_suggested = false;
-  bool suggestion_suits = false;  ///< see SeenShadows::suit_first
+  bool suggestion_suits = false;  ///< see SeenShadows::of_first
 };
 
 /// OrientationHints by distinct point, in the unit of a PreparedCloud.

@@ -21,10 +21,8 @@ struct SeenShadows {
   Shadows of_sensor;
   /// Found: all four sides of an image meet in the sensor.
   bool whole_image = false;
-  /// Found: shadows suit the first suggestion, though they do not reveal it.
-  bool suit_first = false;
-  /// Found: shadows deny the first suggestion.
-  bool deny_first = false;
+  /// Found: those of the first suggestion that do not reveal it; no steps where nobody looked.
+  Shadows of_first;
 };
 
 /// findSensors() of a cloud that is prepared.
