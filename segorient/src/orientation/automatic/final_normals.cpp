@@ -26,6 +26,7 @@ constexpr int kFewest = 10;
 // For the surfaces on both sides of an edge, as `normals --recompute` has them.
 constexpr int kEdgeNeighbors = FirstStages::kDefaultNeighbors;
 // The first round's labels are those of means over the edge, the next ones' of its own result.
+// Of 144 clouds, a second round takes 1.1 % of the mean rms, a third .2, and a fourth .1.
 constexpr int kRounds = 3;
 // 143 degrees: normals of two walls, or of both sides of a blade.
 constexpr float kOtherWall = -0.8F;
