@@ -66,6 +66,23 @@ mode_t permissions(const std::string& target) {
   return 0666 & ~mask;
 }
 
+// What a file without a name can be given one by, while it is open.
+std::string openedAs(int descriptor) {
+  return "/proc/self/fd/" + std::to_string(descriptor);
+}
+
+// A file without a name goes with the process, however that ends. -1 where the system has none.
+int openWithoutName(const std::string& target) {
+#ifdef O_TMPFILE
+  const std::size_t end = target.rfind('/');
+  const std::string folder = end == std::string::npos ? "." : target.substr(0, end + 1);
+  const int descriptor = open(folder.c_str(), O_TMPFILE | O_WRONLY | O_CLOEXEC, 0600);
+  if (descriptor < 0 || access(openedAs(descriptor).c_str(), F_OK) == 0) return descriptor;
+  close(descriptor);
+#endif
+  return -1;
+}
+
 }  // namespace
 
 OutputFile::OutputFile(std::string path) : path_(std::move(path)), target_(resolved(path_)) {
@@ -75,27 +92,48 @@ OutputFile::OutputFile(std::string path) : path_(std::move(path)), target_(resol
     throw FileError(path_, S_ISDIR(info.st_mode) ? "is a directory" : "is not a regular file");
   }
   if (stat(target_.c_str(), &info) == 0 && access(target_.c_str(), W_OK) != 0) fail(errno);
-  std::string name = target_ + ".XXXXXX";
-  const int descriptor = mkstemp(name.data());
-  if (descriptor < 0) fail(errno);
-  temporary_ = name;
-  keepTrack(temporary_);
+  int descriptor = openWithoutName(target_);
+  if (descriptor < 0) {
+    std::string name = target_ + ".XXXXXX";
+    descriptor = mkstemp(name.data());
+    if (descriptor < 0) fail(errno);
+    temporary_ = name;
+    keepTrack(temporary_);
+  }
   fchmod(descriptor, permissions(target_));
   file_ = fdopen(descriptor, "wb");
   if (file_ == nullptr) {
     const int error = errno;
     close(descriptor);
-    unlink(temporary_.c_str());
-    loseTrack(temporary_);
+    removeTemporary();
     fail(error);
   }
 }
 
 OutputFile::~OutputFile() {
   if (file_ != nullptr) std::fclose(file_);
+  removeTemporary();
+}
+
+void OutputFile::removeTemporary() {
   if (temporary_.empty()) return;
   unlink(temporary_.c_str());
   loseTrack(temporary_);
+  temporary_.clear();
+}
+
+// A file that has no name yet gets one that nobody has: only that can then be moved over another.
+void OutputFile::nameTemporary() {
+  for (int i = 0; temporary_.empty(); ++i) {
+    const std::string name = target_ + '.' + std::to_string(getpid()) + '-' + std::to_string(i);
+    if (linkat(AT_FDCWD, openedAs(fileno(file_)).c_str(), AT_FDCWD, name.c_str(),
+               AT_SYMLINK_FOLLOW) == 0) {
+      temporary_ = name;
+    } else if (errno != EEXIST) {
+      fail(errno);
+    }
+  }
+  keepTrack(temporary_);
 }
 
 void OutputFile::fail(int error) {
@@ -109,6 +147,7 @@ void OutputFile::write(const void* data, std::size_t bytes) {
 void OutputFile::finish() {
   if (file_ == nullptr) return;
   if (std::fflush(file_) != 0 || fsync(fileno(file_)) != 0) fail(errno);
+  if (temporary_.empty()) nameTemporary();
   std::FILE* file = file_;
   file_ = nullptr;
   if (std::fclose(file) != 0) fail(errno);

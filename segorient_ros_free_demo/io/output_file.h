@@ -9,8 +9,10 @@
 
 namespace segorient::program {
 
-/// A file that is there whole or not at all: written under another name beside its place and moved
-/// there by commit(). Without commit(), on any error and on Ctrl-C, what was there before stays.
+/// A file that is there whole or not at all: written without a name and moved to its place by
+/// commit(). Without commit(), on any error and however the program ends, what was there before
+/// stays, and nothing is left beside it. On file systems that have no files without a name it is
+/// written under another name beside its place, which is left if the program is killed.
 ///
 /// Every failure is a FileError that names the file. Construct it before the work whose result it
 /// is to hold, so that a place that cannot be written is known at once.
@@ -24,7 +26,7 @@ class OutputFile {
   const std::string& path() const { return path_; }
   void write(const void* data, std::size_t bytes);
   void write(std::string_view text) { write(text.data(), text.size()); }
-  /// Brings all of it onto the disk, still under the other name: whatever else may go wrong with
+  /// Brings all of it onto the disk, under another name: whatever else may go wrong with
   /// what was written does so here. Where two files belong together, both are finished before
   /// either is committed.
   void finish();
@@ -33,10 +35,12 @@ class OutputFile {
 
  private:
   [[noreturn]] void fail(int error);
+  void nameTemporary();
+  void removeTemporary();
 
   std::string path_;
   std::string target_;     // path_, symbolic links resolved
-  std::string temporary_;  // empty once committed
+  std::string temporary_;  // empty while it has no name, and once committed
   std::FILE* file_ = nullptr;
 };
 

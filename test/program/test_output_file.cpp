@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026, the segorient authors
+#include <fcntl.h>
 #include <gtest/gtest.h>
 #include <sys/resource.h>
 #include <sys/stat.h>
@@ -24,7 +25,6 @@ TEST(OutputFile, IsThereWholeOrNotAtAll) {
   {
     OutputFile file(path);
     file.write("half");
-    EXPECT_EQ(directory.entries(), 2U);
   }
   EXPECT_EQ(readFile(path), "before");
   EXPECT_EQ(directory.entries(), 1U);
@@ -81,6 +81,38 @@ TEST(OutputFile, AFullDiskIsAnErrorAndLeavesWhatWasThere) {
   const std::string path = directory.write("out.pcd", "before");
   EXPECT_EXIT(writeTooMuch(path), testing::ExitedWithCode(0), "");
   EXPECT_EQ(readFile(path), "before");
+}
+
+[[noreturn]] void beKilledHalfWay(const std::string& path) {
+  OutputFile file(path);
+  file.write(std::string(1 << 18, 'x'));
+  std::raise(SIGKILL);
+  std::_Exit(1);
+}
+
+TEST(OutputFile, AProcessThatIsKilledLeavesNothing) {
+  const ScratchDirectory directory;
+  const int nameless = open(directory.file("").c_str(), O_TMPFILE | O_WRONLY, 0600);
+  if (nameless < 0) GTEST_SKIP() << "a file system without files that have no name";
+  close(nameless);
+  const std::string path = directory.write("out.pcd", "before");
+  EXPECT_EXIT(beKilledHalfWay(path), testing::KilledBySignal(SIGKILL), "");
+  EXPECT_EQ(readFile(path), "before");
+  EXPECT_EQ(directory.entries(), 1U);
+}
+
+// A name that a process with the same number left is nobody's to take.
+TEST(OutputFile, TakesAnotherNameWhereOneIsThere) {
+  const ScratchDirectory directory;
+  const std::string path = directory.file("out.pcd");
+  const std::string taken =
+      directory.write("out.pcd." + std::to_string(getpid()) + "-0", "another's");
+  OutputFile file(path);
+  file.write("mine");
+  file.commit();
+  EXPECT_EQ(readFile(path), "mine");
+  EXPECT_EQ(readFile(taken), "another's");
+  EXPECT_EQ(directory.entries(), 2U);
 }
 
 TEST(OutputFile, FinishedIsNotYetThere) {

@@ -79,8 +79,8 @@ TEST_F(Faults, KilledAtAnyMomentTheNextRunGivesTheSameBytes) {
     }
   }
   fs::remove(out);
-  // Who is killed while the result is written leaves that beside its place, under a name of its
-  // own.
+  // Where files without a name are not to be had, who is killed while the result is written leaves
+  // that beside its place, under a name of its own.
   const std::string stray = fs::path(out).filename().string() + ".";
   const fs::directory_iterator beside(fs::path(out).parent_path());
   for (const fs::directory_entry& entry :
