@@ -312,5 +312,38 @@ TEST(Sensors, PlatesAreNotSeenFromAbove) {
   }
 }
 
+// Where a ray from within an egg-shaped cave ends.
+double endInCave(const Vector& o, const Vector& d) {
+  constexpr Vector kHalf{3.0, 2.0, 1.5};
+  double dd = 0.0;
+  double od = 0.0;
+  double oo = -1.0;
+  for (std::size_t a = 0; a < 3; ++a) {
+    dd += d[a] * d[a] / (kHalf[a] * kHalf[a]);
+    od += o[a] * d[a] / (kHalf[a] * kHalf[a]);
+    oo += o[a] * o[a] / (kHalf[a] * kHalf[a]);
+  }
+  return (std::sqrt(od * od - dd * oo) - od) / dd;
+}
+
+// Nothing in it hides anything, as in a body, and two scanners see what is below the other.
+TEST(Caves, SeveralStationsInThemAreFound) {
+  const std::array<Vector, 2> truth{{{1.5, 0.3, -0.4}, {-1.2, -0.5, 0.2}}};
+  constexpr double kStep = 1.8 * kPi / 180.0;
+  std::vector<float> xyz;
+  for (const Vector& o : truth) {
+    for (double e = -1.1; e < 1.5; e += kStep) {
+      for (double a = 0.0; a < 2.0 * kPi; a += kStep) {
+        const Vector d{std::cos(e) * std::cos(a), std::cos(e) * std::sin(a), std::sin(e)};
+        const double t = endInCave(o, d);
+        for (std::size_t k = 0; k < 3; ++k) xyz.push_back(static_cast<float>(o[k] + t * d[k]));
+      }
+    }
+  }
+  const SensorReport report = findSensors({xyz.data(), 3, xyz.size() / 3});
+  ASSERT_TRUE(report.sure()) << report.why;
+  for (const Vector& t : truth) EXPECT_LT(distanceToNearest(report, t), 0.1);
+}
+
 }  // namespace
 }  // namespace segorient

@@ -15,6 +15,7 @@
 #include "orientation/sensors/scene_frame.h"
 #include "orientation/sensors/shadows.h"
 #include "orientation/sensors/station_search.h"
+#include "orientation/sensors/vertex_lattice.h"
 
 namespace segorient::detail {
 namespace {
@@ -226,21 +227,25 @@ SensorReport searchUpright(const DensityPatches& patches, PreparedCloud& cloud,
 }
 
 // Vertices of a body that was turned on a lathe, or that is a function of the direction, have the
-// density of a scan from within it, and those of a rod that of one from its axis.
-bool areInABody(const SensorReport& found, const DensityPatches& patches, const FlatPoints& flat,
-                int threads) {
+// density of a scan from within it, and those of a rod that of one from its axis. They are a
+// lattice, unlike what several stations saw.
+bool areInABody(const SensorReport& found, const DensityPatches& patches, PreparedCloud& cloud,
+                const FlatPoints& flat, int threads) {
   const SensorKind kind = found.sensors[0].kind;
   if (found.sensors[0].evidence != SensorEvidence::DENSITY || kind == SensorKind::ABOVE) {
     return false;
   }
-  const bool has_walls = patches.haveWalls();
   const bool on_its_way = kind == SensorKind::MOVING;
+  const bool are_several = found.sensors.size() > 1;
+  if (are_several && !on_its_way && !formALattice(cloud.points(), cloud.index(), threads)) {
+    return false;
+  }
+  const bool has_walls = patches.haveWalls();
   std::vector<Shadows> seen;
   for (const FoundSensor& sensor : found.sensors) {
     seen.push_back(findShadows(flat, sensor.position, threads));
     // In walls each place has to look like it, but of a way the median does.
-    if (has_walls && !on_its_way && !seen.back().asOfABody(true, found.sensors.size() > 1))
-      return false;
+    if (has_walls && !on_its_way && !seen.back().asOfABody(true, are_several)) return false;
   }
   return areAtOneBody(seen, has_walls, on_its_way);
 }
@@ -266,7 +271,7 @@ SensorReport searchByDensity(PreparedCloud& cloud, const SensorOptions& options,
   out.deviation = deviation(patches.log_density);
   out.chance = chanceDeviation(patches.k);
   out = searchUpright(patches, cloud, options, views, out);
-  if (out.sure() && areInABody(out, patches, views.flat(), options.threads)) {
+  if (out.sure() && areInABody(out, patches, cloud, views.flat(), options.threads)) {
     for (FoundSensor& sensor : out.sensors) sensor.sure = false;
     std::fill(out.sensor_of.begin(), out.sensor_of.end(), -1);
     out.why = "from the places that explain the densities it looks like a body";
