@@ -237,6 +237,7 @@ py::dict reportOf(const OrientedCloud& cloud) {
   out["scale_components"] = listOf(detail::componentsOf(report.scales));
   out["contradictions"] = listOf(report.contradictions);
   out["known_sensors"] = listOf(report.known_sensors);
+  out["seeds_left_out"] = report.seeds_left_out;
   out["sensors"] = listOf(report.sensors.sensors);
   addSegments(cloud, out);
   return out;

@@ -62,6 +62,7 @@ void printSummary(const PipelineReport& report, const StageMemory& memory,
         origin[1] + static_cast<double>(where[1]), origin[2] + static_cast<double>(where[2]));
   }
   printNotFollowed(report.known_sensors, origin, 16);
+  printSeedsLeftOut(report.seeds_left_out, 16);
   std::printf("seconds         %.2f: %s\n", report.seconds, timesText(report.stages).c_str());
   std::printf("peak memory     %.0f MB\n", static_cast<double>(memory.most()) / 1048576.0);
   std::printf("written         %s\n", out.c_str());
@@ -114,6 +115,7 @@ std::string reportText(const OrientedCloud& cloud, const StageMemory& memory,
   addList(json, "scales", report.scales);
   addList(json, "scale_components", detail::componentsOf(report.scales));
   addList(json, "known_sensors", report.known_sensors, origin);
+  json.field("seeds_left_out", report.seeds_left_out);
   addList(json, "sensors", report.sensors.sensors, origin);
   addSegments(cloud, json);
   return json.finish();

@@ -18,4 +18,7 @@ std::string describeSensor(const FoundSensor& sensor, const std::array<double, 3
 void printNotFollowed(const std::vector<KnownSensor>& sensors, const std::array<double, 3>& origin,
                       int column);
 
+/// The same of seeds that count for no point; nothing of none.
+void printSeedsLeftOut(std::size_t seeds, int column);
+
 }  // namespace segorient::program

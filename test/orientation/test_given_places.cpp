@@ -12,6 +12,7 @@
 #include <optional>
 #include <vector>
 
+#include "common/at.h"
 #include "orientation/automatic/sensor_signs.h"
 #include "orientation/sensors/given_places.h"
 #include "orientation/sensors/number_places.h"
@@ -130,6 +131,18 @@ TEST(GivenPlacesOfNobody, ARoomIsNotSeenFromAbove) {
   EXPECT_EQ(notFollowed(cloud), 1U);
 }
 
+TEST(GivenPlacesOfNobody, WhatIsSeenEdgeOnKeepsTheSideOfConvention) {
+  std::vector<float> xyz;
+  for (int i = 0; i < 900; ++i) {
+    xyz.insert(xyz.end(), {static_cast<float>(i / 30), static_cast<float>(i % 30), 0.F, 0.F});
+  }
+  OrientationHints hints;
+  hints.has_viewpoint = true;
+  hints.viewpoint = {200.F, 30.F, 0.F};
+  const OrientedCloud cloud = orient(xyz, hints);
+  for (std::size_t i = 0; i < 900; ++i) ASSERT_GT(cloud.normals[4 * i + 2], 0.F) << i;
+}
+
 TEST(NumberedScans, OnlyLargePartsOfSeveralPlacesAreSplitOff) {
   using Places = std::vector<std::array<float, 3>>;
   // Place 0 has scans 4 (three points), 7 (three) and 8 (one); place 1 scan 5.
@@ -165,6 +178,7 @@ struct Square {
   detail::SeenPoints seen;
   OrientationHints given;
   OrientationHints found;
+  std::vector<std::uint8_t> either_side;
 
   Square() {
     for (int i = 0; i < 100; ++i) {
@@ -179,7 +193,7 @@ struct Square {
     }
   }
   std::optional<OrientationHints> completed(std::vector<KnownSensor>& scans) const {
-    return detail::completePlaces(given, found, cloud, seen, scans);
+    return detail::completePlaces(given, found, either_side, cloud, seen, scans);
   }
   void forget(std::size_t row) {
     for (std::size_t p = 0; p < cloud.size(); ++p) {
@@ -213,6 +227,21 @@ TEST(CompletedPlaces, RowsWithoutOneTakeWhatWasFound) {
   ASSERT_TRUE(done);
   EXPECT_EQ(done->viewpoints[3 * 70 + 2], 30.F);
   EXPECT_EQ(done->viewpoints[3 * 10 + 2], 20.F);
+}
+
+TEST(CompletedPlaces, WhatOnesOnEitherSideMayHaveSeenTakesNone) {
+  Square square;
+  std::vector<KnownSensor> scans{scanOf(50, true, 0.2F), scanOf(48, true, 0.2F)};
+  square.either_side.assign(square.cloud.size(), 0);
+  for (const std::size_t row : {70, 80}) {
+    square.given.viewpoints[3 * row] = kNaN;
+    square.forget(row);
+  }
+  square.either_side[at(square.cloud.pointOf(80))] = 1;
+  const auto done = square.completed(scans);
+  ASSERT_TRUE(done);
+  EXPECT_EQ(done->viewpoints[3 * 70], 5.F);
+  EXPECT_TRUE(std::isnan(done->viewpoints[3 * 80]));
 }
 
 TEST(CompletedPlaces, WhatIsFoundElsewhereForMostOfAScanTakesThePlaceOfWhatNothingConfirms) {

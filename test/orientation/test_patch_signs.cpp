@@ -14,6 +14,7 @@
 
 #include "orientation/automatic/even_cells.h"
 #include "orientation/automatic/orient_points.h"
+#include "orientation/automatic/patch_equations.h"
 #include "orientation/automatic/patch_signs.h"
 #include "orientation/automatic/sign_patches.h"
 #include "sheet_fixture.h"
@@ -204,6 +205,21 @@ TEST(SignPatches, BordersSayWhetherNormalsAgree) {
   EXPECT_TRUE(any_opposed);
   // A line of 60 points among 3600 with eight neighbours each, of which three lie across it.
   EXPECT_NEAR(detail::brokenShare(cells, cells.normals), 2. * 60 * 3 / (3600. * 8), .008);
+}
+
+// Of so many parts without a neighbour no field tells the signs, and equations go by the square.
+TEST(PatchSigns, OfManySmallPartsNoEquationsAreMade) {
+  for (const std::size_t parts : {900U, 1100U}) {
+    Bodies chips;
+    for (std::size_t i = 0; i < 16 * parts; ++i) {
+      const auto part = static_cast<float>(i / 16);
+      const float x = 20.F * part + static_cast<float>(i % 4);
+      chips.add({x, static_cast<float>(i / 4 % 4), 0.F}, {0.F, 0.F, 1.F}, false);
+    }
+    const EvenCells cells = detail::gatherCells(viewOf(chips.xyz), chips.normals, .5F, 1);
+    const detail::PatchEquations equations(cells, 1.F, 1);
+    EXPECT_EQ(equations.size(), parts < 1000 ? parts : 0U);
+  }
 }
 
 TEST(PatchSigns, BodiesInContactHaveTheirOutsideOut) {

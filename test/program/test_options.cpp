@@ -156,6 +156,11 @@ TEST(Hints, DecideTheSideOfAnOpenSurface) {
   const std::string other =
       directory.write("other.xyz", "x y z nx ny nz\n500000 5400000 99 0 0 1\n");
   EXPECT_EQ(run({"--seeds", other}, in), 0.0);
+  // In other coordinates.
+  const std::string moved = directory.write("moved.xyz", "x y z nx ny nz\n0 0 99 0 0 -1\n");
+  EXPECT_EQ(run({"--seeds", moved}, in), run({}, in));
+  const Outcome said = runProgram({"orient", in, out, "--seeds", moved});
+  EXPECT_NE(said.out.find("not followed    1 seeds"), std::string::npos) << said.out;
   // What was oriented stays so.
   const std::string kept = directory.file("kept.pcd");
   ASSERT_EQ(runProgram({"orient", in, kept, "--seeds", seed}).status, 0);

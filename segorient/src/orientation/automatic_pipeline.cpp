@@ -107,6 +107,7 @@ class AutomaticRun {
     PointHints known = resolveHints(choice.hints ? *choice.hints : hints, cloud_);
     known.place = choice.place;
     known.either_side = std::move(choice.either_side);
+    report_.seeds_left_out = hints.seeds.size() - known.seeds.size();
     if (choice.refused) report_.known_sensors.push_back(*choice.refused);
     if (choice.hiding) hiding_ = std::move(choice.hiding);
     report_.sensors = std::move(choice.sensors);
@@ -124,7 +125,7 @@ class AutomaticRun {
     if (!choice.sensors.sure()) return;
     std::vector<KnownSensor> scans = result.orientation.sensors;
     const std::optional<OrientationHints> completed =
-        completePlaces(given, *choice.hints, cloud_, result.orientation, scans);
+        completePlaces(given, *choice.hints, choice.either_side, cloud_, result.orientation, scans);
     if (!completed) return;
     AutoStages second = orient(resolveHints(*completed, cloud_));
     if (seeBothSides(second.orientation.sensors)) return;

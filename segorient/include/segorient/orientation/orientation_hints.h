@@ -64,7 +64,9 @@ struct OrientationHints {
   std::vector<OrganizedGrid> grids;
   /// Normals whose signs say something: 3 floats an input row, NaN or 0 = none; as `viewpoints`.
   std::vector<float> normals;
-  std::vector<Seed> seeds;  ///< each counts for the point nearest to it; NaN or zero: none
+  /// Each counts for the point nearest to it; none: NaN, zero, and what is farther from the cloud
+  /// than that is wide, as it must be in other coordinates (PipelineReport::seeds_left_out).
+  std::vector<Seed> seeds;
   /// Where a sensor may have stood; tried where none is known, see SensorOptions::suggestions.
   std::vector<std::array<float, 3>> suggested{{0.F, 0.F, 0.F}};
 };

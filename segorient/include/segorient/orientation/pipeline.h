@@ -128,6 +128,7 @@ struct PipelineReport {
   /// as the points do not contradict each other or their sensors decide.
   std::vector<ScaleEnergy> scales;
   std::vector<KnownSensor> known_sensors;  ///< of AUTO: what became of known sensors
+  std::size_t seeds_left_out = 0;          ///< of AUTO: seeds that count for no point
   /// What AUTO found where no sensor was given, or none that was given is believed; empty
   /// otherwise. sensor_of is by input row, and empty where no sensor was found.
   SensorReport sensors;

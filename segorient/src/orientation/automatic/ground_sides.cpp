@@ -145,8 +145,8 @@ std::vector<Ballot> groundVotes(const SheetSigns& sheets, const std::vector<floa
     columns[c].forEachEnd(sheets, [&](std::uint32_t i, float facing, bool one_layer) {
       if (!one_layer) return;
       Ballot& ballot = out[at(sheets.clusters.of(at(sheets.segmentation.labels[i])))];
-      ballot.balance += side * facing;
-      ballot.total += 1.F;
+      ballot.balance += static_cast<double>(side * facing);
+      ballot.total += 1.0;
     });
   }
   return out;

@@ -19,14 +19,14 @@ constexpr float kMostSplit = 0.01F;
 // against their own segment. \param own components that do not ask it
 float splitOf(const SheetSigns& sheets, const std::vector<Ballot>& ballots,
               const std::vector<bool>& own) {
-  float agreed = 0.F;
-  float total = 0.F;
+  double agreed = 0.0;
+  double total = 0.0;
   for (std::size_t s = 0; s < ballots.size(); ++s) {
     if (own[at(sheets.component_of[s])]) continue;
     agreed += std::fabs(ballots[s].balance);
     total += ballots[s].total;
   }
-  return total > 0.F ? 0.5F * (1.F - agreed / total) : 0.F;
+  return total > 0.0 ? 0.5F * (1.F - static_cast<float>(agreed / total)) : 0.F;
 }
 
 // What the winding number may leave of a surface that counts as closed, whatever a place says. A

@@ -22,8 +22,8 @@ void followDecided(const std::vector<Ballot>& ballots, const std::vector<BorderV
                    std::vector<bool> decided, std::vector<std::int8_t>& signs) {
   const std::size_t n = signs.size();
   std::vector<std::vector<std::uint32_t>> borders(n);
-  std::vector<float> balance(n);
-  std::vector<float> all(n);
+  std::vector<double> balance(n);
+  std::vector<double> all(n);
   for (std::size_t s = 0; s < n; ++s) {
     balance[s] = ballots[s].balance;
     all[s] = ballots[s].total;
@@ -31,11 +31,11 @@ void followDecided(const std::vector<Ballot>& ballots, const std::vector<BorderV
   for (std::size_t v = 0; v < votes.size(); ++v) {
     for (const std::int32_t s : {votes[v].a, votes[v].b}) {
       borders[at(s)].push_back(static_cast<std::uint32_t>(v));
-      all[at(s)] += votes[v].absolute;
+      all[at(s)] += static_cast<double>(votes[v].absolute);
     }
   }
   struct Candidate {
-    float sureness;
+    double sureness;
     std::size_t segment;
     bool operator<(const Candidate& o) const {
       return sureness != o.sureness ? sureness < o.sureness : segment > o.segment;
@@ -47,7 +47,7 @@ void followDecided(const std::vector<Ballot>& ballots, const std::vector<BorderV
     for (const std::uint32_t v : borders[s]) {
       const std::size_t other = at(at(votes[v].a) == s ? votes[v].b : votes[v].a);
       if (decided[other] || votes[v].weight == 0.F) continue;
-      balance[other] += votes[v].weight * static_cast<float>(signs[s]);
+      balance[other] += static_cast<double>(votes[v].weight) * signs[s];
       queue.push({surenessOf(other), other});
     }
   };
@@ -59,8 +59,8 @@ void followDecided(const std::vector<Ballot>& ballots, const std::vector<BorderV
     queue.pop();
     const std::size_t s = next.segment;
     // What has heard more since is in the queue again.
-    if (decided[s] || next.sureness != surenessOf(s) || balance[s] == 0.F) continue;
-    signs[s] = balance[s] < 0.F ? std::int8_t{-1} : std::int8_t{1};
+    if (decided[s] || next.sureness != surenessOf(s) || balance[s] == 0.0) continue;
+    signs[s] = balance[s] < 0.0 ? std::int8_t{-1} : std::int8_t{1};
     decided[s] = true;
     tellNeighbors(s);
   }
@@ -68,8 +68,8 @@ void followDecided(const std::vector<Ballot>& ballots, const std::vector<BorderV
 
 }  // namespace
 
-bool isClear(float facing) {
-  return std::fabs(facing) >= kClear;
+bool isClear(double facing) {
+  return std::fabs(facing) >= static_cast<double>(kClear);
 }
 
 std::vector<float> facingOf(const SheetField& field, std::size_t points,
@@ -96,9 +96,7 @@ std::vector<Ballot> facingBySegment(const std::vector<float>& facing,
   for (std::size_t i = 0; i < facing.size(); ++i) {
     if (segmentation.labels[i] < 0) continue;
     Ballot& ballot = out[static_cast<std::size_t>(segmentation.labels[i])];
-    const float vote = std::clamp(facing[i], -kClear, kClear);
-    ballot.balance += static_cast<float>(segmentation.signs[i]) * vote;
-    ballot.total += std::fabs(vote);
+    ballot.add(static_cast<float>(segmentation.signs[i]) * std::clamp(facing[i], -kClear, kClear));
   }
   return out;
 }
@@ -109,15 +107,15 @@ std::vector<bool> turnToSensors(const std::vector<Ballot>& ballots,
   std::vector<bool> by_sensors(signs.size(), false);
   // Along its rim a segment has points that belong to the next one and were seen from elsewhere:
   // what few points say must be more than what its borders could.
-  std::vector<float> borders(signs.size(), 0.F);
+  std::vector<double> borders(signs.size(), 0.0);
   for (const BorderVote& v : votes) {
-    borders[static_cast<std::size_t>(v.a)] += v.absolute;
-    borders[static_cast<std::size_t>(v.b)] += v.absolute;
+    borders[static_cast<std::size_t>(v.a)] += static_cast<double>(v.absolute);
+    borders[static_cast<std::size_t>(v.b)] += static_cast<double>(v.absolute);
   }
   for (std::size_t s = 0; s < signs.size(); ++s) {
     if (!isClear(ballots[s].balance) || std::fabs(ballots[s].balance) < borders[s]) continue;
     by_sensors[s] = true;
-    signs[s] = ballots[s].balance < 0.F ? std::int8_t{-1} : std::int8_t{1};
+    signs[s] = ballots[s].balance < 0.0 ? std::int8_t{-1} : std::int8_t{1};
   }
   if (others_follow) followDecided(ballots, votes, by_sensors, signs);
   return by_sensors;

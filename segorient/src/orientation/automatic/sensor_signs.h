@@ -34,6 +34,6 @@ std::vector<bool> turnToSensors(const std::vector<Ballot>& ballots,
                                 std::vector<std::int8_t>& signs);
 
 /// Whether that many standard errors leave no doubt, so that the point need not ask its surface.
-bool isClear(float facing);
+bool isClear(double facing);
 
 }  // namespace segorient::detail

@@ -15,7 +15,7 @@ constexpr float kCosine = 0.9F;  // 25 degrees: more is an edge, or another shee
 constexpr float kOffPlane =
     0.3F;  // 17 degrees: what such a curve leaves, and no gap between sheets
 constexpr std::size_t kCells = 80;  // some nine across: a few of its borders' lengths
-constexpr std::size_t kMost = 500;  // patches: the normal equations of so many take .1 s
+constexpr std::size_t kFull = 500;  // patches of full size: their normal equations take .1 s
 constexpr std::size_t kLeast = 4;   // cells that make a piece of surface
 
 // The distance of a place from a cell's plane, as a share of the distance between both.
@@ -99,9 +99,10 @@ bool goesOn(const EvenCells& cells, std::size_t i, std::size_t q) {
 SignPatches growPatches(const EvenCells& cells) {
   SignPatches out;
   out.of.assign(cells.size(), -1);
-  const std::size_t most = std::max(kCells, cells.size() / kMost);
-  float area = 0.F;
-  for (const float a : cells.areas) area += a;
+  const std::size_t most = std::max(kCells, cells.size() / kFull);
+  double sum = 0.0;
+  for (const float a : cells.areas) sum += static_cast<double>(a);
+  const auto area = static_cast<float>(sum);
   std::vector<std::uint8_t> taken(cells.size(), 0);
   for (std::size_t i = 0; i < cells.size(); ++i) taken[i] = isSurface(cells, i) ? 0 : 1;
   for (std::size_t i = 0; i < cells.size(); ++i) {

@@ -71,9 +71,8 @@ bool isUnder(const Box& cloud, const std::array<float, 3>& place) {
 }
 
 // How far each cluster faces the place.
-std::vector<Ballot> facingOf(const SheetSigns& sheets, const std::array<float, 3>& place) {
-  std::vector<double> balance(sheets.clusters.size(), 0.0);
-  std::vector<double> total(balance.size(), 0.0);
+std::vector<Ballot> facingPlace(const SheetSigns& sheets, const std::array<float, 3>& place) {
+  std::vector<Ballot> out(sheets.clusters.size());
   for (std::size_t i = 0; i < sheets.points.size; ++i) {
     const std::int32_t s = sheets.segmentation.labels[i];
     if (s < 0) continue;
@@ -81,14 +80,7 @@ std::vector<Ballot> facingOf(const SheetSigns& sheets, const std::array<float, 3
     for (std::size_t a = 0; a < 3; ++a) way[a] = place[a] - sheets.points[i][a];
     const float along = dot(sheets.field.normals + 4 * i, way.data());
     const float cosine = along / std::sqrt(dot(way.data(), way.data()));
-    if (!std::isfinite(cosine)) continue;
-    const std::size_t c = at(sheets.clusters.of(at(s)));
-    balance[c] += static_cast<double>(sheets.pointSign(i) * cosine);
-    total[c] += static_cast<double>(std::fabs(cosine));
-  }
-  std::vector<Ballot> out;
-  for (std::size_t c = 0; c < balance.size(); ++c) {
-    out.push_back({static_cast<float>(balance[c]), static_cast<float>(total[c])});
+    if (std::isfinite(cosine)) out[at(sheets.clusters.of(at(s)))].add(sheets.pointSign(i) * cosine);
   }
   return out;
 }
@@ -98,7 +90,7 @@ std::vector<float> meanCosines(const SheetSigns& sheets, const std::vector<Ballo
                                const std::vector<std::int32_t>& component_of) {
   std::vector<float> out(sheets.windings.size(), 0.F);
   for (std::size_t c = 0; c < facing.size(); ++c) {
-    if (component_of[c] >= 0) out[at(component_of[c])] += facing[c].balance;
+    if (component_of[c] >= 0) out[at(component_of[c])] += static_cast<float>(facing[c].balance);
   }
   const std::vector<std::size_t> counts = sheets.componentSizes();
   for (std::size_t c = 0; c < out.size(); ++c) {
@@ -114,7 +106,7 @@ void turnClusters(const std::vector<std::int8_t>& sides,
                   SheetSigns& sheets) {
   for (std::size_t c = 0; c < facing.size(); ++c) {
     const int side = component_of[c] < 0 ? 0 : sides[at(component_of[c])];
-    facing[c].balance *= static_cast<float>(side);
+    facing[c].balance *= side;
   }
   sheets.turnClusters(sheets.outvoted(facing, kSureBorders));
 }
@@ -130,7 +122,7 @@ std::vector<bool> faceSuggestedPlace(SheetSigns& sheets,
   const bool suits = sheets.hints.place.suggestion_suits;
   if (!asked || !(suits || isBefore(sheets.points, place))) return out;
   const bool under = suits || isUnder(boxWithout(kStrays, sheets.points, kSample), place);
-  const std::vector<Ballot> facing = facingOf(sheets, place);
+  const std::vector<Ballot> facing = facingPlace(sheets, place);
   const std::vector<std::int32_t> component_of = sheets.componentsOfClusters();
   const std::vector<float> cosines = meanCosines(sheets, facing, component_of);
   std::vector<std::int8_t> sides(components.size(), 0);

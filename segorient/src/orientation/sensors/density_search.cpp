@@ -274,6 +274,7 @@ SensorReport searchByDensity(PreparedCloud& cloud, const SensorOptions& options,
   if (out.sure() && areInABody(out, patches, cloud, views.flat(), options.threads)) {
     for (FoundSensor& sensor : out.sensors) sensor.sure = false;
     std::fill(out.sensor_of.begin(), out.sensor_of.end(), -1);
+    out.either_side.clear();
     out.why = "from the places that explain the densities it looks like a body";
   }
   if (!out.sure() && isEven(patches, out.deviation)) {

@@ -19,6 +19,8 @@
 namespace segorient::detail {
 namespace {
 
+constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
+
 bool isConfirmed(const KnownSensor& scan) {
   // Places with few points each are not looked at one by one.
   return scan.used && (scan.moving || scan.confirmed || scan.density < kConfirmed);
@@ -51,6 +53,7 @@ bool leavesDoubt(const std::vector<KnownSensor>& scans, const PreparedCloud& clo
 
 std::optional<OrientationHints> completePlaces(const OrientationHints& given,
                                                const OrientationHints& found,
+                                               const std::vector<std::uint8_t>& either_side,
                                                const PreparedCloud& cloud, const SeenPoints& seen,
                                                std::vector<KnownSensor>& scans) {
   std::vector<std::size_t> elsewhere(scans.size(), 0);
@@ -77,14 +80,17 @@ std::optional<OrientationHints> completePlaces(const OrientationHints& given,
     }
   }
   OrientationHints out = given;
-  out.viewpoints.resize(found.viewpoints.size(), std::numeric_limits<float>::quiet_NaN());
+  out.viewpoints.resize(found.viewpoints.size(), kNaN);
   bool changed = false;
   for (std::size_t row = 0; row < cloud.rows(); ++row) {
     if (cloud.pointOf(row) < 0) continue;
-    const std::int32_t scan = seen.sensor_of[at(cloud.pointOf(row))];
+    const std::size_t point = at(cloud.pointOf(row));
+    const std::int32_t scan = seen.sensor_of[point];
     if (scan >= 0 && scans[at(scan)].used) continue;
-    std::copy_n(&found.viewpoints[3 * row], 3, &out.viewpoints[3 * row]);
-    changed = changed || isFinite(&found.viewpoints[3 * row]);
+    float* const place = &out.viewpoints[3 * row];
+    std::copy_n(&found.viewpoints[3 * row], 3, place);
+    if (!either_side.empty() && either_side[point] != 0) std::fill_n(place, 3, kNaN);
+    changed = changed || isFinite(place);
   }
   return changed ? std::optional(std::move(out)) : std::nullopt;
 }

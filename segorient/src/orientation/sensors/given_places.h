@@ -24,12 +24,15 @@ bool leavesDoubt(const std::vector<KnownSensor>& scans, const PreparedCloud& clo
 /// contradict a scan that nothing confirms, and any once one is not used, as poses that were mixed
 /// up are wrong together. It does if most of the scan's points were seen from another direction.
 /// What contradicts confirmed scans of most points takes no place.
-/// \param given viewpoints by row \param found the same, of sensors that are sure
+/// \param given viewpoints by row
+/// \param found the same, of sensors that are sure
+/// \param either_side one a point, as SensorReport has it: rows of these take none; empty = none
 /// \param seen by the sensors that were given: both members are filled
 /// \param scans the sensors; what is contradicted is no longer used
 /// \return none where that changes nothing
 std::optional<OrientationHints> completePlaces(const OrientationHints& given,
                                                const OrientationHints& found,
+                                               const std::vector<std::uint8_t>& either_side,
                                                const PreparedCloud& cloud, const SeenPoints& seen,
                                                std::vector<KnownSensor>& scans);
 

@@ -12,9 +12,7 @@ namespace {
 
 // What is seen edge-on says little: each vote weighs as much as it points along the normal.
 void vote(const float* normal, float sign, const float* direction, Ballot& ballot) {
-  const float agree = sign * dot(normal, direction);
-  ballot.balance += agree;
-  ballot.total += std::fabs(agree);
+  ballot.add(sign * dot(normal, direction));
 }
 
 }  // namespace
@@ -33,8 +31,8 @@ std::vector<HintVotes> hintVotes(const PointView& points, const SheetField& fiel
     if (!hints.has_viewpoint) continue;
     float to_viewpoint[3];
     for (std::size_t a = 0; a < 3; ++a) to_viewpoint[a] = hints.viewpoint[a] - points[i][a];
-    mine.view.balance += sign * dot(n, to_viewpoint) > 0.F ? 1.F : -1.F;
-    mine.view.total += 1.F;
+    const float facing = sign * dot(n, to_viewpoint);
+    if (facing != 0.F) mine.view.add(facing > 0.F ? 1.F : -1.F);
   }
   for (const PointHints::Seed& seed : hints.seeds) {
     const std::int32_t s = segmentation.labels[seed.point];

@@ -5,6 +5,7 @@
 #include <segorient/common/point_view.h>
 #include <segorient/segmentation/segmentation.h>
 
+#include <cmath>
 #include <vector>
 
 #include "orientation/sensors/point_hints.h"
@@ -14,14 +15,19 @@ namespace segorient::detail {
 
 /// Votes for and against the sign that something has.
 struct Ballot {
-  float balance = 0.F;
-  float total = 0.F;
+  double balance = 0.0;
+  double total = 0.0;
 
+  void add(float vote) {
+    balance += static_cast<double>(vote);
+    total += static_cast<double>(std::fabs(vote));
+  }
   void add(const Ballot& other, int sign) {
-    balance += static_cast<float>(sign) * other.balance;
+    balance += sign * other.balance;
     total += other.total;
   }
-  float share() const { return total > 0.F ? balance / total : 0.F; }  ///< -1 to 1
+  /// -1 to 1
+  float share() const { return total > 0.0 ? static_cast<float>(balance / total) : 0.F; }
 };
 
 /// What hints say of a segment, a cluster or a component.

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include "common/box.h"
 #include "common/in_double.h"
 #include "common/unit_vector.h"
 #include "orientation/sensors/sensor_hints.h"
@@ -105,14 +106,17 @@ void addSensors(const OrientationHints& hints, const PreparedCloud& cloud,
   }
 }
 
+// A seed that is farther from the cloud than that is wide is in other coordinates.
 void addSeeds(const OrientationHints& hints, PreparedCloud& cloud,
               std::vector<PointHints::Seed>& seeds) {
   if (hints.seeds.empty() || cloud.size() == 0) return;
+  Box box;
+  for (std::size_t i = 0; i < cloud.size(); ++i) box.add(cloud.points()[i]);
   for (const OrientationHints::Seed& given : hints.seeds) {
     PointHints::Seed seed;
     const Vector position = scaled(given.position, cloud.unit());
     if (!unitVector(inDouble(given.normal.data()), seed.normal.data()) ||
-        !isFinite(position.data()))
+        !isFinite(position.data()) || !box.contains(position.data(), box.diagonal()))
       continue;
     const search::Nearest nearest(cloud.index(), position.data());
     if (nearest.point < 0) continue;
