@@ -28,4 +28,13 @@ inline bool unitVector(const std::array<double, 3>& v, float* out) {
   return true;
 }
 
+/// The direction from one place to another. \return as above
+inline bool directionTo(const float* from, const float* to, float* out) {
+  std::array<double, 3> way{};
+  for (std::size_t a = 0; a < 3; ++a) {
+    way[a] = static_cast<double>(to[a]) - static_cast<double>(from[a]);
+  }
+  return unitVector(way, out);
+}
+
 }  // namespace segorient

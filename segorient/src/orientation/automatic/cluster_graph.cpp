@@ -49,7 +49,7 @@ ClusterGraph::ClusterGraph(const std::vector<std::uint32_t>& sizes,
 }
 
 std::int32_t ClusterGraph::find(std::int32_t segment, int& sign) const {
-  // Without path compression: smaller clusters join larger ones, so paths are short.
+  // Without path compression: what has fewer borders joins what has more, so paths are short.
   sign = 1;
   while (parent_[at(segment)] != segment) {
     sign *= parity_[at(segment)];

@@ -55,9 +55,6 @@ class ClusterGraph {
 
   std::vector<Edge> edges() const;             ///< between the present clusters
   std::vector<std::int32_t> clusters() const;  ///< present clusters, ascending
-  std::uint32_t points(std::int32_t cluster) const {
-    return sizes_[static_cast<std::size_t>(cluster)];
-  }
 
  private:
   struct Candidate;

@@ -44,7 +44,7 @@ SEGORIENT_ORIENTATION_EXPORT CoarseLevel makeLevel(const PointView& points, floa
 /// contradictions, as in clean clouds and thin walls, nothing is done that costs anything.
 ///
 /// Hints hold at every scale: a subset's points have those of the points that they stand for, and
-/// sensors that the cloud itself made out; at last what a sensor saw leans to it: leanToSensors().
+/// sensors that the cloud itself made out.
 ///
 /// \param fine what orient() found for all points; signs, confidences and components may be
 ///        replaced

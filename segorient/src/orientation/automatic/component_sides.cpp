@@ -51,7 +51,7 @@ bool turnLooseParts(SheetSigns& sheets, const std::vector<std::int32_t>& part_of
 void turnLooseParts(SheetSigns& sheets) {
   std::vector<std::int32_t> part_of = sheets.clusters.of();
   const std::vector<bool> all(sheets.windings.size(), true);
-  if (turnLooseParts(sheets, part_of, all, {1.0 / 3.0, 0.2})) sheets.windComponents();
+  if (turnLooseParts(sheets, part_of, all, {})) sheets.windComponents();
   std::vector<bool> clean(sheets.windings.size());
   for (std::size_t c = 0; c < clean.size(); ++c) {
     clean[c] = sheets.windings[c].residual <= kClosedResidual;

@@ -119,6 +119,8 @@ void turnWhatStands(SheetSigns& sheets, const std::vector<Ballot>& ballots) {
 }  // namespace
 
 void followHints(SheetSigns& sheets) {
+  const PointHints& hints = sheets.hints;
+  if (!hints.has_viewpoint && hints.directions.empty() && hints.seeds.empty()) return;
   std::vector<HintVotes> by_cluster(sheets.clusters.size());
   for (std::size_t s = 0; s < sheets.clusters.size(); ++s) {
     by_cluster[at(sheets.clusters.of(s))].add(sheets.hint_votes[s], sheets.signs[s]);

@@ -15,8 +15,8 @@ namespace {
 
 // Places where the winding number is asked: eight and more for each sign.
 constexpr std::size_t kPlaces = 4000;
-// Of clouds of many small parts, which are no bodies. What grows to its full size is 500 patches;
-// the most of 300 clouds were 526. Memory and time go by the square.
+// More are many small parts, of which four places each tell no sign, and memory and time go by the
+// square. Patches of full size are 500; of 126 clouds the most were 526.
 constexpr std::size_t kMostPatches = kPlaces / 4;
 // So that smoothness and the winding number weigh alike: a patch of 80 cells has some 27 pairs of
 // neighbours across each of four sides. Opposed across one side it pays for 32 cells, on the wrong

@@ -99,7 +99,8 @@ FilteredNormals filterOrientedNormals(const PointView& points, const Neighborhoo
                                       std::vector<float> oriented,
                                       const std::vector<float>& spacing, float residual, int rounds,
                                       bool wedges, int threads) {
-  // A tenth of a spacing is what curvature explains at one spacing's distance, beside the noise.
+  // What curvature explains beside the noise: .03 of a spacing of how well a plane fits, and a
+  // tenth, the root of .01, of how far a neighbour lies off it at one spacing's distance.
   const float half_fit = 0.03F + residual;
   const detail::FourFloats xyz(points);
   Round round{nb,

@@ -13,6 +13,7 @@
 #include "common/median.h"
 #include "common/parallel_for.h"
 #include "features/symmetric_eigen.h"
+#include "search/index_of.h"
 
 namespace segorient::detail {
 namespace {
@@ -186,6 +187,12 @@ bool DensityPatches::haveWalls() const {
   return 2 * walls.size() > some.size() && std::any_of(walls.begin(), walls.end(), isAcross);
 }
 
+search::MedianHashIndex DensityPatches::index(int threads) const {
+  std::vector<float> centers;
+  for (std::size_t i = 0; i < size(); ++i) centers.insert(centers.end(), {x[i], y[i], z[i]});
+  return search::indexOf({centers.data(), 3, size()}, threads);
+}
+
 void DensityPatches::setSparsity() {
   const float middle = median(log_density);
   sparsity.resize(log_density.size());
@@ -196,7 +203,6 @@ DensityPatches DensityPatches::thinned(std::size_t count) const {
   DensityPatches out;
   out.k = k;
   out.tell_laws = tell_laws;
-  out.flat = flat;
   out.spacing = spacing;
   out.reach = reach;
   for (const std::size_t i : EveryNth(size(), std::max<std::size_t>(1, count))) {

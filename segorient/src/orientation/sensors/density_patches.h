@@ -48,10 +48,13 @@ struct DensityPatches {
   /// direction: as in rooms, unlike on what was turned on a lathe.
   bool haveWalls() const;
 
+  /// Of the centres.
+  search::MedianHashIndex index(int threads) const;
+
   /// Fills `sparsity` from `log_density`.
   void setSparsity();
 
-  /// Every m-th piece, at most `count` or a few more.
+  /// Every m-th piece: `count` of them, at most twice as many.
   DensityPatches thinned(std::size_t count) const;
 };
 

@@ -143,7 +143,7 @@ FoundPlace findStation(const DensityPatches& patches, float constant, const Sens
 
 // Whether a place is under the cloud's ground, about as far away as that is wide: of what a camera
 // sees that looks along +z, the upper side is the other one.
-bool isUnder(const Extent& ground, const std::array<float, 3>& place) {
+bool isUnderGround(const Extent& ground, const std::array<float, 3>& place) {
   const double below = ground.low[2] - static_cast<double>(place[2]);
   return below > 0.0 && below < 2.0 * ground.diagonal() &&
          looksUpAt(place, toFloat(ground.middle()));
@@ -156,7 +156,7 @@ void lookForUpperSide(PreparedCloud& cloud, const DensityPatches& patches,
   if (!options.search || patches.size() == 0) return;
   const Extent ground = extentOf(patches);
   for (const std::array<float, 3>& s : options.suggestions) {
-    if (isUnder(ground, s)) return;
+    if (isUnderGround(ground, s)) return;
   }
   out.faces_up = measureHeightField(cloud, patches).sure();
   if (out.faces_up) out.why += ", but it is one surface over the ground, whose upper side is seen";

@@ -128,14 +128,8 @@ bool DepthSteps::isWithin(std::size_t i, const std::vector<std::size_t>& others)
   constexpr float kHalf = 0.45F * kCircle;  // less than half: at the rim, errors decide
   if (others.size() < 3) return false;
   const float* u = &seen_.direction[4 * i];
-  std::size_t least = 0;
-  for (std::size_t a = 1; a < 3; ++a) {
-    if (std::fabs(u[a]) < std::fabs(u[least])) least = a;
-  }
-  Eigen::Vector3f axis = Eigen::Vector3f::Zero();
-  axis[static_cast<Eigen::Index>(least)] = 1.F;
   const Eigen::Vector3f ray(u[0], u[1], u[2]);
-  const Eigen::Vector3f x = ray.cross(axis).normalized();
+  const Eigen::Vector3f x = ray.unitOrthogonal();
   const Eigen::Vector3f y = ray.cross(x);
   std::vector<float> angles;
   for (const std::size_t q : others) {

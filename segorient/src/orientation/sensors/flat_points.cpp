@@ -15,8 +15,7 @@
 namespace segorient::detail {
 namespace {
 
-// Steps of depth are some spacings wide: more than once or twice as many make them no easier to
-// tell.
+// Steps of depth are some spacings wide: of denser points none is easier to tell.
 constexpr std::size_t kMostPoints = 40000;
 // ns a point, see resolveThreads().
 constexpr double kPlaneTime = 500.0;

@@ -33,7 +33,7 @@ class FlatPoints {
   const float* normal(std::size_t i) const { return &normal_[4 * i]; }
   /// Those on surfaces, ascending.
   const std::vector<std::size_t>& onSurfaces() const { return on_surfaces_; }
-  /// Of these an even part, `count` or a few more.
+  /// Of these an even part: `count` of them, at most twice as many.
   std::vector<std::size_t> someOnSurfaces(std::size_t count) const;
   std::array<float, 3> middle() const;
 

@@ -11,7 +11,6 @@
 
 #include "common/at.h"
 #include "common/dot.h"
-#include "common/in_double.h"
 #include "common/unit_vector.h"
 #include "orientation/sensors/known_sensors.h"
 #include "orientation/sensors/sensor_hints.h"
@@ -32,10 +31,9 @@ bool hasPlace(const std::vector<float>& places, std::size_t row) {
 
 // Whether a place is in the direction of a sensor, as seen from a point.
 bool isTowards(const float* toward, const float* place, const float* from) {
-  std::array<double, 3> v = inDouble(place);
-  for (std::size_t a = 0; a < 3; ++a) v[a] -= static_cast<double>(from[a]);
   float direction[3];
-  return unitVector(v, direction) && static_cast<double>(dot(toward, direction)) >= kSameWay;
+  return directionTo(from, place, direction) &&
+         static_cast<double>(dot(toward, direction)) >= kSameWay;
 }
 
 }  // namespace

@@ -38,8 +38,9 @@ constexpr float kCrowded = 6.F;
 constexpr float kFewUpright = 0.4F;
 // Columns of two spacings hold four points of a surface above: one in fifty is empty.
 constexpr float kOver = 2.F;
-// Layers closer than that, in the neighbourhood of a flat piece: plates have them at .6 of the
-// pieces and more, aircraft see them at .22, or at .42 where houses are as small as the spacing.
+// Layers in the neighbourhood of a flat piece, kBehind its plane and more: plates have them at .6
+// of the pieces and more, aircraft see them at .22, or at .42 where houses are as small as the
+// spacing.
 constexpr int kAround = 256;
 constexpr float kBehind = 1.F;    // spacings
 constexpr float kOnPlane = 0.5F;  // spacings: noise that leaves a piece flat

@@ -139,7 +139,7 @@ std::optional<FoundSensor> cameraOfImage(const PointView& points, std::size_t wi
     out.position[static_cast<std::size_t>(a)] = static_cast<float>(position[a]);
     out.axis[static_cast<std::size_t>(a)] = static_cast<float>(axis[a]);
   }
-  // Of normalised pixels half are farther from the middle than 1.
+  // In pixels that have a spread of 1 along each side of the image: a share of its size.
   out.cost_ratio = static_cast<float>(errors.median);
   out.sure = true;
   return out;

@@ -58,17 +58,6 @@ constexpr float kSureWhereMuch = 0.4F;
 
 constexpr std::array<double, 3> kUp{0.0, 0.0, 1.0};  // a direction, not a threshold
 
-// Of each point, -1 = none.
-std::vector<std::int32_t> nearestPieces(const PointView& points, const DensityPatches& patches,
-                                        int threads) {
-  std::vector<float> centers;
-  for (std::size_t i = 0; i < patches.size(); ++i) {
-    centers.insert(centers.end(), {patches.x[i], patches.y[i], patches.z[i]});
-  }
-  return search::nearestOf(search::indexOf({centers.data(), 3, patches.size()}, threads), points,
-                           threads);
-}
-
 // What the pieces tell of each point.
 void assignPlaces(const FramedPoints& cloud, const DensityPatches& patches,
                   const detail::PieceOrigins& origins, int threads, SensorReport& report) {
@@ -143,7 +132,8 @@ void lookWithin(const PointView& points, const DensityPatches& all, const detail
   const detail::SeenWithin seen = detail::seenWithin(patches, occupancy, extent, threads);
   if (seen.directions.empty()) return;
   if (areInABody(seen.places, patches, points, threads)) return;
-  const std::vector<std::int32_t> piece = nearestPieces(points, patches, threads);
+  const std::vector<std::int32_t> piece =
+      search::nearestOf(patches.index(threads), points, threads);
   report.directions.assign(3 * points.size, 0.F);
   for (std::size_t i = 0; i < piece.size(); ++i) {
     if (piece[i] < 0) continue;

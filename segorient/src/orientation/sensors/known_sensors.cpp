@@ -142,9 +142,7 @@ class Finder {
     out_.toward.assign(3 * points_.size, 0.F);
     for (std::size_t i = 0; i < points_.size; ++i) {
       if (out_.sensor_of[i] < 0) continue;
-      std::array<double, 3> v = inDouble(&sensors[3 * i]);
-      for (std::size_t a = 0; a < 3; ++a) v[a] -= static_cast<double>(points_[i][a]);
-      unitVector(v, &out_.toward[3 * i]);
+      directionTo(points_[i], &sensors[3 * i], &out_.toward[3 * i]);
     }
   }
 

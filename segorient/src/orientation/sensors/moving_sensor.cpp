@@ -30,11 +30,11 @@ constexpr int kPlaces = 9;            // a line of places is as good as a path o
 constexpr int kElevations = 72;       // bins of 2.5 degrees: 16 beams are 2 degrees apart
 constexpr int kBeamRounds = 6;
 constexpr float kPrior = 0.02F;  // of an even share of the pieces: empty bins stay as they are
-// Of path lengths, as parts of the scene's: from standing nearly still on, each about twice the
+// Of path lengths, as parts of the scene's: standing nearly still, and then each about twice the
 // last, since a path is found from starts of half its length to twice.
 constexpr std::array<double, 4> kLengths{0.02, 0.2, 0.44, 0.9};
-constexpr std::size_t kStarts =
-    12;  // that are followed, of each length: a third, as the best may be dead ends
+// That are followed of each length's 54, as the best may be dead ends.
+constexpr std::size_t kStarts = 12;
 constexpr int kEvaluations = 160;
 constexpr double kStep = 0.04;  // of the extent
 constexpr int kFineEvaluations = 60;

@@ -8,7 +8,7 @@
 
 #include "orientation/sensors/density_patches.h"
 #include "orientation/sensors/occupancy.h"
-#include "orientation/sensors/shares.h"
+#include "orientation/sensors/piece_origins.h"
 #include "orientation/sensors/station_search.h"
 
 namespace segorient::detail {

@@ -108,12 +108,7 @@ class PlaceFinder {
 PointPlaces placesOfPoints(const FramedPoints& cloud, const DensityPatches& patches,
                            const PieceOrigins& origins,
                            const std::vector<std::array<float, 3>>& places, int threads) {
-  std::vector<float> centers;
-  for (std::size_t i = 0; i < patches.size(); ++i) {
-    centers.insert(centers.end(), {patches.x[i], patches.y[i], patches.z[i]});
-  }
-  const search::MedianHashIndex pieces =
-      search::indexOf({centers.data(), 3, patches.size()}, threads);
+  const search::MedianHashIndex pieces = patches.index(threads);
   const PlaceFinder finder(cloud, patches, origins, places);
   PointPlaces out;
   out.place.assign(cloud.points.size, -1);

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "orientation/sensors/density_patches.h"
-#include "orientation/sensors/shares.h"
+#include "orientation/sensors/piece_origins.h"
 
 namespace segorient::detail {
 

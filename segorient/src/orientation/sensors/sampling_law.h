@@ -55,7 +55,7 @@ float costOf(const DensityPatches& patches, const Place& place, std::vector<floa
 /// The mean direction from the place to the pieces: where a camera there would have looked.
 std::array<double, 3> meanView(const DensityPatches& patches, const std::array<double, 3>& from);
 
-/// The place and, where the law has one, the axis of least cost near `start`.
+/// Moves a place and, where its law has one, its axis to the least cost nearby.
 /// \param step of the position at first; 0 = the position is known, only the axis is sought
 /// \param free_axis otherwise ANGLE_GRID keeps its axis and PINHOLE takes meanView()
 float refinePlace(const DensityPatches& patches, double step, bool free_axis, int evaluations,

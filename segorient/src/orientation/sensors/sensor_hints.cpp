@@ -9,7 +9,9 @@
 #include <optional>
 #include <utility>
 
+#include "common/dot.h"
 #include "common/every_nth.h"
+#include "common/unit_vector.h"
 
 namespace segorient::detail {
 namespace {
@@ -88,30 +90,24 @@ bool contradictsPlace(const PreparedCloud& cloud, const SensorReport& report,
                       const std::array<float, 3>& place) {
   constexpr std::size_t kSample = 1000;  // a mean of so many is sure to a hundredth
   if (!report.sure()) return false;
-  const auto unit = static_cast<double>(cloud.unit());
-  const auto directionTo = [unit](const float* from, const std::array<float, 3>& to) {
-    std::array<double, 3> d{};
-    double square = 0.0;
-    for (std::size_t a = 0; a < 3; ++a) {
-      d[a] = static_cast<double>(to[a]) / unit - static_cast<double>(from[a]);
-      square += d[a] * d[a];
-    }
-    for (double& v : d) v /= std::sqrt(square);
-    return d;
-  };
+  std::vector<std::array<float, 3>> found;
+  for (const FoundSensor& s : report.sensors) found.push_back(cloud.inUnit(s.position));
+  const std::array<float, 3> given = cloud.inUnit(place);
   double sum = 0.0;
   std::size_t count = 0;
   const PointView points = cloud.points();
   for (const std::size_t i : EveryNth(points.size, kSample)) {
-    const std::array<double, 3> given = directionTo(points[i], place);
-    double least = 2.0;
-    for (const FoundSensor& s : report.sensors) {
-      const std::array<double, 3> found = directionTo(points[i], s.position);
-      const double cosine = given[0] * found[0] + given[1] * found[1] + given[2] * found[2];
-      if (cosine < least) least = cosine;
+    float to_given[3];
+    if (!directionTo(points[i], given.data(), to_given)) continue;
+    float least = 2.F;
+    for (const std::array<float, 3>& f : found) {
+      float to_found[3];
+      if (directionTo(points[i], f.data(), to_found)) {
+        least = std::min(least, dot(to_given, to_found));
+      }
     }
-    if (least > 1.5) continue;  // in one of the places
-    sum += least;
+    if (least > 1.5F) continue;  // it is where they are
+    sum += static_cast<double>(least);
     ++count;
   }
   return count > 0 && sum < kSameWay * static_cast<double>(count);

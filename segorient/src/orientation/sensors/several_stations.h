@@ -9,7 +9,7 @@
 
 #include "orientation/sensors/density_patches.h"
 #include "orientation/sensors/occupancy.h"
-#include "orientation/sensors/shares.h"
+#include "orientation/sensors/piece_origins.h"
 
 namespace segorient::detail {
 

@@ -57,13 +57,13 @@ bool isOutside(const FlatPoints& flat, const Place& place, const Place& middle, 
 void countSteps(const FlatPoints& flat, const DepthSteps& depth, int threads, Shadows& out) {
   const std::vector<DepthSteps::Step> found =
       depth.of(flat.someOnSurfaces(kSamples), DepthSteps::Side::BEFORE, threads);
-  const auto share = [&](DepthSteps::Step what) {
+  const auto count = [&](DepthSteps::Step what) {
     return static_cast<float>(std::count(found.begin(), found.end(), what));
   };
   const auto surface = static_cast<float>(found.size());
-  const float covered = share(DepthSteps::Step::COVERED);
-  const float hidden = covered + share(DepthSteps::Step::HIDDEN);
-  const float steps = hidden + share(DepthSteps::Step::BESIDE);
+  const float covered = count(DepthSteps::Step::COVERED);
+  const float hidden = covered + count(DepthSteps::Step::HIDDEN);
+  const float steps = hidden + count(DepthSteps::Step::BESIDE);
   if (steps < kFewest) return;
   out.covered = covered / surface;
   out.hidden = hidden / surface;

@@ -86,7 +86,7 @@ class Solver {
     }
   }
 
-  // Enough of each component to see it, and of the large ones in proportion: some thousand in all.
+  // Enough of each component to see it, and of the large ones in proportion.
   void takeSamples() {
     constexpr double kAll = 2000.0;
     for (std::size_t c = 0; c < rows_.size(); ++c) {

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "orientation/sensors/known_sensors.h"
-#include "orientation/sensors/shares.h"
+#include "orientation/sensors/piece_origins.h"
 #include "search/index_of.h"
 
 namespace segorient {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026, the segorient authors
-#include "orientation/sensors/shares.h"
+#include "orientation/sensors/piece_origins.h"
 
 #include <algorithm>
 #include <cmath>
