@@ -172,6 +172,9 @@ int runEvaluate(const std::vector<std::string>& words) {
   if (!line.parse(words)) return 0;
   common.check();
   warnOfSharedOptions(line, common);
+  for (const char* name : {"TRUTH", "RESULT"}) {
+    requireOwnReport(report_path, line.argument(name), name);
+  }
 
   std::optional<OutputFile> report_file;
   if (!report_path.empty()) report_file.emplace(report_path);

@@ -148,7 +148,8 @@ int runOrient(const std::vector<std::string>& words) {
   stages.apply(line, common, options);
   hints.check(line, common, options);
   stages.warnOfUnused(line, common, options);
-  if (report_path == line.argument("OUT")) throw UsageError("--report and OUT are the same file");
+  requireOwnReport(report_path, line.argument("OUT"), "OUT");
+  for (const std::string& in : line.inputs()) requireOwnReport(report_path, in, "IN");
   if (tiles.wanted() || tiles.needed(line, common, options)) {
     runAllSteps(tiles.request(line, common, options, hints), tiles.folder(), report_path,
                 common.quiet);

@@ -118,6 +118,39 @@ TEST(Usage, WrongUsageIsStatus2AndOneLine) {
   EXPECT_EQ(directory.entries(), 0U);
 }
 
+// Whatever way its name is written.
+TEST(Usage, AReportIsNoOtherFileOfItsCommand) {
+  const ScratchDirectory directory;
+  const std::string in = directory.write("in.xyz", "0 0 0 0 0 1\n1 0 0 0 0 1\n0 1 0 0 0 1\n");
+  const std::string before = readFile(in);
+  const std::string folder = directory.file("");
+  std::filesystem::create_symlink(in, directory.file("link.xyz"));
+  const std::size_t entries = directory.entries();
+  const std::vector<std::pair<std::vector<std::string>, std::string>> commands{
+      {{"orient", in, directory.file("out.ply")}, "./out.ply"},
+      {{"orient", in, directory.file("out.ply")}, "./in.xyz"},
+      {{"orient", folder, directory.file("out.ply"), "--memory", "2G"}, "in.xyz"},
+      {{"orient", in, folder, "--memory", "2G"}, "in.ply"},
+      {{"segment", in, directory.file("out.ply")}, "./out.ply"},
+      {{"segment", in, directory.file("out.ply")}, "link.xyz"},
+      {{"check", in, directory.file("out.ply")}, "./out.ply"},
+      {{"check", in}, "./in.xyz"},
+      {{"check", in, "--picture", directory.file("a.png")}, "./a.png"},
+      {{"evaluate", in, in}, "./in.xyz"}};
+  for (const auto& [command, report] : commands) {
+    SCOPED_TRACE(command[0] + " --report " + report);
+    std::vector<std::string> words = command;
+    words.insert(words.end(), {"--report", directory.file(report)});
+    const Outcome run = runProgram(words);
+    EXPECT_EQ(run.status, 2);
+    EXPECT_TRUE(isOneLine(run.err)) << run.err;
+    EXPECT_EQ(readFile(in), before);
+    EXPECT_EQ(directory.entries(), entries);
+  }
+  // Relative names of what is not there yet.
+  EXPECT_EQ(runProgram({"orient", in, "no_such.ply", "--report", "./no_such.ply"}).status, 2);
+}
+
 TEST(Usage, OutputThatCannotBeWrittenIsStatus1) {
   const ScratchDirectory directory;
   std::filesystem::create_directory(directory.file("taken.pcd"));
