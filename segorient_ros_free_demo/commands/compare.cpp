@@ -203,6 +203,7 @@ int runCompare(const std::vector<std::string>& words) {
   common.add(line);
   if (!line.parse(words)) return 0;
   common.check();
+  requireFinite(line, {"azimuth", "elevation"});
   require(poisson.depth >= 2 && poisson.depth <= 14, "--depth must be 2 to 14");
   PipelineOptions options;
   stages.apply(line, common, options);

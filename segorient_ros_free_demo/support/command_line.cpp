@@ -3,6 +3,7 @@
 #include "support/command_line.h"
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <iostream>
 
@@ -99,6 +100,12 @@ void requireEnding(const std::string& path, const std::vector<std::string>& endi
   for (const std::string& e : endings) known += " " + e;
   require(std::find(endings.begin(), endings.end(), fileEnding(path)) != endings.end(),
           path + ": an output file must end in one of" + known);
+}
+
+void requireFinite(const CommandLine& line, const std::vector<std::string>& names) {
+  for (const std::string& name : names) {
+    require(std::isfinite(line.get<double>(name)), "--" + name + " must be a finite number");
+  }
 }
 
 void requireOwnReport(const std::string& report, const std::string& path, const std::string& name) {

@@ -104,6 +104,9 @@ TEST(Usage, WrongUsageIsStatus2AndOneLine) {
       {"render", fandisk(), directory.file("out.jpg")},
       {"render", fandisk(), directory.file("out.png"), "--width", "0"},
       {"render", fandisk(), directory.file("out.html"), "--points", "0"},
+      {"render", fandisk(), directory.file("out.html"), "--points", "-1"},
+      {"render", fandisk(), directory.file("out.png"), "--azimuth", "nan"},
+      {"compare", fandisk(), "--picture", directory.file("out.png"), "--elevation", "inf"},
       {"render", fandisk(), directory.file("out.png"), "--color", "taste"},
       {"evaluate", fandisk()}};
   for (const auto& words : wrong) {
