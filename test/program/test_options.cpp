@@ -53,6 +53,11 @@ TEST(Options, EveryCommandTakesWhatAllShare) {
   // Without a screen view gets no further than that.
   unsetenv("DISPLAY");
   EXPECT_EQ(runProgram({"view", out, "-k", "3", "--seed", "1", "--quiet"}).status, 1);
+  setenv("DISPLAY", ":98765", 1);
+  const Outcome unreached = runProgram({"view", out});
+  unsetenv("DISPLAY");
+  EXPECT_EQ(unreached.status, 1);
+  EXPECT_TRUE(isOneLine(unreached.err)) << unreached.err;
 }
 
 TEST(Options, ThoseWithoutEffectAreNamed) {
