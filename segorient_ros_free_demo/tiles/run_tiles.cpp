@@ -194,6 +194,7 @@ void runAllSteps(const TileRequest& request, const std::string& folder_asked_for
   // Files of folders are named here first.
   for (const PlanInput& in : names.inputs) requireOwnReport(report_path, in.path, "IN");
   for (const PlanOutput& out : names.outputs) requireOwnReport(report_path, out.path, "OUT");
+  if (!report_path.empty()) requireWritable(report_path);
   WorkFolder work(folder, true);
   work.removeUnfinished();
   TilesRun run;

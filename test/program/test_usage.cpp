@@ -169,6 +169,24 @@ TEST(Usage, OutputThatCannotBeWrittenIsStatus1) {
   EXPECT_FALSE(std::filesystem::exists(directory.file("out.pcd")));
 }
 
+// Before hours of work, not after them, and no folder is made for what can't be.
+TEST(Usage, OutputOfTilesThatCannotBeWrittenIsStatus1AtOnce) {
+  const ScratchDirectory directory;
+  std::filesystem::create_directories(directory.file("folder/fandisk_16475.pcd"));
+  const std::vector<std::pair<std::string, std::string>> outputs{
+      {"missing/out.pcd", "report.json"},
+      {"folder", "report.json"},
+      {"out.pcd", "missing/report.json"}};
+  for (const auto& [out, report] : outputs) {
+    const Outcome run = runProgram({"orient", fandisk(), directory.file(out), "--memory", "2G",
+                                    "--report", directory.file(report)});
+    EXPECT_EQ(run.status, 1) << out;
+    EXPECT_TRUE(isOneLine(run.err)) << run.err;
+    EXPECT_TRUE(run.out.empty()) << run.out;
+    EXPECT_EQ(directory.entries(), 1U) << out;
+  }
+}
+
 TEST(Usage, AFailedRunLeavesThePreviousOutput) {
   const ScratchDirectory directory;
   const std::string out = directory.write("out.pcd", "precious");
