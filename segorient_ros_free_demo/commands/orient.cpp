@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstdio>
+#include <filesystem>
 #include <optional>
 #include <vector>
 
@@ -154,6 +155,11 @@ int runOrient(const std::vector<std::string>& words) {
     runAllSteps(tiles.request(line, common, options, hints), tiles.folder(), report_path,
                 common.quiet);
     return 0;
+  }
+  for (const std::string& in : line.inputs()) {
+    if (std::filesystem::is_directory(in)) {
+      throw FileError(in, "is a directory; its clouds are read with --memory, as in --memory 4G");
+    }
   }
   requireEnding(line.argument("OUT"), {".pcd", ".ply", ".las"});
 

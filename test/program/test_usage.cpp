@@ -169,6 +169,15 @@ TEST(Usage, OutputThatCannotBeWrittenIsStatus1) {
   EXPECT_FALSE(std::filesystem::exists(directory.file("out.pcd")));
 }
 
+TEST(Usage, AFolderIsForTiles) {
+  const ScratchDirectory directory;
+  const Outcome run =
+      runProgram({"orient", SEGORIENT_TEST_DATA, directory.file("out.ply"), "--quiet"});
+  EXPECT_EQ(run.status, 1);
+  EXPECT_TRUE(isOneLine(run.err)) << run.err;
+  EXPECT_NE(run.err.find("--memory"), std::string::npos) << run.err;
+}
+
 // Before hours of work, not after them, and no folder is made for what can't be.
 TEST(Usage, OutputOfTilesThatCannotBeWrittenIsStatus1AtOnce) {
   const ScratchDirectory directory;
