@@ -128,7 +128,8 @@ int runOrient(const std::vector<std::string>& words) {
       "Gives every point of IN a normal; the normals point outward where there is an\n"
       "outside, and agree with each other where there is none. OUT (.pcd, .ply or .las)\n"
       "has the points of IN in the same order, with normals, curvature, segment labels\n"
-      "and colours, and all other fields of IN. Defaults need no tuning.\n"
+      "and colours, and all other fields of IN. Colours that IN has are kept instead. In\n"
+      "PLY, normals are nx ny nz, colours red green blue. Defaults need no tuning.\n"
       "Several IN, each with its own sensor, become one OUT, one after another, with\n"
       "fields scan (0, 1, ...) and vp_x vp_y vp_z (where the sensor was).",
       "segorient orient scan.ply oriented.pcd --report report.json");

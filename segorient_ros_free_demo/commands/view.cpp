@@ -38,8 +38,10 @@ int runView(const std::vector<std::string>& words) {
   int every = 0;
   CommonOptions common;
   line.arguments({"IN"});
-  line.options()("color", po::value(&color)->default_value("auto"),
-                 "auto (segment, else rgb), normal, segment, rgb")(
+  line.options()(
+      "color", po::value(&color)->default_value("auto"),
+      "auto (segment, else rgb, else normal), normal, orientation, segment (field label), "
+      "confidence (field confidence), height, scan (field scan), rgb")(
       "every", po::value(&every)->default_value(10), "a line at one of so many normals; 0 = none");
   takeSharedOptions(line);
   common.take(line);

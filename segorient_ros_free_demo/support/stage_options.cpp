@@ -39,8 +39,9 @@ const char* estimatorName(NormalEstimator estimator) {
   return "auto";
 }
 
-void StageOptions::addMethod(CommandLine& line, bool orients) {
-  auto options = orients ? line.options() : line.unlisted();
+void StageOptions::addMethod(CommandLine& line) {
+  // Segments are those of the orientation.
+  auto options = ends_with_ == LastStage::NORMALS ? line.unlisted() : line.options();
   options("method", po::value(&method_)->default_value("auto"),
           "of orientation: auto (the best known), propagation, boundary, combined or extremal\n"
           "(the paper's), hoppe (the classical tree over points)")(
@@ -58,7 +59,7 @@ void StageOptions::add(CommandLine& line, LastStage last, const std::string& usu
   const std::string recompute = orients ? "; method auto does so in its own way" : "";
   ends_with_ = last;
   line.options()("neighbors,k", po::value(&k_), ("neighbours of a point; left out: " + k).c_str());
-  addMethod(line, orients);
+  addMethod(line);
   line.options()(
       "normals", po::value(&normals_)->default_value("auto"),
       ("auto (chosen from the cloud itself), plane, lct, ldt, awas or awas3" + normals).c_str())(

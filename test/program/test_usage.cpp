@@ -44,6 +44,9 @@ TEST(Usage, HelpOfTheProgramAndOfEveryCommand) {
     EXPECT_EQ(runProgram({"help", again}).out, help.out);
     EXPECT_EQ(runProgram({again, again}).out, help.out);
   }
+  EXPECT_NE(help.out.find(".html"), std::string::npos);
+  EXPECT_NE(runProgram({"segment", "--help"}).out.find("--method arg"), std::string::npos);
+  EXPECT_NE(runProgram({"view", "--help"}).out.find("height"), std::string::npos);
   // What a command makes no use of is not in its help.
   EXPECT_NE(orient.find("--verbose"), std::string::npos);
   EXPECT_EQ(runProgram({"segment", "--help"}).out.find("--verbose"), std::string::npos);
