@@ -209,6 +209,10 @@ int runCompare(const std::vector<std::string>& words) {
   stages.apply(line, common, options);
   hints.check(line, common, options);
   stages.warnOfUnused(line, common, options);
+  if (!common.quiet) {
+    if (picture_path.empty()) nameUnused(line, {"azimuth", "elevation"}, "without --picture");
+    if (poisson.prefix.empty()) nameUnused(line, {"depth", "truth"}, "without --poisson");
+  }
   std::optional<OutputFile> picture;
   if (!picture_path.empty()) {
     requireEnding(picture_path, {".png"});

@@ -163,6 +163,7 @@ int runOrient(const std::vector<std::string>& words) {
     }
   }
   requireEnding(line.argument("OUT"), {".pcd", ".ply", ".las"});
+  if (!common.quiet) nameUnused(line, {"work"}, "without --memory");
 
   OutputFile out(line.argument("OUT"));
   std::optional<OutputFile> report;

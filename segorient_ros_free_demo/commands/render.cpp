@@ -51,6 +51,15 @@ class KnownOptions {
   std::string sensors_;
 };
 
+// A page is turned, and its colours are chosen, in the browser.
+void warnOfOtherKind(const CommandLine& line, bool page) {
+  if (page) {
+    nameUnused(line, {"color", "azimuth", "elevation", "single", "width", "height"}, "of a page");
+  } else {
+    nameUnused(line, {"points"}, "of a picture");
+  }
+}
+
 std::string baseName(const std::string& path) {
   return path.substr(path.find_last_of('/') + 1);
 }
@@ -114,13 +123,15 @@ int runRender(const std::vector<std::string>& words) {
   warnOfSharedOptions(line, common);
   require(most >= 1, "--points must be at least 1");
   requireEnding(line.argument("OUT"), {".png", ".html"});
+  const bool page = fileEnding(line.argument("OUT")) == ".html";
+  if (!common.quiet) warnOfOtherKind(line, page);
 
   OutputFile out(line.argument("OUT"));
   const std::string path = line.argument("IN");
   const CloudTable table = readUsableCloud(path);
   const LocalPoints points(table);
   const Facts facts = known.read(table);
-  if (fileEnding(out.path()) == ".html") {
+  if (page) {
     writeCloudPage(pageCloud(table, points, facts, baseName(path)),
                    {static_cast<std::size_t>(most), common.threads}, common.quiet, out);
     return 0;

@@ -95,6 +95,13 @@ void warn(const std::string& text) {
   std::cerr << "segorient: " << text << "\n";
 }
 
+void nameUnused(const CommandLine& line, const std::vector<const char*>& names,
+                const std::string& reason) {
+  for (const char* name : names) {
+    if (line.given(name)) warn("--" + std::string(name) + " changes nothing " + reason);
+  }
+}
+
 void requireEnding(const std::string& path, const std::vector<std::string>& endings) {
   std::string known;
   for (const std::string& e : endings) known += " " + e;

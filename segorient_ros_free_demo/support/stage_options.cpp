@@ -115,9 +115,7 @@ void StageOptions::warnOfUnused(const CommandLine& line, const CommonOptions& co
                                 const PipelineOptions& options) const {
   if (common.quiet) return;
   const auto name = [&line](const std::vector<const char*>& names, const std::string& reason) {
-    for (const char* option : names) {
-      if (line.given(option)) warn("--" + std::string(option) + " changes nothing " + reason);
-    }
+    nameUnused(line, names, reason);
   };
   const bool automatic = options.orientation.method == OrientationMethod::AUTO;
   const bool recomputes = options.recomputations > 0;
@@ -161,9 +159,7 @@ void takeSharedOptions(CommandLine& line, bool with_k) {
 
 void warnOfSharedOptions(const CommandLine& line, const CommonOptions& common, bool with_k) {
   if (common.quiet) return;
-  for (const char* name : kSharedAngles) {
-    if (line.given(name)) warn("--" + std::string(name) + " changes nothing of this command");
-  }
+  nameUnused(line, {kSharedAngles.begin(), kSharedAngles.end()}, "of this command");
   if (with_k && line.given("neighbors")) warn("-k changes nothing of this command");
 }
 
