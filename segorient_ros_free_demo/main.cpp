@@ -38,7 +38,7 @@ constexpr std::array kCommands{
     Command{"check", "IN [OUT]      which of IN's normals contradict sensors or surface", runCheck},
     Command{"compare", "IN            beside PCL's normal estimation", runCompare},
     Command{"evaluate", "TRUTH RESULT  how many points are oriented as the truth", runEvaluate},
-    Command{"render", "IN OUT.png    a picture", runRender},
+    Command{"render", "IN OUT        a picture (.png) or a page for a browser (.html)", runRender},
     Command{"view", "IN            the same in a window", runView},
 };
 

@@ -202,6 +202,8 @@ int runCheck(const std::vector<std::string>& words) {
   PipelineOptions options;
   options.threads = common.threads;
   hints.check(line, common, options);
+  for (const char* name : {"IN", "OUT"}) requireOwnReport(report_path, line.argument(name), name);
+  requireOwnReport(report_path, picture_path, "--picture");
   CheckOutputs outputs(line.argument("OUT"), report_path, picture_path);
 
   const std::string path = line.argument("IN");

@@ -203,11 +203,16 @@ int runCompare(const std::vector<std::string>& words) {
   common.add(line);
   if (!line.parse(words)) return 0;
   common.check();
+  requireFinite(line, {"azimuth", "elevation"});
   require(poisson.depth >= 2 && poisson.depth <= 14, "--depth must be 2 to 14");
   PipelineOptions options;
   stages.apply(line, common, options);
   hints.check(line, common, options);
   stages.warnOfUnused(line, common, options);
+  if (!common.quiet) {
+    if (picture_path.empty()) nameUnused(line, {"azimuth", "elevation"}, "without --picture");
+    if (poisson.prefix.empty()) nameUnused(line, {"depth", "truth"}, "without --poisson");
+  }
   std::optional<OutputFile> picture;
   if (!picture_path.empty()) {
     requireEnding(picture_path, {".png"});

@@ -30,9 +30,10 @@ struct Evaluation {
   std::size_t opposite = 0;
   std::size_t agreeing_by_part = 0;  // with the better sign of each part
   std::size_t parts = 0;             // 0: the truth has no field `part`
-  double rms = 0.0;
-  double median = 0.0;
-  double p90 = 0.0;
+  // Angles in degrees; NaN where no point has both normals.
+  double rms = NAN;
+  double median = NAN;
+  double p90 = NAN;
 
   double share(std::size_t n) const {
     return scored == 0 ? 0.0 : 100.0 * static_cast<double>(n) / static_cast<double>(scored);
@@ -128,8 +129,12 @@ void print(const Evaluation& e) {
                 e.share(e.agreeing_by_part), e.scored - e.agreeing_by_part, e.parts);
   }
   if (e.without_normal > 0) std::printf("without a normal            %zu\n", e.without_normal);
-  std::printf("angle to the true normal    rms %.3f  median %.3f  p90 %.3f deg  (sign ignored)\n",
-              e.rms, e.median, e.p90);
+  std::printf("angle to the true normal    ");
+  if (std::isnan(e.rms)) {
+    std::printf("-\n");
+    return;
+  }
+  std::printf("rms %.3f  median %.3f  p90 %.3f deg  (sign ignored)\n", e.rms, e.median, e.p90);
 }
 
 std::string report(const Evaluation& e) {
@@ -172,6 +177,9 @@ int runEvaluate(const std::vector<std::string>& words) {
   if (!line.parse(words)) return 0;
   common.check();
   warnOfSharedOptions(line, common);
+  for (const char* name : {"TRUTH", "RESULT"}) {
+    requireOwnReport(report_path, line.argument(name), name);
+  }
 
   std::optional<OutputFile> report_file;
   if (!report_path.empty()) report_file.emplace(report_path);
@@ -181,6 +189,9 @@ int runEvaluate(const std::vector<std::string>& words) {
   if (!result.hasNormals()) throw FileError(line.argument("RESULT"), "has no normals");
   checkSamePoints(truth, result, line.argument("RESULT"));
   const Evaluation e = evaluate(truth, result);
+  if (e.scored == 0) {
+    throw FileError(line.argument("TRUTH"), "has no normals: all are zero or not finite");
+  }
   if (!common.quiet) print(e);
   if (report_file) {
     report_file->write(report(e));

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstdio>
+#include <filesystem>
 #include <optional>
 #include <vector>
 
@@ -129,7 +130,8 @@ int runOrient(const std::vector<std::string>& words) {
       "Gives every point of IN a normal; the normals point outward where there is an\n"
       "outside, and agree with each other where there is none. OUT (.pcd, .ply or .las)\n"
       "has the points of IN in the same order, with normals, curvature, segment labels\n"
-      "and colours, and all other fields of IN. Defaults need no tuning.\n"
+      "and colours, and all other fields of IN. Colours that IN has are kept instead. In\n"
+      "PLY, normals are nx ny nz, colours red green blue. Defaults need no tuning.\n"
       "Several IN, each with its own sensor, become one OUT, one after another, with\n"
       "fields scan (0, 1, ...) and vp_x vp_y vp_z (where the sensor was).",
       "segorient orient scan.ply oriented.pcd --report report.json");
@@ -150,13 +152,20 @@ int runOrient(const std::vector<std::string>& words) {
   stages.apply(line, common, options);
   hints.check(line, common, options);
   stages.warnOfUnused(line, common, options);
-  if (report_path == line.argument("OUT")) throw UsageError("--report and OUT are the same file");
+  requireOwnReport(report_path, line.argument("OUT"), "OUT");
+  for (const std::string& in : line.inputs()) requireOwnReport(report_path, in, "IN");
   if (tiles.wanted() || tiles.needed(line, common, options)) {
     runAllSteps(tiles.request(line, common, options, hints), tiles.folder(), report_path,
                 common.quiet);
     return 0;
   }
+  for (const std::string& in : line.inputs()) {
+    if (std::filesystem::is_directory(in)) {
+      throw FileError(in, "is a directory; its clouds are read with --memory, as in --memory 4G");
+    }
+  }
   requireEnding(line.argument("OUT"), {".pcd", ".ply", ".las"});
+  if (!common.quiet) nameUnused(line, {"work"}, "without --memory");
 
   OutputFile out(line.argument("OUT"));
   std::optional<OutputFile> report;

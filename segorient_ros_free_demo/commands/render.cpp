@@ -3,6 +3,7 @@
 #include "commands/commands.h"
 
 #include <algorithm>
+#include <cstdint>
 
 #include "io/file_endings.h"
 #include "io/output_file.h"
@@ -50,6 +51,15 @@ class KnownOptions {
   std::string sensors_;
 };
 
+// A page is turned, and its colours are chosen, in the browser.
+void warnOfOtherKind(const CommandLine& line, bool page) {
+  if (page) {
+    nameUnused(line, {"color", "azimuth", "elevation", "single", "width", "height"}, "of a page");
+  } else {
+    nameUnused(line, {"points"}, "of a picture");
+  }
+}
+
 std::string baseName(const std::string& path) {
   return path.substr(path.find_last_of('/') + 1);
 }
@@ -88,7 +98,7 @@ int runRender(const std::vector<std::string>& words) {
   std::string color;
   KnownOptions known;
   bool single = false;
-  std::size_t most = PageOptions().points;
+  auto most = static_cast<std::int64_t>(PageOptions().points);  // -1 would be huge without a sign
   CommonOptions common;
   line.arguments({"IN", "OUT"});
   line.options()(
@@ -100,7 +110,7 @@ int runRender(const std::vector<std::string>& words) {
       "degrees above the horizon")("single", po::bool_switch(&single), "one side only")(
       "width", po::value<std::size_t>(&view.width)->default_value(1600), "pixels")(
       "height", po::value<std::size_t>(&view.height)->default_value(800), "pixels")(
-      "points", po::value<std::size_t>(&most)->default_value(most),
+      "points", po::value(&most)->default_value(most),
       "of OUT.html: at most so many, spread evenly");
   known.add(line);
   takeSharedOptions(line);
@@ -108,19 +118,22 @@ int runRender(const std::vector<std::string>& words) {
   if (!line.parse(words)) return 0;
   require(view.width >= 2 && view.width <= 16384 && view.height >= 1 && view.height <= 16384,
           "--width and --height must be 2 to 16384");
+  requireFinite(line, {"azimuth", "elevation"});
   common.check();
   warnOfSharedOptions(line, common);
   require(most >= 1, "--points must be at least 1");
   requireEnding(line.argument("OUT"), {".png", ".html"});
+  const bool page = fileEnding(line.argument("OUT")) == ".html";
+  if (!common.quiet) warnOfOtherKind(line, page);
 
   OutputFile out(line.argument("OUT"));
   const std::string path = line.argument("IN");
   const CloudTable table = readUsableCloud(path);
   const LocalPoints points(table);
   const Facts facts = known.read(table);
-  if (fileEnding(out.path()) == ".html") {
-    writeCloudPage(pageCloud(table, points, facts, baseName(path)), {most, common.threads},
-                   common.quiet, out);
+  if (page) {
+    writeCloudPage(pageCloud(table, points, facts, baseName(path)),
+                   {static_cast<std::size_t>(most), common.threads}, common.quiet, out);
     return 0;
   }
   const Coloring coloring = parseColoring(color, table, path, facts);

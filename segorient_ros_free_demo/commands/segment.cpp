@@ -122,8 +122,7 @@ int runSegment(const std::vector<std::string>& words) {
   hints.check(line, common, options);
   stage_options.warnOfUnused(line, common, options);
   requireEnding(line.argument("OUT"), {".pcd", ".ply", ".las"});
-
-  if (report_path == line.argument("OUT")) throw UsageError("--report and OUT are the same file");
+  for (const char* name : {"IN", "OUT"}) requireOwnReport(report_path, line.argument(name), name);
 
   OutputFile file(line.argument("OUT"));
   std::optional<OutputFile> report;

@@ -11,6 +11,22 @@
 
 namespace segorient::program {
 namespace po = boost::program_options;
+namespace {
+
+void requireScreen(const std::string& path) {
+  const char* display = std::getenv("DISPLAY");
+  std::string reason;
+  if (display == nullptr || *display == '\0') {
+    reason = "DISPLAY is not set";
+  } else if (!vtkModule().has_screen()) {
+    reason = "DISPLAY is " + std::string(display) + ", which cannot be reached";
+  } else {
+    return;
+  }
+  throw FileError(path, "there is no screen to show it on (" + reason + "); see segorient render");
+}
+
+}  // namespace
 
 int runView(const std::vector<std::string>& words) {
   CommandLine line(
@@ -22,8 +38,10 @@ int runView(const std::vector<std::string>& words) {
   int every = 0;
   CommonOptions common;
   line.arguments({"IN"});
-  line.options()("color", po::value(&color)->default_value("auto"),
-                 "auto (segment, else rgb), normal, segment, rgb")(
+  line.options()(
+      "color", po::value(&color)->default_value("auto"),
+      "auto (segment, else rgb, else normal), normal, orientation, segment (field label), "
+      "confidence (field confidence), height, scan (field scan), rgb")(
       "every", po::value(&every)->default_value(10), "a line at one of so many normals; 0 = none");
   takeSharedOptions(line);
   common.take(line);
@@ -40,11 +58,7 @@ int runView(const std::vector<std::string>& words) {
                                            : "auto";
   }
   const Coloring coloring = parseColoring(color, table, path);
-  const char* display = std::getenv("DISPLAY");
-  if (display == nullptr || *display == '\0') {
-    throw FileError(path,
-                    "there is no screen to show it on (DISPLAY is not set); see segorient render");
-  }
+  requireScreen(path);
   const LocalPoints points(table);
   vtkModule().show(makeScene(table, points, nullptr, coloring, common.threads), every,
                    0.02 * points.extent());

@@ -41,7 +41,16 @@ bool InputFile::fill() {
   return got > 0;
 }
 
+// Editors on Windows begin a text with the mark of its encoding, which is no part of a word.
+void InputFile::skipByteOrderMark() {
+  constexpr std::string_view kMark = "\xef\xbb\xbf";
+  while (end_ < kMark.size() && fill()) continue;
+  if (std::string_view(buffer_.data(), end_).substr(0, kMark.size()) != kMark) return;
+  begin_ = position_ = kMark.size();
+}
+
 bool InputFile::line(std::string_view& out) {
+  if (position_ == 0) skipByteOrderMark();
   std::size_t searched = 0;
   for (;;) {
     const char* from = buffer_.data() + begin_ + searched;

@@ -26,8 +26,9 @@ class InputFile {
   std::uint64_t remaining() const { return size_ - position_; }  ///< bytes not yet read
   std::size_t lineNumber() const { return line_number_; }        ///< of the last line read
 
-  /// The next line without its end (LF or CRLF), valid until the next call; false at the end of the
-  /// file. Throws if a line is longer than any text line can be.
+  /// The next line without its end (LF or CRLF) and without a byte order mark before it, valid
+  /// until the next call; false at the end of the file. Throws if a line is longer than any text
+  /// line can be.
   bool line(std::string_view& out);
   /// Exactly so many bytes; throws if the file ends before.
   void read(void* out, std::size_t bytes);
@@ -44,6 +45,7 @@ class InputFile {
 
  private:
   bool fill();  // more bytes behind those not yet consumed; false at the end
+  void skipByteOrderMark();
 
   struct Closer {
     void operator()(std::FILE* f) const { std::fclose(f); }

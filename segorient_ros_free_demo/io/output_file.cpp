@@ -160,6 +160,10 @@ void OutputFile::commit() {
   temporary_.clear();
 }
 
+void requireWritable(const std::string& path) {
+  const OutputFile file(path);
+}
+
 void installSignalHandlers() {
   for (const int s : {SIGINT, SIGTERM, SIGHUP}) std::signal(s, removeAndEnd);
   std::signal(SIGXFSZ, SIG_IGN);

@@ -44,6 +44,10 @@ class OutputFile {
   std::FILE* file_ = nullptr;
 };
 
+/// For work so long that the file is made after it: throws what an OutputFile of this name would,
+/// and leaves nothing.
+void requireWritable(const std::string& path);
+
 /// Makes Ctrl-C and the like remove the temporary files of all OutputFiles before the program ends,
 /// and a full disk or a file size limit an error of write().
 void installSignalHandlers();

@@ -105,6 +105,17 @@ std::vector<std::string> parseNames(std::string_view line) {
   return known ? names : std::vector<std::string>{};
 }
 
+// A row with more numbers than there are names would give them to the wrong columns.
+void requireNames(const InputFile& file, const std::string& header, std::size_t names,
+                  std::string_view line, std::size_t numbers) {
+  if (header.empty() || names >= numbers) return;
+  const bool decimal_commas =
+      header.find(',') == std::string::npos && line.find(',') != std::string_view::npos;
+  file.failLine("has " + std::to_string(numbers) + " numbers, and the header has " +
+                std::to_string(names) + " names" +
+                (decimal_commas ? ": are its commas decimal ones? Points are read" : ""));
+}
+
 bool isComment(std::string_view line) {
   const std::size_t first = line.find_first_not_of(" \t");
   return first == std::string_view::npos || line[first] == '#' || line.compare(first, 2, "//") == 0;
@@ -115,6 +126,7 @@ bool isComment(std::string_view line) {
 CloudTable readText(InputFile& file) {
   Numbers numbers;
   std::vector<std::string> header;
+  std::string header_line;  // of a header that is no comment: those may be prose
   std::vector<double> row;
   std::string_view line;
   while (file.line(line)) {
@@ -127,10 +139,12 @@ CloudTable readText(InputFile& file) {
       // Before the points there may be one line of names, or of their number.
       if (!is_row && header.empty()) {
         header = parseNames(line);
+        header_line = line;
         if (!header.empty()) continue;
       }
       if (is_row && row.size() == 1 && file.lineNumber() == 1) continue;
       if (!is_row || row.size() < 3) file.failLine("does not begin with x y z");
+      requireNames(file, header_line, header.size(), line, row.size());
       numbers.columns = row.size();
     }
     if (!is_row || row.size() != numbers.columns) {

@@ -41,6 +41,22 @@ Columns columnsByName(const InputFile& file, std::string_view line) {
   return out;
 }
 
+// What these columns of a line say; false where one is missing or no number. The others may be
+// anything.
+bool parsePose(std::string_view line, const Columns& columns, Trajectory::Pose& out) {
+  std::size_t found = 0;
+  std::size_t column = 0;
+  for (auto word = nextWord(line, kTextSeparators); !word.empty();
+       word = nextWord(line, kTextSeparators), ++column) {
+    for (std::size_t c = 0; c < columns.size(); ++c) {
+      if (columns[c] != column) continue;
+      if (!parseNumber(word, c == 0 ? out.time : out.position[c - 1])) return false;
+      ++found;
+    }
+  }
+  return found == columns.size();
+}
+
 }  // namespace
 
 Trajectory readTrajectory(const std::string& path) {
@@ -48,17 +64,16 @@ Trajectory readTrajectory(const std::string& path) {
   std::vector<Trajectory::Pose> poses;
   Columns columns{0, 1, 2, 3};
   bool first = true;
-  std::vector<double> row;
   std::string_view line;
   while (file.line(line)) {
     if (isComment(line)) continue;
-    const bool numbers = parseNumbers(line, row);
-    if (first && !numbers) {
+    Trajectory::Pose pose;
+    if (parsePose(line, columns, pose)) {
+      poses.push_back(pose);
+    } else if (first) {
       columns = columnsByName(file, line);
-    } else if (!numbers || row.size() <= *std::max_element(columns.begin(), columns.end())) {
-      file.failLine("is not time x y z");
     } else {
-      poses.push_back({row[columns[0]], {row[columns[1]], row[columns[2]], row[columns[3]]}});
+      file.failLine("is not time x y z");
     }
     first = false;
   }

@@ -3,12 +3,26 @@
 #include "support/command_line.h"
 
 #include <algorithm>
+#include <cmath>
+#include <filesystem>
 #include <iostream>
 
 #include "io/file_endings.h"
 
 namespace segorient::program {
 namespace po = boost::program_options;
+namespace fs = std::filesystem;
+namespace {
+
+// Absolute first: a name of nothing that is there would else stay as it is.
+fs::path resolved(const std::string& path) {
+  const fs::path whole = fs::absolute(path).lexically_normal();
+  std::error_code error;
+  const fs::path real = fs::weakly_canonical(whole, error);
+  return error ? whole : real;
+}
+
+}  // namespace
 
 CommandLine::CommandLine(std::string usage, std::string purpose, std::string example)
     : usage_(std::move(usage)), purpose_(std::move(purpose)), example_(std::move(example)) {
@@ -81,11 +95,29 @@ void warn(const std::string& text) {
   std::cerr << "segorient: " << text << "\n";
 }
 
+void nameUnused(const CommandLine& line, const std::vector<const char*>& names,
+                const std::string& reason) {
+  for (const char* name : names) {
+    if (line.given(name)) warn("--" + std::string(name) + " changes nothing " + reason);
+  }
+}
+
 void requireEnding(const std::string& path, const std::vector<std::string>& endings) {
   std::string known;
   for (const std::string& e : endings) known += " " + e;
   require(std::find(endings.begin(), endings.end(), fileEnding(path)) != endings.end(),
           path + ": an output file must end in one of" + known);
+}
+
+void requireFinite(const CommandLine& line, const std::vector<std::string>& names) {
+  for (const std::string& name : names) {
+    require(std::isfinite(line.get<double>(name)), "--" + name + " must be a finite number");
+  }
+}
+
+void requireOwnReport(const std::string& report, const std::string& path, const std::string& name) {
+  if (report.empty() || path.empty()) return;
+  require(resolved(report) != resolved(path), "--report and " + name + " are the same file");
 }
 
 void CommonOptions::add(CommandLine& line, const char* details) {

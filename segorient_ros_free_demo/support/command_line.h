@@ -64,8 +64,16 @@ class CommandLine {
 void require(bool condition, const std::string& text);
 /// One line on standard error, about something that works otherwise than it was perhaps meant.
 void warn(const std::string& text);
+/// warn() of each of these options that was given: it changes nothing, for this reason.
+void nameUnused(const CommandLine& line, const std::vector<const char*>& names,
+                const std::string& reason);
 /// Throws a UsageError unless the ending of an output file is one of these.
 void requireEnding(const std::string& path, const std::vector<std::string>& endings);
+/// Throws a UsageError unless the values of these options, doubles all, are finite.
+void requireFinite(const CommandLine& line, const std::vector<std::string>& names);
+/// Throws a UsageError where --report is the same file as `path`, whatever way they are written:
+/// one of the two would be lost. \param name of `path` in the message; empty paths are no files
+void requireOwnReport(const std::string& report, const std::string& path, const std::string& name);
 
 /// What most commands take.
 struct CommonOptions {

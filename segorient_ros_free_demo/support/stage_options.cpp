@@ -39,8 +39,9 @@ const char* estimatorName(NormalEstimator estimator) {
   return "auto";
 }
 
-void StageOptions::addMethod(CommandLine& line, bool orients) {
-  auto options = orients ? line.options() : line.unlisted();
+void StageOptions::addMethod(CommandLine& line) {
+  // Segments are those of the orientation.
+  auto options = ends_with_ == LastStage::NORMALS ? line.unlisted() : line.options();
   options("method", po::value(&method_)->default_value("auto"),
           "of orientation: auto (the best known), propagation, boundary, combined or extremal\n"
           "(the paper's), hoppe (the classical tree over points)")(
@@ -58,7 +59,7 @@ void StageOptions::add(CommandLine& line, LastStage last, const std::string& usu
   const std::string recompute = orients ? "; method auto does so in its own way" : "";
   ends_with_ = last;
   line.options()("neighbors,k", po::value(&k_), ("neighbours of a point; left out: " + k).c_str());
-  addMethod(line, orients);
+  addMethod(line);
   line.options()(
       "normals", po::value(&normals_)->default_value("auto"),
       ("auto (chosen from the cloud itself), plane, lct, ldt, awas or awas3" + normals).c_str())(
@@ -114,9 +115,7 @@ void StageOptions::warnOfUnused(const CommandLine& line, const CommonOptions& co
                                 const PipelineOptions& options) const {
   if (common.quiet) return;
   const auto name = [&line](const std::vector<const char*>& names, const std::string& reason) {
-    for (const char* option : names) {
-      if (line.given(option)) warn("--" + std::string(option) + " changes nothing " + reason);
-    }
+    nameUnused(line, names, reason);
   };
   const bool automatic = options.orientation.method == OrientationMethod::AUTO;
   const bool recomputes = options.recomputations > 0;
@@ -160,9 +159,7 @@ void takeSharedOptions(CommandLine& line, bool with_k) {
 
 void warnOfSharedOptions(const CommandLine& line, const CommonOptions& common, bool with_k) {
   if (common.quiet) return;
-  for (const char* name : kSharedAngles) {
-    if (line.given(name)) warn("--" + std::string(name) + " changes nothing of this command");
-  }
+  nameUnused(line, {kSharedAngles.begin(), kSharedAngles.end()}, "of this command");
   if (with_k && line.given("neighbors")) warn("-k changes nothing of this command");
 }
 

@@ -34,7 +34,7 @@ class StageOptions {
                     const PipelineOptions& options) const;
 
  private:
-  void addMethod(CommandLine& line, bool orients);
+  void addMethod(CommandLine& line);
 
   LastStage ends_with_ = LastStage::ORIENTATION;
   int k_ = 0;

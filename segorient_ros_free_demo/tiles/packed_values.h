@@ -7,7 +7,7 @@
 // Numbers in as few bits as what they are for needs.
 namespace segorient::program {
 
-/// Bits of a packed normal: to two hundredths of a degree. A third of that many would spoil what
+/// Bits of a packed normal: to three hundredths of a degree. A third of that many would spoil what
 /// surfaces without noise tell.
 constexpr unsigned kNormalBits = 26;
 constexpr std::uint64_t kNoNormal = (std::uint64_t{1} << kNormalBits) - 1;  ///< of no normal

@@ -70,6 +70,7 @@ void addOutputs(const std::string& output, Plan& plan) {
     require(isWritable(output), output +
                                     ": tile by tile, an output file must end in .pcd, .ply or "
                                     ".las; or name a folder that is there");
+    requireWritable(output);
     plan.outputs.push_back({fs::absolute(output).lexically_normal().string(), 0,
                             static_cast<std::uint32_t>(plan.inputs.size())});
     return;
@@ -87,6 +88,7 @@ void addOutputs(const std::string& output, Plan& plan) {
     }
     const fs::path to = fs::absolute(fs::path(output) / name).lexically_normal();
     requireNoInput(to, inputs);
+    requireWritable(to.string());
     plan.outputs.push_back({to.string(), static_cast<std::uint32_t>(i), 1});
   }
 }

@@ -191,6 +191,10 @@ void runAllSteps(const TileRequest& request, const std::string& folder_asked_for
   const std::string folder = workFolderOf(request.output, folder_asked_for);
   Plan names;
   planFiles(request, names);  // what is wrong with the names is known before there is a folder
+  // Files of folders are named here first.
+  for (const PlanInput& in : names.inputs) requireOwnReport(report_path, in.path, "IN");
+  for (const PlanOutput& out : names.outputs) requireOwnReport(report_path, out.path, "OUT");
+  if (!report_path.empty()) requireWritable(report_path);
   WorkFolder work(folder, true);
   work.removeUnfinished();
   TilesRun run;

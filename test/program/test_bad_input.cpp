@@ -178,15 +178,18 @@ TEST(BadInput, AFullDiskLeavesThePreviousPictures) {
   const std::string poisson = directory.write("poisson.png", "precious");
   rlimit before{};
   getrlimit(RLIMIT_FSIZE, &before);
-  for (const auto& [option, name] :
-       {std::pair{"--picture", picture}, std::pair{"--poisson", directory.file("poisson")}}) {
+  for (const std::vector<std::string>& options :
+       {std::vector<std::string>{"--picture", picture},
+        {"--poisson", directory.file("poisson"), "--depth", "4"}}) {
+    std::vector<std::string> words{"compare", fandisk()};
+    words.insert(words.end(), options.begin(), options.end());
     const rlimit small{4096, before.rlim_max};
     setrlimit(RLIMIT_FSIZE, &small);
-    const Outcome run = runProgram({"compare", fandisk(), option, name, "--depth", "4"});
+    const Outcome run = runProgram(words);
     setrlimit(RLIMIT_FSIZE, &before);
-    EXPECT_EQ(run.status, 1) << option;
+    EXPECT_EQ(run.status, 1) << options[0];
     EXPECT_TRUE(isOneLine(run.err)) << run.err;
-    EXPECT_EQ(directory.entries(), 2U) << option;
+    EXPECT_EQ(directory.entries(), 2U) << options[0];
   }
   EXPECT_EQ(readFile(picture), "precious");
   EXPECT_EQ(readFile(poisson), "precious");

@@ -70,6 +70,22 @@ TEST(Evaluate, AGlobalFlipIsFoundAndSaid) {
   EXPECT_NE(run.out.find("75.0000 %  (1 wrong; flipped)"), std::string::npos) << run.out;
 }
 
+TEST(Evaluate, WithoutNormalsThereIsNoAngle) {
+  const ScratchDirectory directory;
+  const std::string some = directory.write("some.xyz", cloud({4, {0, 0, 1}}, false));
+  const std::string none = directory.write("none.xyz", cloud({4, {0, 0, 0}}, false));
+  const std::string report = directory.file("report.json");
+  const Outcome run = runProgram({"evaluate", some, none, "--report", report});
+  EXPECT_EQ(run.status, 0);
+  EXPECT_NE(run.out.find("true normal    -\n"), std::string::npos) << run.out;
+  for (const char* angle : {"rms", "median", "p90"}) {
+    EXPECT_EQ(readJson(report).get<std::string>(std::string("angle_degrees.") + angle), "null");
+  }
+  const Outcome untrue = runProgram({"evaluate", none, some});
+  EXPECT_EQ(untrue.status, 1);
+  EXPECT_TRUE(isOneLine(untrue.err)) << untrue.err;
+}
+
 TEST(Evaluate, CloudsThatDoNotMatchAreRefused) {
   const ScratchDirectory directory;
   const std::string truth =

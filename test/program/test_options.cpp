@@ -53,6 +53,11 @@ TEST(Options, EveryCommandTakesWhatAllShare) {
   // Without a screen view gets no further than that.
   unsetenv("DISPLAY");
   EXPECT_EQ(runProgram({"view", out, "-k", "3", "--seed", "1", "--quiet"}).status, 1);
+  setenv("DISPLAY", ":98765", 1);
+  const Outcome unreached = runProgram({"view", out});
+  unsetenv("DISPLAY");
+  EXPECT_EQ(unreached.status, 1);
+  EXPECT_TRUE(isOneLine(unreached.err)) << unreached.err;
 }
 
 TEST(Options, ThoseWithoutEffectAreNamed) {
@@ -97,6 +102,15 @@ TEST(Options, ThoseOfStagesThatACommandDoesNotComeToAreNamed) {
   EXPECT_TRUE(warnsOf({"segment", in, out}, "--gamma", "25"));
   EXPECT_TRUE(warnsOf({"segment", in, out, "--method", "combined"}, "--faces", ""));
   EXPECT_TRUE(warnsOf({"segment", in, out, "--normals", "ldt"}, "--open", ""));
+  EXPECT_TRUE(warnsOf({"orient", in, out}, "--work", directory.file("work")));
+  EXPECT_TRUE(warnsOf({"compare", in}, "--azimuth", "25"));
+  EXPECT_TRUE(warnsOf({"compare", in}, "--depth", "5"));
+  EXPECT_TRUE(warnsOf({"compare", in}, "--truth", in));
+  EXPECT_TRUE(warnsOf({"render", in, directory.file("a.html")}, "--width", "300"));
+  EXPECT_TRUE(warnsOf({"render", in, directory.file("a.html")}, "--single", ""));
+  EXPECT_TRUE(warnsOf({"render", in, directory.file("a.png")}, "--points", "300"));
+  EXPECT_FALSE(warnsOf({"render", in, directory.file("a.html")}, "--points", "300"));
+  EXPECT_FALSE(warnsOf({"compare", in, "--picture", directory.file("a.png")}, "--azimuth", "25"));
   EXPECT_FALSE(warnsOf({"normals", in, out, "--recompute", "1"}, "--alpha", "25"));
   EXPECT_FALSE(warnsOf({"segment", in, out, "--method", "combined"}, "--gamma", "25"));
   EXPECT_FALSE(warnsOf({"segment", in, out}, "--faces", ""));

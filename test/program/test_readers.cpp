@@ -205,6 +205,19 @@ TEST(Readers, TextWithNamesCountLineSeparatorsAndComments) {
   EXPECT_FALSE(plain.hasNormals());
 }
 
+TEST(Readers, TextMayBeginWithAByteOrderMark) {
+  const ScratchDirectory directory;
+  const std::string mark = "\xef\xbb\xbf";
+  const CloudTable named =
+      readCloud(directory.write("a.csv", mark + "X,Y,Z,nx,ny,nz\n1,2,3,0,0,1\n"));
+  EXPECT_TRUE(named.hasNormals());
+  for (const std::string name : {"a.xyz", "a.pts"}) {
+    const CloudTable table = readCloud(directory.write(name, mark + "1 2 3\n4 5 6\n"));
+    EXPECT_EQ(table.size, 2U) << name;
+    EXPECT_EQ(table.position(0)[0], 1.0) << name;
+  }
+}
+
 TEST(Readers, TextFarFromTheOriginStaysInDouble) {
   const ScratchDirectory directory;
   const std::string lines = "500000.0625 5400000.03125 100\n500010.125 5400000.0625 101\n";

@@ -168,6 +168,13 @@ TEST(TrajectoryFile, NumbersCommentsAndNames) {
       readTrajectory(directory.write("b.csv", "X,Y,Z,GPS_Time\n1,2,3,100\n4,5,6,101\n"));
   EXPECT_EQ(named.begin(), 100.0);
   EXPECT_EQ(named.poses()[1].position[0], 4.0);
+  const Trajectory more = readTrajectory(
+      directory.write("c.txt", "0 5 0 0 # start\n4000 5 0 7 station A\n5000 6 0 0 // end\n"));
+  ASSERT_EQ(more.size(), 3U);
+  EXPECT_EQ(more.poses()[1].position[2], 7.0);
+  const Trajectory among =
+      readTrajectory(directory.write("d.csv", "time,station,x,y,z,note\n8,A,1,2,3,halt\n"));
+  EXPECT_EQ(among.poses()[0].position[2], 3.0);
 }
 
 TEST(TrajectoryFile, BadOnes) {
@@ -178,6 +185,7 @@ TEST(TrajectoryFile, BadOnes) {
   };
   EXPECT_NE(result("1 2 3\n").find("line 1"), std::string::npos);
   EXPECT_NE(result("1 2 3 4\n1 2 3 x\n").find("line 2"), std::string::npos);
+  EXPECT_NE(result("1 2 3 4\n1 2 3 # 4\n").find("line 2"), std::string::npos);
   EXPECT_NE(result("# nothing\n").find("no poses"), std::string::npos);
   EXPECT_NE(result("a b c\n1 2 3 4\n").find("names"), std::string::npos);
   EXPECT_NE(result("nan 1 2 3\n").find("no poses"), std::string::npos);

@@ -44,6 +44,9 @@ TEST(Usage, HelpOfTheProgramAndOfEveryCommand) {
     EXPECT_EQ(runProgram({"help", again}).out, help.out);
     EXPECT_EQ(runProgram({again, again}).out, help.out);
   }
+  EXPECT_NE(help.out.find(".html"), std::string::npos);
+  EXPECT_NE(runProgram({"segment", "--help"}).out.find("--method arg"), std::string::npos);
+  EXPECT_NE(runProgram({"view", "--help"}).out.find("height"), std::string::npos);
   // What a command makes no use of is not in its help.
   EXPECT_NE(orient.find("--verbose"), std::string::npos);
   EXPECT_EQ(runProgram({"segment", "--help"}).out.find("--verbose"), std::string::npos);
@@ -104,6 +107,9 @@ TEST(Usage, WrongUsageIsStatus2AndOneLine) {
       {"render", fandisk(), directory.file("out.jpg")},
       {"render", fandisk(), directory.file("out.png"), "--width", "0"},
       {"render", fandisk(), directory.file("out.html"), "--points", "0"},
+      {"render", fandisk(), directory.file("out.html"), "--points", "-1"},
+      {"render", fandisk(), directory.file("out.png"), "--azimuth", "nan"},
+      {"compare", fandisk(), "--picture", directory.file("out.png"), "--elevation", "inf"},
       {"render", fandisk(), directory.file("out.png"), "--color", "taste"},
       {"evaluate", fandisk()}};
   for (const auto& words : wrong) {
@@ -116,6 +122,39 @@ TEST(Usage, WrongUsageIsStatus2AndOneLine) {
     EXPECT_TRUE(run.out.empty());
   }
   EXPECT_EQ(directory.entries(), 0U);
+}
+
+// Whatever way its name is written.
+TEST(Usage, AReportIsNoOtherFileOfItsCommand) {
+  const ScratchDirectory directory;
+  const std::string in = directory.write("in.xyz", "0 0 0 0 0 1\n1 0 0 0 0 1\n0 1 0 0 0 1\n");
+  const std::string before = readFile(in);
+  const std::string folder = directory.file("");
+  std::filesystem::create_symlink(in, directory.file("link.xyz"));
+  const std::size_t entries = directory.entries();
+  const std::vector<std::pair<std::vector<std::string>, std::string>> commands{
+      {{"orient", in, directory.file("out.ply")}, "./out.ply"},
+      {{"orient", in, directory.file("out.ply")}, "./in.xyz"},
+      {{"orient", folder, directory.file("out.ply"), "--memory", "2G"}, "in.xyz"},
+      {{"orient", in, folder, "--memory", "2G"}, "in.ply"},
+      {{"segment", in, directory.file("out.ply")}, "./out.ply"},
+      {{"segment", in, directory.file("out.ply")}, "link.xyz"},
+      {{"check", in, directory.file("out.ply")}, "./out.ply"},
+      {{"check", in}, "./in.xyz"},
+      {{"check", in, "--picture", directory.file("a.png")}, "./a.png"},
+      {{"evaluate", in, in}, "./in.xyz"}};
+  for (const auto& [command, report] : commands) {
+    SCOPED_TRACE(command[0] + " --report " + report);
+    std::vector<std::string> words = command;
+    words.insert(words.end(), {"--report", directory.file(report)});
+    const Outcome run = runProgram(words);
+    EXPECT_EQ(run.status, 2);
+    EXPECT_TRUE(isOneLine(run.err)) << run.err;
+    EXPECT_EQ(readFile(in), before);
+    EXPECT_EQ(directory.entries(), entries);
+  }
+  // Relative names of what is not there yet.
+  EXPECT_EQ(runProgram({"orient", in, "no_such.ply", "--report", "./no_such.ply"}).status, 2);
 }
 
 TEST(Usage, OutputThatCannotBeWrittenIsStatus1) {
@@ -131,6 +170,33 @@ TEST(Usage, OutputThatCannotBeWrittenIsStatus1) {
                                      directory.file("missing/report.json")});
   EXPECT_EQ(report.status, 1);
   EXPECT_FALSE(std::filesystem::exists(directory.file("out.pcd")));
+}
+
+TEST(Usage, AFolderIsForTiles) {
+  const ScratchDirectory directory;
+  const Outcome run =
+      runProgram({"orient", SEGORIENT_TEST_DATA, directory.file("out.ply"), "--quiet"});
+  EXPECT_EQ(run.status, 1);
+  EXPECT_TRUE(isOneLine(run.err)) << run.err;
+  EXPECT_NE(run.err.find("--memory"), std::string::npos) << run.err;
+}
+
+// Before hours of work, not after them, and no folder is made for what can't be.
+TEST(Usage, OutputOfTilesThatCannotBeWrittenIsStatus1AtOnce) {
+  const ScratchDirectory directory;
+  std::filesystem::create_directories(directory.file("folder/fandisk_16475.pcd"));
+  const std::vector<std::pair<std::string, std::string>> outputs{
+      {"missing/out.pcd", "report.json"},
+      {"folder", "report.json"},
+      {"out.pcd", "missing/report.json"}};
+  for (const auto& [out, report] : outputs) {
+    const Outcome run = runProgram({"orient", fandisk(), directory.file(out), "--memory", "2G",
+                                    "--report", directory.file(report)});
+    EXPECT_EQ(run.status, 1) << out;
+    EXPECT_TRUE(isOneLine(run.err)) << run.err;
+    EXPECT_TRUE(run.out.empty()) << run.out;
+    EXPECT_EQ(directory.entries(), 1U) << out;
+  }
 }
 
 TEST(Usage, AFailedRunLeavesThePreviousOutput) {

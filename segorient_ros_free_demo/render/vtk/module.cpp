@@ -9,7 +9,7 @@ extern "C" BOOST_SYMBOL_EXPORT const segorient::program::VtkModule& segorientVtk
 
 const segorient::program::VtkModule& segorientVtkModule() {
   namespace vtk = segorient::program::vtk;
-  static const segorient::program::VtkModule module{vtk::textLine, vtk::png, vtk::show,
-                                                    vtk::poisson};
+  static const segorient::program::VtkModule module{vtk::textLine, vtk::png, vtk::hasScreen,
+                                                    vtk::show, vtk::poisson};
   return module;
 }

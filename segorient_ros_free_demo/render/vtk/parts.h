@@ -9,6 +9,7 @@ namespace segorient::program::vtk {
 
 TextLine textLine(const std::string& text, int size);
 std::vector<std::uint8_t> png(const Picture& picture);
+bool hasScreen();
 void show(const Scene& scene, int every, double length);
 PoissonSurface poisson(const std::vector<std::array<float, 3>>& points,
                        const std::vector<std::array<float, 3>>& normals, int depth);

@@ -29,6 +29,8 @@ struct VtkModule {
   TextLine (*text_line)(const std::string& text, int size);
   /// The bytes of a PNG.
   std::vector<std::uint8_t> (*png)(const Picture& picture);
+  /// Whether the screen that DISPLAY names can be reached. VTK ends the program if it can't.
+  bool (*has_screen)();
   /// Shows a scene in a window until that is closed.
   /// `every`: a line at one of so many normals, 0 = none; `length` of these
   void (*show)(const Scene& scene, int every, double length);
