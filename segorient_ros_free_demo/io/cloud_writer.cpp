@@ -103,6 +103,10 @@ void CloudWriter::begin(const OutputCloud& block, std::uint64_t size) {
   begun_ = true;
   OutputCloud all = block;
   all.size = all.width = static_cast<std::size_t>(size);
+  if (width_ > 0) {
+    all.width = width_;
+    all.height = all.size / width_;
+  }
   if (kind_ == Kind::PLY) writePlyHeader(all, file_);
   if (kind_ == Kind::PCD) writePcdHeader(all, file_);
   if (kind_ == Kind::LAS) las_ = std::make_unique<LasWriter>(block, summary_, file_);

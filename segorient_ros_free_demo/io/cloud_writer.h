@@ -85,6 +85,8 @@ class CloudWriter {
   CloudWriter(const CloudWriter&) = delete;
   CloudWriter& operator=(const CloudWriter&) = delete;
 
+  /// Columns of a cloud that is organised: a PCD keeps them. Before the first block.
+  void setWidth(std::size_t width) { width_ = width; }
   /// Whether all blocks have to be summed up before the first is added.
   bool needsSummary() const { return kind_ == Kind::LAS; }
   void sumUp(const OutputCloud& block);
@@ -101,6 +103,7 @@ class CloudWriter {
   int threads_;
   Kind kind_;
   bool begun_ = false;
+  std::size_t width_ = 0;  // 0 = in no order
   LasSummary summary_;
   std::unique_ptr<LasWriter> las_;
 };

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026, the segorient authors
 #include <algorithm>
+#include <cmath>
 #include <cstring>
 #include <limits>
 #include <optional>
@@ -47,6 +48,11 @@ void readViewpoint(const InputFile& file, const std::vector<std::string_view>& v
   if (values.size() != 7) file.failLine("VIEWPOINT needs 7 numbers");
   for (std::size_t i = 0; i < 7; ++i) {
     if (!parseNumber(values[i], header.viewpoint[i])) file.failLine("VIEWPOINT is no number");
+  }
+  // A place that is nowhere is unknown, as 0 is.
+  const auto& v = header.viewpoint;
+  if (!std::all_of(v.begin(), v.end(), [](double x) { return std::isfinite(x); })) {
+    header.viewpoint = PcdHeader().viewpoint;
   }
 }
 

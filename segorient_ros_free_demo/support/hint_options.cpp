@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
+#include <limits>
 #include <memory>
 
 #include "io/join_clouds.h"
@@ -157,8 +158,10 @@ void HintOptions::check(const CommandLine& line, const CommonOptions& common,
   char end = 0;
   const bool three = std::sscanf(viewpoint_text_.c_str(), "%lf,%lf,%lf%c", &viewpoint_[0],
                                  &viewpoint_[1], &viewpoint_[2], &end) == 3;
-  const bool finite =
-      std::all_of(viewpoint_.begin(), viewpoint_.end(), [](double v) { return std::isfinite(v); });
+  const bool finite = std::all_of(viewpoint_.begin(), viewpoint_.end(), [](double v) {
+    return std::fabs(v) <= static_cast<double>(std::numeric_limits<float>::max());
+  });
+  quiet_ = common.quiet;
   require(viewpoint_text_.empty() || (three && finite),
           "--viewpoint takes three numbers, as in --viewpoint=1.5,0,-2");
   if (options.orientation.method == OrientationMethod::AUTO || common.quiet) return;
@@ -185,7 +188,15 @@ void HintOptions::apply(const CloudTable& table, const std::string& path, const 
     hints->has_viewpoint = true;
     hints->viewpoint = moved(viewpoint_text_.empty() ? sensor : viewpoint_, origin);
   }
-  if (table.hasViewpoints()) hints->viewpoints = columns(table, table.viewpoints(), origin);
+  if (table.hasViewpoints()) {
+    hints->viewpoints = columns(table, table.viewpoints(), origin);
+    const bool all = std::all_of(hints->viewpoints.begin(), hints->viewpoints.end(),
+                                 [](float v) { return std::isfinite(v); });
+    if (all && !quiet_ && (up_ || !viewpoint_text_.empty())) {
+      warn(std::string(up_ ? "--up" : "--viewpoint") + " changes nothing where " + path +
+           " says where each point was seen from (vp_x vp_y vp_z)");
+    }
+  }
   if (const Field* scan = table.find("scan")) hints->scans = scansOf(table, *scan);
   hints->grids = table.grids;
   if (table.height > 1) hints->grids = {{0, table.width, table.height}};

@@ -63,6 +63,7 @@ class HintOptions {
   bool open_ = false;
   bool keep_ = false;
   bool no_sensors_ = false;
+  bool quiet_ = false;
 };
 
 }  // namespace segorient::program

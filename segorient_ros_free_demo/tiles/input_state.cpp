@@ -24,12 +24,12 @@ namespace {
 // Names of files that steps write, and of such files before they are moved to their places.
 bool isOurs(const std::string& name, bool unfinished_only) {
   static const std::regex kFinished(
-      "plan|join|field|labels|lock|input-[0-9]+\\.ply|"
+      "plan|join|field|labels|lock|input-[0-9]+\\.(ply|pcd)|"
       "tile-[0-9]+\\.(points|rows|share|ties|signs|rows2|ties2|patches)");
   static const std::regex kUnfinished(
-      "(plan|join|field|labels|input-[0-9]+\\.ply|"
+      "(plan|join|field|labels|input-[0-9]+\\.(ply|pcd)|"
       "tile-[0-9]+\\.(points|rows|share|ties|signs|rows2|ties2|patches))"
-      "\\.([A-Za-z0-9]{6}|part)");
+      "\\.([A-Za-z0-9]{6}|[0-9]+-[0-9]+|part)");
   return std::regex_match(name, kUnfinished) ||
          (!unfinished_only && std::regex_match(name, kFinished));
 }

@@ -209,7 +209,7 @@ void openInputs(const std::string& folder, Plan& plan) {
   for (std::size_t i = 0; i < plan.inputs.size(); ++i) {
     PlanInput& in = plan.inputs[i];
     if (!CloudStream::canRead(in.path)) {
-      in.streamed = folder + "/input-" + std::to_string(i) + ".ply";
+      in.streamed = folder + "/input-" + std::to_string(i) + ".pcd";
       convert(in);
     }
     const CloudStream stream(in.streamed);

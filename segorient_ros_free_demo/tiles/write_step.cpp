@@ -159,6 +159,11 @@ void writeStep(const Plan& plan, const std::string& folder, std::size_t output, 
   for (std::size_t i = to.first_input; i < to.first_input + to.inputs; ++i) {
     size += plan.inputs[i].rows;
   }
+  if (to.inputs == 1 && size > 0) {
+    const CloudTable layout = CloudStream(plan.inputs[to.first_input].streamed).layout();
+    const bool organized = layout.height > 1 && layout.width * layout.height == size;
+    if (organized) writer.setWidth(layout.width);
+  }
   if (writer.needsSummary()) {
     forEachBlock(
         plan, to, trajectory,

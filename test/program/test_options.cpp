@@ -164,6 +164,8 @@ TEST(Hints, DecideTheSideOfAnOpenSurface) {
   const std::string above =
       directory.write("above.xyz", bowl(" vp_x vp_y vp_z", " 500000 5400000 200"));
   EXPECT_EQ(run({"--open"}, above), 0.0);
+  const Outcome useless = runProgram({"orient", above, out, "--viewpoint=0,0,0"});
+  EXPECT_NE(useless.err.find("--viewpoint changes nothing where"), std::string::npos);
   const std::string seed =
       directory.write("seed.xyz", "x y z nx ny nz\n500000 5400000 99 0 0 -1\n");
   EXPECT_EQ(run({"--seeds", seed}, in), 1.0);

@@ -68,6 +68,15 @@ TEST(Readers, PcdKeepsTypesCountsOrganisationAndViewpointAndDropsPadding) {
   EXPECT_TRUE(std::isinf(table.position(3)[0]));
 }
 
+TEST(Readers, APcdsViewpointThatIsNowhereIsNone) {
+  const ScratchDirectory directory;
+  const std::string path = directory.write(
+      "a.pcd",
+      "FIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nWIDTH 1\nHEIGHT 1\nVIEWPOINT nan 2 3 1 0 0 0\n"
+      "DATA ascii\n0 1 2\n");
+  EXPECT_EQ(readCloud(path).viewpoint, CloudTable().viewpoint);
+}
+
 TEST(Readers, BinaryPcdWithPaddingIsRepacked) {
   const ScratchDirectory directory;
   std::string content =

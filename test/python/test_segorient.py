@@ -398,6 +398,8 @@ class BadArguments(unittest.TestCase):
             (TypeError, "closed", lambda: segorient.orient(good, closed="yes")),
             (ValueError, "viewpoint", lambda: segorient.orient(good, viewpoint=[1, 2])),
             (TypeError, "viewpoint", lambda: segorient.orient(good, viewpoint="above")),
+            (ValueError, "not finite", lambda: segorient.orient(good, viewpoint=[np.nan, 0, 0])),
+            (ValueError, "normals has none", lambda: segorient.check(good, 0.0 * good)),
             (ValueError, "viewpoints", lambda: segorient.orient(good, viewpoints=good[1:])),
             (ValueError, "keep", lambda: segorient.orient(good, keep=good[1:])),
             (TypeError, "seeds", lambda: segorient.orient(good, seeds=good)),

@@ -168,6 +168,26 @@ TEST(Tiles, AFewStraysChangeNothing) {
   }
 }
 
+TEST(Tiles, AnOrganisedCloudStaysOne) {
+  const ScratchDirectory scratch;
+  std::string text = "FIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nWIDTH 60\nHEIGHT 50\nDATA ascii\n";
+  for (int row = 0; row < 50; ++row) {
+    for (int column = 0; column < 60; ++column) {
+      text += std::to_string(0.01 * column) + ' ' + std::to_string(0.01 * row) + " 1\n";
+    }
+  }
+  // As text it is copied first, as the output is not.
+  std::string in = scratch.write("in.pcd", text);
+  for (const char* name : {"first.pcd", "second.pcd"}) {
+    const std::string out = scratch.file(name);
+    expectRuns({"orient", in, out, "-q", "--memory", "1G", "--tile-points", "2000"});
+    const program::CloudTable table = program::readCloud(out);
+    EXPECT_EQ(table.width, 60U) << name;
+    EXPECT_EQ(table.height, 50U) << name;
+    in = out;
+  }
+}
+
 // A cloud without points is one all the same; hidden files and notes are none.
 TEST(Tiles, AFolderMayHoldEmptyCloudsAndOtherFiles) {
   const ScratchDirectory scratch;

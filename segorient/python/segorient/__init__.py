@@ -388,6 +388,8 @@ def _sensors(
             raise ValueError(f"viewpoint must be three numbers, not an array of shape {place.shape}")
         if np.ma.getmaskarray(viewpoint).any():
             raise ValueError("viewpoint is masked: leave it out where it is not known")
+        if not np.isfinite(place).all():
+            raise ValueError("viewpoint is not finite: leave it out where it is not known")
         options["viewpoint"] = _moved(place, origin)
     seen = None if viewpoints is None else _rows_of("viewpoints", viewpoints, size)
     if (trajectory is None) != (times is None):
@@ -580,6 +582,8 @@ def check(
     options = _options(None, "auto", None, None, None, None, 0, threads)
     array, origin = _local(points)
     given = _moved(_rows_of("normals", normals, len(array)), np.zeros(3))
+    if len(array) > 0 and not (np.isfinite(given).all(axis=1) & given.any(axis=1)).any():
+        raise ValueError("normals has none: all rows are zero or not finite")
     options.update(
         _sensors(len(array), origin, viewpoint, viewpoints, trajectory, times, up, scans, organized)
     )
