@@ -33,6 +33,8 @@ constexpr float kFlat = 0.05F;
 // or of two faces: it counts less in proportion. Of one surface with noise, such estimates differ
 // by half.
 constexpr float kSameNoise = 2.F;
+// The square of a radian: noise turns a normal at will about a line that all points around are on.
+constexpr float kAtWill = 1.F;
 // Radians: what is left where all agree.
 constexpr float kLeast = 0.02F;
 // A neighbour's plane counts while the point is within a tenth of a spacing of it, and noise.
@@ -136,6 +138,8 @@ class Leaner {
     float variance = 0.F;
     float agreement = 1.F;
     float around = 1.F;  // length of the mean of the normals around
+    bool nearest_on_line = false;
+    bool noisy_line = false;  // all points around are on it, and noise takes the nearest off it
   };
   // Of one thread, for a block of points.
   struct Room {
@@ -188,6 +192,7 @@ class Leaner {
       used += 1.F;
     }
     if (used > 0.F) out.around = around.length() / used;
+    out.nearest_on_line = isOneLine(planes[NEAREST].at(r));
     const Plane wide = planes[WIDE].at(r);
     out.few = varianceOf(planes[NEAR].at(r));
     out.variance = std::min({varianceOf(planes[NEAREST].at(r)), out.few, varianceOf(wide)});
@@ -215,6 +220,7 @@ class Leaner {
       const Plane widest = planes.at(a);
       Lean& of_point = room.leans[room.asking[a]];
       of_point.variance = std::min(of_point.variance, varianceOf(widest));
+      of_point.noisy_line = isOneLine(widest) && !of_point.nearest_on_line;
       addPlane(widest, of_point);
     }
   }
@@ -226,10 +232,9 @@ class Leaner {
     tolerance_[i] =
         h * h * kOffset * kOffset + (std::isfinite(of_point.variance) ? of_point.variance : 0.F);
     if (!scaleToUnit(of_point.mean)) return;
-    const float square =
-        kLeast * kLeast + scatterOf(of_point.agreement) + 0.25F * scatterOf(of_point.around);
-    doubt_[i] = square;
-    lean(toward(i), square, of_point.mean);
+    doubt_[i] = kLeast * kLeast + scatterOf(of_point.agreement) +
+                0.25F * scatterOf(of_point.around) + (of_point.noisy_line ? kAtWill : 0.F);
+    lean(toward(i), doubt_[i], of_point.mean);
     if (scaleToUnit(of_point.mean)) store(of_point.mean, &leaned_[4 * i]);
   }
 
@@ -237,10 +242,14 @@ class Leaner {
     return plane.valid ? std::max(0.F, plane.lambda[0]) : std::numeric_limits<float>::infinity();
   }
 
+  // Through one line, as a ring is, there are many planes.
+  static bool isOneLine(const Plane& plane) {
+    return plane.valid && !(plane.lambda[1] > kOneLine * plane.lambda[2]);
+  }
+
   // Flat planes that leave no more than few neighbours do count as much as the normal itself.
   void addPlane(const Plane& plane, Lean& to) const {
-    // Through one line, as a ring is, there are many planes.
-    if (!plane.valid || !(plane.lambda[1] > kOneLine * plane.lambda[2])) return;
+    if (!plane.valid || isOneLine(plane)) return;
     const float across = plane.lambda[0];
     const float same = across > kSameNoise * to.few ? kSameNoise * to.few / across : 1.F;
     const float weight = same / (1.F + across / (kFlat * plane.lambda[1]));
