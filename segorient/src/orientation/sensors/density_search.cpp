@@ -250,6 +250,19 @@ bool areInABody(const SensorReport& found, const DensityPatches& patches, Prepar
   return areAtOneBody(seen, has_walls, on_its_way);
 }
 
+// Stations near the middle of a hollow are much like one there, from where it looks like a body.
+void lookForSeveralInstead(const SensorReport& one, const DensityPatches& patches,
+                           PreparedCloud& cloud, int threads, SensorReport& several) {
+  if (one.sensors.size() > 1 || one.deviation < kFarBeyondChance * one.chance) return;
+  if (formALattice(cloud.points(), cloud.index(), threads)) return;
+  findSeveral(cloud, patches, SceneFrame(patches).isOwn(), threads, several);
+  const bool are_stations =
+      several.sensors.size() > 1 && several.sensors[0].kind == SensorKind::STATION;
+  if (!are_stations || several.sensors[0].cost_ratio > kMuchBetter * one.sensors[0].cost_ratio) {
+    several = {};
+  }
+}
+
 }  // namespace
 
 void setOnly(const FoundSensor& sensor, const char* why, SensorReport& out) {
@@ -270,8 +283,12 @@ SensorReport searchByDensity(PreparedCloud& cloud, const SensorOptions& options,
   }
   out.deviation = deviation(patches.log_density);
   out.chance = chanceDeviation(patches.k);
-  out = searchUpright(patches, cloud, options, views, out);
+  const SensorReport empty = out;
+  out = searchUpright(patches, cloud, options, views, empty);
   if (out.sure() && areInABody(out, patches, cloud, views.flat(), options.threads)) {
+    SensorReport several = empty;
+    if (options.search) lookForSeveralInstead(out, patches, cloud, options.threads, several);
+    if (several.sure()) return several;
     for (FoundSensor& sensor : out.sensors) sensor.sure = false;
     std::fill(out.sensor_of.begin(), out.sensor_of.end(), -1);
     out.either_side.clear();
