@@ -2,8 +2,6 @@
 // Copyright (c) 2026, the segorient authors
 #include "tiles/plan_sensors.h"
 
-#include <segorient/orientation/pipeline.h>
-
 #include <algorithm>
 #include <limits>
 #include <memory>
@@ -11,6 +9,7 @@
 
 #include "orientation/sensors/known_sensors.h"
 #include "orientation/sensors/place_choice.h"
+#include "orientation/sensors/room_shadows.h"
 #include "search/prepared_cloud.h"
 #include "tiles/plan_probe.h"
 
@@ -77,8 +76,8 @@ std::vector<std::size_t> PlanSensors::somePoints() const {
   return out;
 }
 
-// Whether the surface does: of a part, as segments are few.
-bool PlanSensors::heeds(const OrientationHints& given, int threads) const {
+// A part of the sample, oriented: enough to see how segments fit together, as they are few.
+PipelineReport PlanSensors::orientSome(const OrientationHints& given, int threads) const {
   std::vector<float> part;
   for (const std::size_t i : somePoints()) {
     part.insert(part.end(), &points_[3 * i], &points_[3 * i] + 3);
@@ -87,8 +86,12 @@ bool PlanSensors::heeds(const OrientationHints& given, int threads) const {
   options.threads = threads;
   options.orientation.hints = std::make_shared<OrientationHints>(given);
   options.orientation.automatic.find_sensors = false;
-  const std::vector<KnownSensor> known =
-      orientCloud({part.data(), 3, part.size() / 3}, nullptr, options).report.known_sensors;
+  return orientCloud({part.data(), 3, part.size() / 3}, nullptr, options).report;
+}
+
+// Whether the surface does.
+bool PlanSensors::heeds(const OrientationHints& given, int threads) const {
+  const std::vector<KnownSensor> known = orientSome(given, threads).known_sensors;
   return known.empty() || known.front().used;
 }
 
@@ -116,6 +119,10 @@ void PlanSensors::choose(const OrientationHints& given, int threads) {
     place_ = choice.place;
     follows_given_ = !choice.hints;
     if (choice.hints) directions_ = std::move(choice.hints->normals);
+    if (choice.if_no_room && detail::boundBodies(orientSome({}, threads).components)) {
+      directions_.clear();
+      place_ = *choice.if_no_room;
+    }
   }
   report_ = std::move(choice.sensors);
   if (!report_.sure()) return;

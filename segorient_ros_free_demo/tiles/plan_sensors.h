@@ -2,6 +2,7 @@
 // Copyright (c) 2026, the segorient authors
 #pragma once
 
+#include <segorient/orientation/pipeline.h>
 #include <segorient/orientation/sensors.h>
 #include <segorient/search/median_hash_index.h>
 
@@ -70,6 +71,7 @@ class PlanSensors {
  private:
   void takeSample(const Plan& plan, const PointSample& sample);
   std::vector<std::size_t> somePoints() const;
+  PipelineReport orientSome(const OrientationHints& given, int threads) const;
   bool heeds(const OrientationHints& given, int threads) const;
   bool seeBothSides(int threads) const;
   void choose(const OrientationHints& given, int threads);

@@ -40,7 +40,7 @@ std::vector<float> roomSeenFrom(const std::vector<Vector>& stations, double edge
 
 bool isRoom(const std::vector<float>& xyz) {
   const detail::FlatPoints flat(viewOf(xyz), 1);
-  const std::vector<float> toward = detail::directionsInARoom(viewOf(xyz), flat, 1);
+  const std::vector<float> toward = detail::lookInARoom(viewOf(xyz), flat, 1).directions;
   EXPECT_TRUE(toward.empty() || toward.size() == xyz.size() / 4 * 3);
   return !toward.empty();
 }
@@ -69,7 +69,7 @@ double shareFacingIn(const std::vector<float>& xyz, const std::vector<float>& no
 TEST(RoomShadows, AThinnedRoomFacesWhoWasInIt) {
   for (const double edge : {0.1, 0.14, 0.18}) {
     for (const std::vector<Vector>& stations :
-         {std::vector<Vector>{{1.2, 1.1, 1.6}}, {{1.1, 1.0, 1.5}, {1.3, 3.1, 1.7}}}) {
+         {std::vector<Vector>{{1.2, 1.1, 1.6}}, {{1.1, 1.0, 1.5}, {1.3, 1.2, 1.7}}}) {
       const std::vector<float> xyz = roomSeenFrom(stations, edge);
       EXPECT_TRUE(isRoom(xyz)) << edge;
       const OrientedCloud cloud = orientCloud(viewOf(xyz), nullptr, {});
@@ -77,6 +77,70 @@ TEST(RoomShadows, AThinnedRoomFacesWhoWasInIt) {
       EXPECT_GE(shareFacingIn(xyz, cloud.normals), 0.99) << edge << cloud.report.sensors.why;
     }
   }
+}
+
+// Beside a room that lies across the axes its box has corners that are deeper than the room.
+TEST(RoomShadows, HowARoomLiesDoesNotMatter) {
+  std::vector<float> xyz = roomSeenFrom({{1.2, 1.1, 1.6}}, 0.1);
+  for (const double angle : {0.5, 0.8}) {
+    std::vector<float> turned = xyz;
+    for (std::size_t i = 0; i < xyz.size(); i += 4) {
+      const auto x = static_cast<double>(xyz[i]);
+      const auto y = static_cast<double>(xyz[i + 1]);
+      turned[i] = static_cast<float>(std::cos(angle) * x - std::sin(angle) * y);
+      turned[i + 1] = static_cast<float>(std::sin(angle) * x + std::cos(angle) * y);
+    }
+    EXPECT_TRUE(isRoom(turned)) << angle;
+  }
+}
+
+// The bumps of its upper side hide little from within, and nothing of it is missing.
+TEST(RoomShadows, ABlockWithAWavySideIsNoRoom) {
+  std::mt19937 random(3);
+  std::uniform_real_distribution<double> unit(-1.0, 1.0);
+  const auto top = [](double x, double y) { return 0.25 * std::sin(5.0 * x) * std::cos(4.0 * y); };
+  std::vector<float> xyz;
+  const auto add = [&](double x, double y, double z) {
+    for (const double v : {x, y, z, 0.0}) xyz.push_back(static_cast<float>(v));
+  };
+  for (int i = 0; i < 7000; ++i) {
+    const double x = unit(random);
+    const double y = unit(random);
+    add(x, y, top(x, y));
+    add(x, y, -0.8);
+    if (i % 5 > 1) continue;
+    for (const double side : {-1.0, 1.0}) {
+      for (const bool along_x : {false, true}) {
+        const double at = unit(random);
+        const double px = along_x ? at : side;
+        const double py = along_x ? side : at;
+        add(px, py, -0.8 + 0.5 * (unit(random) + 1.0) * (top(px, py) + 0.8));
+      }
+    }
+  }
+  const OrientedCloud cloud = orientCloud(viewOf(xyz), nullptr, {});
+  std::size_t up = 0;
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < xyz.size() / 4; ++i) {
+    if (xyz[4 * i + 2] > -0.3F && std::fabs(xyz[4 * i]) < 0.9F &&
+        std::fabs(xyz[4 * i + 1]) < 0.9F) {
+      ++count;
+      up += cloud.normals[4 * i + 2] > 0.F ? 1 : 0;
+    }
+  }
+  EXPECT_GT(up, count * 99 / 100) << cloud.report.sensors.why;
+}
+
+TEST(RoomShadows, WhatContradictsItselfBoundsNoBody) {
+  ComponentOrientationResult body;
+  body.points = 900;
+  body.contradiction = 0.01F;
+  ComponentOrientationResult other;
+  other.points = 100;
+  other.contradiction = 0.1F;
+  EXPECT_TRUE(detail::boundBodies({body, other}));
+  other.contradiction = 0.3F;
+  EXPECT_FALSE(detail::boundBodies({body, other}));
 }
 
 // The faces of boxes, all of them, evenly.

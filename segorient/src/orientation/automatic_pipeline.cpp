@@ -17,6 +17,7 @@
 #include "orientation/sensors/known_sensors.h"
 #include "orientation/sensors/place_choice.h"
 #include "orientation/sensors/point_hints.h"
+#include "orientation/sensors/room_shadows.h"
 #include "orientation/sensors/sensor_hints.h"
 
 namespace segorient::detail {
@@ -112,6 +113,12 @@ class AutomaticRun {
     if (choice.hiding) hiding_ = std::move(choice.hiding);
     report_.sensors = std::move(choice.sensors);
     AutoStages result = orient(known);
+    if (choice.if_no_room && boundBodies(result.orientation.result.components)) {
+      report_.sensors.why += ", and yet they bound bodies";
+      known = resolveHints(withoutSensors(hints), cloud_);
+      known.place = *choice.if_no_room;
+      return orient(known);
+    }
     if (!report_.sensors.sure() || !seeBothSides(result.orientation.sensors)) return result;
     for (FoundSensor& s : report_.sensors.sensors) s.sure = false;
     report_.sensors.why += ", but see surfaces from both sides";

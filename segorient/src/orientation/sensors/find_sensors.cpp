@@ -90,8 +90,11 @@ void lookForShadows(const PreparedCloud& cloud, const SensorOptions& options, Ca
                 seen, out);
     setCamera(views.flat(), out.sensors[0]);
   } else if (asks) {
-    out.directions = detail::directionsInARoom(cloud.points(), views.flat(), options.threads);
-    if (!out.directions.empty()) out.why += ", but surfaces end at shadows as seen from within";
+    detail::RoomView room = detail::lookInARoom(cloud.points(), views.flat(), options.threads);
+    out.directions = std::move(room.directions);
+    if (out.directions.empty()) return;
+    out.why += ", but surfaces end at shadows as seen from within";
+    seen.room_or_body = room.enclosed;
   }
 }
 

@@ -53,8 +53,14 @@ PlaceChoice findOthers(const PointView& points, OrientationHints hints, Prepared
   out.place.faces_up = out.sensors.faces_up;
   out.place.seen_within = !hints.normals.empty();
   const bool found = out.sensors.sure() || out.place.faces_up || out.place.seen_within;
-  out.place.may_be_suggested = !found && !hints.suggested.empty() && !seen.of_first.deny();
+  const bool may_be_suggested = !hints.suggested.empty() && !seen.of_first.deny();
+  out.place.may_be_suggested = !found && may_be_suggested;
   out.place.suggestion_suits = seen.of_first.suit();
+  if (seen.room_or_body) {
+    out.if_no_room = out.place;
+    out.if_no_room->seen_within = false;
+    out.if_no_room->may_be_suggested = may_be_suggested;
+  }
   if (out.sensors.sensors.empty()) out.sensors.sensor_of = {};
   out.hints = std::move(hints);
   out.place.shadows = seen.of_sensor;
@@ -98,8 +104,10 @@ PlaceChoice choosePlaces(const PointView& points, const OrientationHints& given,
   // What was found in that very place is no more than compared, either.
   if (found.sensors.sure()) found = findOthers(points, asIfNotThere(given, *place), cloud, threads);
   // Nor is it as good as any.
-  found.place.may_be_suggested = false;
-  found.place.suggestion_suits = false;
+  for (CloudPlace* p : {&found.place, found.if_no_room ? &*found.if_no_room : &found.place}) {
+    p->may_be_suggested = false;
+    p->suggestion_suits = false;
+  }
   found.hiding = lookFrom(cloud.points(), cloud.inUnit(*place), threads);
   return found;
 }

@@ -21,6 +21,9 @@ struct PlaceChoice {
   std::optional<OrientationHints> hints;
   CloudPlace place;                       ///< the one that is followed
   std::vector<std::uint8_t> either_side;  ///< as PointHints has it
+  /// Of what was seen from within a room, as far as shadows tell, unless it is a body: what is
+  /// followed then, see boundBodies().
+  std::optional<CloudPlace> if_no_room;
   /// Of a search that nobody's knowledge made needless.
   SensorReport sensors;
   std::optional<KnownSensor> refused;  ///< a place that others were found instead of
