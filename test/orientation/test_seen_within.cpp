@@ -10,6 +10,7 @@
 #include <cmath>
 #include <cstddef>
 #include <random>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -170,7 +171,8 @@ TEST(SeenWithin, SpikesWereSeenFromAround) {
     std::vector<float> rows;
     for (int image = 0; image < 2; ++image) ball.addImage(210, rows);
     const SensorReport report = findSensors({rows.data(), 3, rows.size() / 3});
-    EXPECT_TRUE(report.directions.empty()) << seed << " " << report.why;
+    // Shadows may have it for a room, until its surface is known: see boundBodies().
+    EXPECT_EQ(report.why.find("it was seen from within"), std::string::npos) << report.why;
   }
 }
 

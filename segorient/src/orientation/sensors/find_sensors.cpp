@@ -90,11 +90,9 @@ void lookForShadows(const PreparedCloud& cloud, const SensorOptions& options, Ca
                 seen, out);
     setCamera(views.flat(), out.sensors[0]);
   } else if (asks) {
-    detail::RoomView room = detail::lookInARoom(cloud.points(), views.flat(), options.threads);
-    out.directions = std::move(room.directions);
-    if (out.directions.empty()) return;
-    out.why += ", but surfaces end at shadows as seen from within";
-    seen.room_or_body = room.enclosed;
+    out.directions = detail::directionsInARoom(cloud.points(), views.flat(), options.threads);
+    seen.in_a_room = !out.directions.empty();
+    if (seen.in_a_room) out.why += ", but surfaces end at shadows as seen from within";
   }
 }
 

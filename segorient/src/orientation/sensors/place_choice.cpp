@@ -56,7 +56,7 @@ PlaceChoice findOthers(const PointView& points, OrientationHints hints, Prepared
   const bool may_be_suggested = !hints.suggested.empty() && !seen.of_first.deny();
   out.place.may_be_suggested = !found && may_be_suggested;
   out.place.suggestion_suits = seen.of_first.suit();
-  if (seen.room_or_body) {
+  if (seen.in_a_room) {
     out.if_no_room = out.place;
     out.if_no_room->seen_within = false;
     out.if_no_room->may_be_suggested = may_be_suggested;

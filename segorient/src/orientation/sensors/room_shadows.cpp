@@ -33,8 +33,6 @@ constexpr std::size_t kSeen = 1500;
 constexpr float kClearance = 3.F;
 // Of all directions: what is more open is no room.
 constexpr float kMostOpen = 0.1F;
-// Of 13 bodies that were taken for rooms .002 at most, of rooms that one scanner saw .005 and more.
-constexpr float kFewOpen = 0.0035F;
 // Of all points, those on surfaces: noise takes points off them, so that what is covered does not
 // show to be. Rooms .51 and more, a body with a cavity in noise of half a spacing .13.
 constexpr double kFewOnSurfaces = 0.25;
@@ -55,9 +53,10 @@ constexpr float kFewBeside = 0.005F;
 // them.
 constexpr float kMostCovered = 0.65F;
 // Of the borders between segments, those that the result contradicts: of 58 rooms, thinned and in
-// noise, .04 and more, as shadows take surfaces apart. Of eight closed bodies that were taken for
-// rooms, with bumps, letters or teeth that hide little from within, .017 at most.
-constexpr float kFewContradict = 0.03F;
+// noise, .05 and more, but for one of .04, as shadows take surfaces apart. Of 15 bodies that were
+// taken for rooms, whole ones with bumps, letters or teeth that hide little from within, and seen
+// by cameras around them, .04 at most.
+constexpr float kFewContradict = 0.045F;
 // Points on surfaces, for each place: few of them stand before something.
 constexpr std::size_t kSamplesBehind = 2400;
 
@@ -148,8 +147,7 @@ class Room {
   // Whether the place is enclosed; if not, nothing is seen from there.
   bool lookFrom(const Place& place) {
     DepthSteps depth(flat_, place, threads_);
-    const float open = depth.openShare();
-    if (open > kMostOpen) return false;
+    if (depth.openShare() > kMostOpen) return false;
     const std::vector<DepthSteps::Step> found = depth.of(rows_, DepthSteps::Side::BEFORE, threads_);
     float beside = 0.F;
     for (std::size_t s = 0; s < rows_.size(); ++s) {
@@ -157,7 +155,6 @@ class Room {
       if (step == DepthSteps::Step::BESIDE || step == DepthSteps::Step::HIDDEN) beside += 1.F;
       if (step == DepthSteps::Step::BESIDE || step == DepthSteps::Step::NONE) turnTo(place, s);
     }
-    open_.push_back(open);
     beside_.push_back(beside / static_cast<float>(rows_.size()));
     covered_.push_back(shareCovered(found));
     depths_.push_back(std::move(depth));
@@ -165,7 +162,6 @@ class Room {
   }
 
   std::size_t places() const { return beside_.size(); }
-  float open() const { return median(open_); }
   float beside() const { return median(beside_); }
   float covered() const { return median(covered_); }
   // Of what is nearer than something beside it, that with surfaces all around behind it.
@@ -195,7 +191,6 @@ class Room {
   int threads_;
   std::vector<std::size_t> rows_;
   std::vector<float> toward_;   ///< 3 a sample
-  std::vector<float> open_;     ///< one a place: share of the directions
   std::vector<float> beside_;   ///< one a place: share of the samples
   std::vector<float> covered_;  ///< of the steps
   std::vector<DepthSteps> depths_;
@@ -220,7 +215,7 @@ std::vector<float> ofPoints(const PointView& points, const FlatPoints& flat, con
 
 }  // namespace
 
-RoomView lookInARoom(const PointView& points, const FlatPoints& flat, int threads) {
+std::vector<float> directionsInARoom(const PointView& points, const FlatPoints& flat, int threads) {
   const auto on_surfaces = static_cast<double>(flat.onSurfaces().size());
   if (flat.size() == 0 || on_surfaces < kFewOnSurfaces * static_cast<double>(flat.size()))
     return {};
@@ -235,7 +230,7 @@ RoomView lookInARoom(const PointView& points, const FlatPoints& flat, int thread
   if (room.places() < std::max(kFewest, (tried + 1) / 2)) return {};
   if (room.beside() < kFewBeside || room.covered() >= kMostCovered) return {};
   if (0.5F * (room.covered() + room.hasBehind()) >= kMostCovered) return {};
-  return {ofPoints(points, flat, room, threads), room.open() < kFewOpen};
+  return ofPoints(points, flat, room, threads);
 }
 
 bool boundBodies(const std::vector<ComponentOrientationResult>& components) {

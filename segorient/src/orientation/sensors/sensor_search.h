@@ -23,8 +23,8 @@ struct SeenShadows {
   bool whole_image = false;
   /// Found: those of the first suggestion that do not reveal it; no steps where nobody looked.
   Shadows of_first;
-  /// Found: the directions are those of a room, by shadows alone, which may be a body.
-  bool room_or_body = false;
+  /// Found: the directions are those of a room, by shadows alone.
+  bool in_a_room = false;
 };
 
 /// findSensors() of a cloud that is prepared.
