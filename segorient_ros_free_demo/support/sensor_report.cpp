@@ -34,8 +34,8 @@ void printNotFollowed(const std::vector<KnownSensor>& sensors, const std::array<
 
 void printSeedsLeftOut(std::size_t seeds, int column) {
   if (seeds == 0) return;
-  std::printf("%-*s%zu seeds: farther from the cloud than it is wide, or without a normal\n", column,
-              "not followed", seeds);
+  std::printf("%-*s%zu seeds: farther from the cloud than it is wide, or without a normal\n",
+              column, "not followed", seeds);
 }
 
 }  // namespace segorient::program
