@@ -36,6 +36,11 @@ std::vector<std::uint8_t> ofPoints(const std::vector<std::uint8_t>& flags,
   return out;
 }
 
+void dropSuggestion(CloudPlace& place) {
+  place.may_be_suggested = false;
+  place.suggestion_suits = false;
+}
+
 // What a search finds is followed as if it had been given.
 PlaceChoice findOthers(const PointView& points, OrientationHints hints, PreparedCloud& cloud,
                        int threads, SeenShadows seen = {}) {
@@ -104,10 +109,8 @@ PlaceChoice choosePlaces(const PointView& points, const OrientationHints& given,
   // What was found in that very place is no more than compared, either.
   if (found.sensors.sure()) found = findOthers(points, asIfNotThere(given, *place), cloud, threads);
   // Nor is it as good as any.
-  for (CloudPlace* p : {&found.place, found.if_no_room ? &*found.if_no_room : &found.place}) {
-    p->may_be_suggested = false;
-    p->suggestion_suits = false;
-  }
+  dropSuggestion(found.place);
+  if (found.if_no_room) dropSuggestion(*found.if_no_room);
   found.hiding = lookFrom(cloud.points(), cloud.inUnit(*place), threads);
   return found;
 }
