@@ -85,7 +85,7 @@ class CloudWriter {
   CloudWriter(const CloudWriter&) = delete;
   CloudWriter& operator=(const CloudWriter&) = delete;
 
-  /// Columns of a cloud that is organised: a PCD keeps them. Before the first block.
+  /// Columns of a cloud that is organised, else 0: a PCD keeps them. Before the first block.
   void setWidth(std::size_t width) { width_ = width; }
   /// Whether all blocks have to be summed up before the first is added.
   bool needsSummary() const { return kind_ == Kind::LAS; }

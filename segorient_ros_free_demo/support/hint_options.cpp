@@ -129,8 +129,8 @@ std::array<float, 3> localOrigin(const LocalPoints& points) {
   return moved({0.0, 0.0, 0.0}, points.origin());
 }
 
-std::size_t imageWidth(const CloudTable& table) {
-  return table.height > 1 && table.width * table.height == table.size ? table.width : 0;
+std::size_t imageWidth(const CloudTable& layout, std::uint64_t points) {
+  return layout.height > 1 && layout.width * layout.height == points ? layout.width : 0;
 }
 
 void HintOptions::add(CommandLine& line, bool keeps) {
@@ -165,11 +165,10 @@ void HintOptions::check(const CommandLine& line, const CommonOptions& common,
   require(viewpoint_text_.empty() || (three && finite),
           "--viewpoint takes three numbers, as in --viewpoint=1.5,0,-2");
   if (options.orientation.method == OrientationMethod::AUTO || common.quiet) return;
-  for (const char* name : {"viewpoint", "trajectory", "up", "closed", "open", "seeds",
-                           "keep-orientation", "no-sensors"}) {
-    if (name == std::string("no-sensors") && choosesNormals(options)) continue;
-    if (line.given(name)) warn("--" + std::string(name) + " changes nothing without method auto");
-  }
+  constexpr const char* kWhy = "without method auto";
+  nameUnused(line, {"viewpoint", "trajectory", "up", "closed", "open", "seeds", "keep-orientation"},
+             kWhy);
+  if (!choosesNormals(options)) nameUnused(line, {"no-sensors"}, kWhy);
 }
 
 void HintOptions::apply(const CloudTable& table, const std::string& path, const LocalPoints& points,

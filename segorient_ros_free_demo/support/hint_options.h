@@ -28,7 +28,11 @@ TrajectoryJoin addViewpoints(const Trajectory& trajectory, const std::string& pa
                              CloudTable& table);
 
 /// Pixels in a row of an organised cloud, else 0.
-std::size_t imageWidth(const CloudTable& table);
+/// \param points that it has; the layout of a file that is streamed has none itself
+std::size_t imageWidth(const CloudTable& layout, std::uint64_t points);
+inline std::size_t imageWidth(const CloudTable& table) {
+  return imageWidth(table, table.size);
+}
 
 /// What a user knows about the orientation beforehand, as options of the commands that orient; and
 /// what the files say themselves: the place of a sensor, fields vp_x, vp_y, vp_z and scan, and

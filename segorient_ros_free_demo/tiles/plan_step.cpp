@@ -287,8 +287,7 @@ Plan planStep(const TileRequest& request, const std::string& folder, const StepP
       plan, progress,
       [&](const CloudTable& layout) {
         row_bytes = std::max(row_bytes, layout.row_bytes);
-        const bool image = layout.height > 1 && layout.width * layout.height == plan.rows;
-        image_width = image ? layout.width : 0;
+        image_width = imageWidth(layout, plan.rows);
       },
       sample, said);
   const std::vector<Place>& places = sample.places();

@@ -160,9 +160,8 @@ void writeStep(const Plan& plan, const std::string& folder, std::size_t output, 
     size += plan.inputs[i].rows;
   }
   if (to.inputs == 1 && size > 0) {
-    const CloudTable layout = CloudStream(plan.inputs[to.first_input].streamed).layout();
-    const bool organized = layout.height > 1 && layout.width * layout.height == size;
-    if (organized) writer.setWidth(layout.width);
+    const CloudStream stream(plan.inputs[to.first_input].streamed);
+    writer.setWidth(imageWidth(stream.layout(), size));
   }
   if (writer.needsSummary()) {
     forEachBlock(

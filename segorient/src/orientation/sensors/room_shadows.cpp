@@ -81,7 +81,7 @@ std::vector<Place> placesInBox(const FlatPoints& flat) {
 
 // Whether there are points in half of all directions: beside a room that does not lie along the
 // axes its box has places that are deeper than any in it.
-bool isWithin(const FlatPoints& flat, const Place& place) {
+bool hasPointsAround(const FlatPoints& flat, const Place& place) {
   std::array<bool, 6 * kSquares * kSquares> seen{};
   for (const std::size_t i : EveryNth(flat.size(), kSeen)) {
     const float* p = flat.view()[i];
@@ -108,7 +108,7 @@ std::vector<Place> deepestPlaces(const FlatPoints& flat) {
   };
   std::vector<Deep> deep;
   for (const Place& place : placesInBox(flat)) {
-    if (!isWithin(flat, place)) continue;
+    if (!hasPointsAround(flat, place)) continue;
     const search::Nearest nearest(flat.index(), place.data());
     if (nearest.point < 0) continue;
     const float h = flat.spacing(static_cast<std::size_t>(nearest.point));
