@@ -18,7 +18,7 @@ constexpr Names<6> kMethods{"auto", "propagation", "boundary", "combined", "extr
 constexpr Names<9> kDecidedBy{"nothing",   "seed",         "propagation", "boundary", "extremal",
                               "enclosure", "surroundings", "global",      "hints"};
 constexpr Names<4> kSensorKinds{"station", "camera", "moving", "above"};
-constexpr Names<4> kSensorEvidence{"density", "layers", "image", "shadows"};
+constexpr Names<5> kSensorEvidence{"density", "layers", "image", "shadows", "woods"};
 constexpr Names<4> kNormalFaults{"none", "sensor", "surface", "inside_out"};
 
 template <std::size_t N, typename Enum>

@@ -60,7 +60,8 @@ enum class SensorEvidence : std::uint8_t {
   DENSITY,  ///< how the density of points falls with distance and incidence
   LAYERS,   ///< one uneven surface over the ground, as it is seen from above
   IMAGE,    ///< the pixels of an organised cloud: straight rays that meet in one place
-  SHADOWS   ///< surfaces end where something nearer hides them, as seen from a suggested place
+  SHADOWS,  ///< surfaces end where something nearer hides them, as seen from a suggested place
+  WOODS     ///< one surface over the ground, and all else is scattered above it
 };
 
 struct FoundSensor {
@@ -82,7 +83,7 @@ struct FoundSensor {
   bool sure = false;
 };
 
-/// "density", "layers", "image" or "shadows".
+/// "density", "layers", "image", "shadows" or "woods".
 SEGORIENT_ORIENTATION_EXPORT const char* toString(SensorEvidence evidence);
 
 // As they were first called.

@@ -10,6 +10,7 @@
 
 #include "common/in_double.h"
 #include "orientation/sensors/far_station.h"
+#include "orientation/sensors/from_above.h"
 #include "orientation/sensors/height_field.h"
 #include "orientation/sensors/joint_sensors.h"
 #include "orientation/sensors/scene_frame.h"
@@ -150,16 +151,20 @@ bool isUnderGround(const Extent& ground, const std::array<float, 3>& place) {
 }
 
 // Where densities tell of no sensor, or not of its side: what no upright line meets twice has one
-// side that faces up.
+// side that faces up, and woods stand on the upper side of the ground.
 void lookForUpperSide(PreparedCloud& cloud, const DensityPatches& patches,
-                      const SensorOptions& options, SensorReport& out) {
+                      const SensorOptions& options, CameraViews& views, SensorReport& out) {
   if (!options.search || patches.size() == 0) return;
   const Extent ground = extentOf(patches);
   for (const std::array<float, 3>& s : options.suggestions) {
     if (isUnderGround(ground, s)) return;
   }
-  out.faces_up = measureHeightField(cloud, patches).sure();
-  if (out.faces_up) out.why += ", but it is one surface over the ground, whose upper side is seen";
+  out.faces_up = measureHeightField(cloud.points(), cloud.index(), patches, cloud.points()).sure();
+  if (out.faces_up) {
+    out.why += ", but it is one surface over the ground, whose upper side is seen";
+  } else {
+    lookOverWoods(views.flat(), patches, options.threads, out);
+  }
 }
 
 // \param frame in another one than the cloud's, nothing is to be suggested
@@ -174,7 +179,7 @@ bool searchPlaces(const SceneFrame& frame, bool has_axes, const DensityPatches& 
       findStation(frame.into(patches), out.deviation, options, cameras);
   if (from_either_side) {
     out.why = "a far place explains the densities, but so does the one across";
-    if (frame.isOwn()) lookForUpperSide(cloud, patches, options, out);
+    if (frame.isOwn()) lookForUpperSide(cloud, patches, options, views, out);
     return false;
   }
   frame.back(sensor);
@@ -213,8 +218,9 @@ SensorReport searchUpright(const DensityPatches& patches, PreparedCloud& cloud,
   const std::vector<RevealedPlace> none;
   const bool exact = searchPlaces({}, frame.isOwn(), patches, cloud, options, views,
                                   options.search ? views.cameras() : none, own);
-  const bool by_layers = own.sure() && own.sensors[0].evidence == SensorEvidence::LAYERS;
-  if (exact || by_layers || frame.isOwn() || !options.search) return own;
+  const bool from_above = own.sure() && (own.sensors[0].evidence == SensorEvidence::LAYERS ||
+                                         own.sensors[0].evidence == SensorEvidence::WOODS);
+  if (exact || from_above || frame.isOwn() || !options.search) return own;
   SensorOptions without = options;
   without.suggestions.clear();
   SensorReport turned = empty;
@@ -278,7 +284,7 @@ SensorReport searchByDensity(PreparedCloud& cloud, const SensorOptions& options,
   const DensityPatches patches = densityPatches(cloud.points(), cloud.index(), options.threads);
   if (!patches.tell_laws) {
     out.why = "too few flat neighbourhoods to measure densities by";
-    lookForUpperSide(cloud, patches, options, out);
+    lookForUpperSide(cloud, patches, options, views, out);
     return out;
   }
   out.deviation = deviation(patches.log_density);
@@ -294,9 +300,12 @@ SensorReport searchByDensity(PreparedCloud& cloud, const SensorOptions& options,
     out.either_side.clear();
     out.why = "from the places that explain the densities it looks like a body";
   }
-  if (!out.sure() && isEven(patches, out.deviation)) {
+  if (out.sure()) return out;
+  if (isEven(patches, out.deviation)) {
     if (out.sensors.empty()) out.why = "the density is even";
-    lookForUpperSide(cloud, patches, options, out);
+    lookForUpperSide(cloud, patches, options, views, out);
+  } else if (options.search && out.directions.empty()) {
+    lookOverWoods(views.flat(), patches, options.threads, out);
   }
   return out;
 }

@@ -101,8 +101,10 @@ float shareCrowded(const std::vector<float>& sizes) {
   return static_cast<float>(crowded / all);
 }
 
-void measureColumns(const PointView& points, const Box& ground, float side, HeightField& out) {
-  std::vector<std::pair<std::uint64_t, float>> heights;
+// Columns over a rectangle, and the heights of the points in each, sorted.
+using ColumnHeights = std::vector<std::pair<std::uint64_t, float>>;
+ColumnHeights columnsOf(const PointView& points, const Box& ground, float side) {
+  ColumnHeights heights;
   for (std::size_t i = 0; i < points.size; ++i) {
     const float x = (points[i][0] - ground.low[0]) / side;
     const float y = (points[i][1] - ground.low[1]) / side;
@@ -112,7 +114,25 @@ void measureColumns(const PointView& points, const Box& ground, float side, Heig
     heights.emplace_back(columnAt(x, y), points[i][2]);
   }
   std::sort(heights.begin(), heights.end());
+  return heights;
+}
+
+// Where there is anything at all.
+void measureArea(const ColumnHeights& heights, HeightField& out) {
   std::vector<std::uint64_t> columns;
+  std::size_t filled = 0;
+  for (std::size_t begin = 0; begin < heights.size();) {
+    const std::size_t end = endOfColumn(heights, begin);
+    columns.push_back(heights[begin].first);
+    filled += end - begin >= kFilled ? 1 : 0;
+    begin = end;
+  }
+  if (filled == 0) return;
+  out.filled = static_cast<float>(filled) / static_cast<float>(columns.size());
+  out.inner = shareInner(columns);
+}
+
+void measureLayers(const ColumnHeights& heights, float side, HeightField& out) {
   std::vector<float> filled;  // how many points they hold
   std::vector<std::uint64_t> layered;
   for (std::size_t begin = 0; begin < heights.size();) {
@@ -121,7 +141,6 @@ void measureColumns(const PointView& points, const Box& ground, float side, Heig
     for (std::size_t i = begin + 1; i < end; ++i) {
       gap = std::max(gap, heights[i].second - heights[i - 1].second);
     }
-    columns.push_back(heights[begin].first);
     if (end - begin >= kFilled) {
       filled.push_back(static_cast<float>(end - begin));
       if (gap > kApart * side) layered.push_back(heights[begin].first);
@@ -129,10 +148,7 @@ void measureColumns(const PointView& points, const Box& ground, float side, Heig
     begin = end;
   }
   if (filled.empty()) return;
-  const auto count = static_cast<float>(filled.size());
-  out.filled = count / static_cast<float>(columns.size());
-  out.inner = shareInner(columns);
-  out.layered = static_cast<float>(countSquares(layered)) / count;
+  out.layered = static_cast<float>(countSquares(layered)) / static_cast<float>(filled.size());
   out.upright = shareCrowded(filled);
 }
 
@@ -233,18 +249,22 @@ std::vector<std::uint8_t> openToTheSky(const PointView& points, float spacing) {
   return open;
 }
 
-HeightField measureHeightField(PreparedCloud& cloud, const DensityPatches& patches) {
+HeightField measureHeightField(const PointView& points, const search::MedianHashIndex& index,
+                               const DensityPatches& patches, const PointView& all) {
   HeightField out;
   if (!(patches.spacing > 0.F)) return out;
-  const PointView points = cloud.points();
   const Box ground = boxWithout(50, points, kSample);
   const float width = std::hypot(ground.high[0] - ground.low[0], ground.high[1] - ground.low[1]);
   out.relief = width > 0.F ? (ground.high[2] - ground.low[2]) / width : 1e30F;
   // Cheap things first: most clouds end here.
   if (out.relief > kMostRelief) return out;
-  measureColumns(points, ground, kColumn * patches.spacing, out);
+  const float side = kColumn * patches.spacing;
+  const ColumnHeights heights = columnsOf(points, ground, side);
+  measureLayers(heights, side, out);
+  const bool are_same = all.size == points.size;
+  measureArea(are_same ? heights : columnsOf(all, ground, side), out);
   if (out.layered <= kFewLayered && out.upright <= kFewUpright && out.inner >= kMostlyInner) {
-    out.backed = shareBacked(points, cloud.index(), patches);
+    out.backed = shareBacked(points, index, patches);
   }
   return out;
 }

@@ -8,9 +8,9 @@
 
 #include <segorient/common/export.h>
 #include <segorient/common/point_view.h>
+#include <segorient/search/median_hash_index.h>
 
 #include "orientation/sensors/density_patches.h"
-#include "search/prepared_cloud.h"
 
 namespace segorient::detail {
 
@@ -41,6 +41,10 @@ bool looksUpAt(const std::array<float, 3>& place, const std::array<float, 3>& mi
 SEGORIENT_ORIENTATION_EXPORT std::vector<std::uint8_t> openToTheSky(const PointView& points,
                                                                     float spacing);
 
-HeightField measureHeightField(PreparedCloud& cloud, const DensityPatches& patches);
+/// \param index of the points
+/// \param patches of the points
+/// \param all that there is, the points among it: columns that hold some of it are filled
+HeightField measureHeightField(const PointView& points, const search::MedianHashIndex& index,
+                               const DensityPatches& patches, const PointView& all);
 
 }  // namespace segorient::detail

@@ -11,7 +11,7 @@
 
 #include "common/by_size.h"
 #include "orientation/sensors/flat_points.h"
-#include "orientation/sensors/height_field.h"
+#include "orientation/sensors/from_above.h"
 #include "orientation/sensors/moving_sensor.h"
 #include "orientation/sensors/occupancy.h"
 #include "orientation/sensors/places_of_points.h"
@@ -87,25 +87,6 @@ void addSensors(const std::vector<std::array<double, 3>>& positions, SensorKind 
     sensor.sure = true;
     report.sensors.push_back(sensor);
   }
-}
-
-void lookFromAbove(PreparedCloud& cloud, const DensityPatches& patches,
-                   const detail::Extent& extent, SensorReport& report) {
-  const detail::HeightField field = detail::measureHeightField(cloud, patches);
-  if (!field.sure()) return;
-  constexpr double kFarAbove = 100.0;  // extents: rays are parallel to half a degree
-  FoundSensor sensor;
-  sensor.kind = SensorKind::ABOVE;
-  sensor.evidence = SensorEvidence::LAYERS;
-  std::array<double, 3> position = extent.middle();
-  position[2] += kFarAbove * extent.diagonal();
-  sensor.position = toFloat(position);
-  sensor.axis = {0.F, 0.F, 1.F};
-  sensor.cost_ratio = field.layered;
-  sensor.sure = true;
-  report.sensors.push_back(sensor);
-  report.sensor_of.assign(cloud.size(), 0);
-  report.why = "one uneven surface over the ground, as it is seen from above";
 }
 
 // Whether most of them are in a body. What a sensor on its way did not see from one of its places
@@ -298,7 +279,7 @@ void detail::findSeveral(PreparedCloud& cloud, const DensityPatches& patches, bo
   const std::optional<detail::Track> track =
       trackInSight(patches, extent, occupancy, report, threads);
   if (!track && addManyStations(framed, patches, extent, occupancy, threads, report)) return;
-  if (!track) lookFromAbove(cloud, patches, extent, report);
+  if (!track) lookFromAbove(cloud, patches, threads, report);
   // Tilting scanners that stand in a row look somewhat like a line.
   const bool is_clear = track && track->cost <= kSureSeveral * report.deviation;
   if (has_axes && report.sensors.empty() && !is_clear) {

@@ -154,6 +154,10 @@ class Finder {
     report.density = density.ratio;
     report.hidden = shareOf(scan.hidden());
     if (hints_.place.along_way) return;
+    if (hints_.place.over_woods) {
+      out_.confirmed = out_.one_place;
+      return;
+    }
     if (!out_.one_place && report.hidden > kFewHidden &&
         (scan.stoodElsewhere() || shadowsOf(s).deny())) {
       report.used = false;
