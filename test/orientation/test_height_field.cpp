@@ -13,6 +13,7 @@
 #include <cstdint>
 #include <memory>
 #include <random>
+#include <utility>
 #include <vector>
 
 #include "orientation/sensors/height_field.h"
@@ -48,6 +49,20 @@ std::vector<float> plate(std::size_t count, float thickness) {
     const float x = 10.F * unit(random);
     const float y = 10.F * unit(random);
     rows.insert(rows.end(), {x, y, 0.4F * std::sin(x) - (i % 2 == 0 ? 0.F : thickness)});
+  }
+  return rows;
+}
+
+// Hills, 10 x 10, half of whose points are scattered from one height over them to another.
+std::vector<float> woods(std::size_t count, float from, float to) {
+  std::mt19937 random(14);
+  std::uniform_real_distribution<float> unit(0.F, 1.F);
+  std::vector<float> rows = plate(count / 2, 0.F);
+  while (rows.size() < 3 * count) {
+    const float x = 10.F * unit(random);
+    const float y = 10.F * unit(random);
+    if (std::sin(3.F * x) + std::sin(2.F * y) < -0.5F) continue;
+    rows.insert(rows.end(), {x, y, 0.4F * std::sin(x) + from + (to - from) * unit(random)});
   }
   return rows;
 }
@@ -191,6 +206,44 @@ TEST(HeightField, WhatIsBetweenWallsIsNone) {
     if (rows[i + 2] < 0.5F) ground.insert(ground.end(), &rows[i], &rows[i] + 3);
   }
   EXPECT_TRUE(findSensors({ground.data(), 3, ground.size() / 3}).faces_up);
+}
+
+// It closes as a body does, with the ground below.
+TEST(HeightField, WoodsStandOnTheGround) {
+  const std::vector<float> rows = woods(20000, 0.5F, 4.F);
+  const PointView points{rows.data(), 3, rows.size() / 3};
+  const SensorReport report = findSensors(points);
+  ASSERT_TRUE(report.sure());
+  EXPECT_EQ(report.sensors[0].kind, SensorKind::ABOVE);
+  EXPECT_EQ(report.sensors[0].evidence, SensorEvidence::WOODS);
+  EXPECT_STREQ(toString(SensorEvidence::WOODS), "woods");
+  PipelineOptions options;
+  for (const bool told : {false, true}) {
+    const auto hints = std::make_shared<OrientationHints>();
+    hints->has_viewpoint = told;
+    hints->viewpoint = {5.F, 5.F, 1000.F};
+    options.orientation.hints = hints;
+    const OrientedCloud cloud = orientCloud(points, nullptr, options);
+    std::size_t up = 0;
+    for (std::size_t i = 0; i < points.size / 2; ++i) up += cloud.normals[4 * i + 2] > 0.F ? 1 : 0;
+    EXPECT_EQ(up, points.size / 2) << told;
+  }
+}
+
+TEST(HeightField, WhatIsFullOfPointsIsNoWood) {
+  // Below the ground, on either side of it, and no deeper than noise is.
+  for (const auto& [from, to] :
+       {std::pair(-4.F, -0.5F), std::pair(-2.F, 2.F), std::pair(0.F, 0.3F)}) {
+    const std::vector<float> rows = woods(20000, from, to);
+    EXPECT_FALSE(findSensors({rows.data(), 3, rows.size() / 3}).sure()) << from;
+  }
+  // A slab with points inside.
+  std::vector<float> slab = woods(20000, 0.5F, 3.5F);
+  const std::vector<float> top = plate(10000, 0.F);
+  for (std::size_t i = 0; i < top.size(); i += 3) {
+    slab.insert(slab.end(), {top[i], top[i + 1], top[i + 2] + 4.F});
+  }
+  EXPECT_FALSE(findSensors({slab.data(), 3, slab.size() / 3}).sure());
 }
 
 // Points under trees lie behind others, which those who fly above see all the same. A place that
