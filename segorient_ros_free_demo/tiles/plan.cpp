@@ -37,7 +37,6 @@ void forEachNumber(P& p, const Visit& visit) {
   visit(p.place.shadows.open);
   visit(p.place.shadows.better_across);
   visit(p.place.found);
-  visit(p.place.over_woods);
   visit(p.place.faces_up);
   visit(p.place.along_way);
   visit(p.place.whole_image);

@@ -218,9 +218,7 @@ SensorReport searchUpright(const DensityPatches& patches, PreparedCloud& cloud,
   const std::vector<RevealedPlace> none;
   const bool exact = searchPlaces({}, frame.isOwn(), patches, cloud, options, views,
                                   options.search ? views.cameras() : none, own);
-  const bool from_above = own.sure() && (own.sensors[0].evidence == SensorEvidence::LAYERS ||
-                                         own.sensors[0].evidence == SensorEvidence::WOODS);
-  if (exact || from_above || frame.isOwn() || !options.search) return own;
+  if (exact || isOverGround(own) || frame.isOwn() || !options.search) return own;
   SensorOptions without = options;
   without.suggestions.clear();
   SensorReport turned = empty;

@@ -22,11 +22,16 @@ constexpr double kPlaneTime = 500.0;
 
 }  // namespace
 
-FlatPoints::FlatPoints(const PointView& points, int threads) {
+bool FlatPoints::isFlat(const Plane& plane) {
   // Of variances: noise of a third of a spacing is a tenth of what 12 points spread, and lines are
   // six times as far apart as the points on them.
   constexpr float kFlat = 0.1F;
   constexpr float kWide = 0.03F;
+  const Eigen::Vector3f& l = plane.lambda;
+  return l[0] < kFlat * l[1] && l[1] > kWide * l[2];
+}
+
+FlatPoints::FlatPoints(const PointView& points, int threads) {
   const EveryNth some(points.size, kMostPoints);
   const std::size_t n = some.size();
   xyz_.assign(4 * n, 0.F);
@@ -43,8 +48,7 @@ FlatPoints::FlatPoints(const PointView& points, int threads) {
     width_[i] = h;
     if (!(h > 0.F)) return;
     const Plane plane = planeOf(view(), i, row, count);
-    const Eigen::Vector3f& l = plane.lambda;
-    if (!plane.valid || !(l[0] < kFlat * l[1]) || !(l[1] > kWide * l[2])) return;
+    if (!plane.valid || !isFlat(plane)) return;
     for (std::size_t a = 0; a < 3; ++a) {
       normal_[4 * i + a] = plane.normal[static_cast<Eigen::Index>(a)];
     }

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "common/dot.h"
+#include "features/sheet_fit.h"
 
 namespace segorient::detail {
 
@@ -19,6 +20,9 @@ class FlatPoints {
  public:
   /// The least that a plane shows a surface by.
   static constexpr int kPlane = 12;
+
+  /// Whether the spread of neighbours is that of a surface, not of noise, nor of one scan line.
+  static bool isFlat(const Plane& plane);
 
   /// \param points of which an even part is taken
   FlatPoints(const PointView& points, int threads);

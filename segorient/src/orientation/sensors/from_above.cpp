@@ -107,6 +107,11 @@ void setAbove(SensorEvidence evidence, const Extent& extent, const HeightField& 
 
 }  // namespace
 
+bool isOverGround(const SensorReport& report) {
+  return report.sure() && (report.sensors[0].evidence == SensorEvidence::LAYERS ||
+                           report.sensors[0].evidence == SensorEvidence::WOODS);
+}
+
 void lookOverWoods(const FlatPoints& flat, const DensityPatches& patches, int threads,
                    SensorReport& report) {
   const std::optional<HeightField> ground = groundUnderWoods(flat, threads);

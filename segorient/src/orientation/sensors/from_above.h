@@ -10,6 +10,9 @@
 
 namespace segorient::detail {
 
+/// Whether a sensor was found by one of these.
+bool isOverGround(const SensorReport& report);
+
 /// Puts a sensor far above into the report if the cloud is woods as lasers see them from the air:
 /// beams pass between the leaves, so that points lie at all heights and on no surface, and below
 /// them is the ground. Such a cloud closes as a body does, but what is on surfaces in it is one

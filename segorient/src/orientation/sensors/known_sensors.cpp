@@ -152,9 +152,11 @@ class Finder {
     const Scan scan(points_, rows_[s], report.position, &nb_, threads_);
     const Scan::Density density = scan.density();
     report.density = density.ratio;
-    report.hidden = shareOf(scan.hidden());
+    const std::vector<std::uint8_t> hidden = scan.hidden();
+    report.hidden = shareOf(hidden);
     if (hints_.place.along_way) return;
-    if (hints_.place.over_woods) {
+    if (report.hidden > kFewHidden && scan.seesThrough(hidden)) {
+      report.hidden = 0.F;
       out_.confirmed = out_.one_place;
       return;
     }

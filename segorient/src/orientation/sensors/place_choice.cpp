@@ -6,6 +6,7 @@
 #include <array>
 #include <utility>
 
+#include "orientation/sensors/from_above.h"
 #include "orientation/sensors/sensor_hints.h"
 
 namespace segorient::detail {
@@ -47,11 +48,7 @@ PlaceChoice findOthers(const PointView& points, OrientationHints hints, Prepared
   PlaceChoice out;
   out.sensors = addFoundSensors(points, cloud, threads, hints, seen);
   // What one layer told is not to be told by others again, which know nothing of trees.
-  out.place.over_woods =
-      out.sensors.sure() && out.sensors.sensors[0].evidence == SensorEvidence::WOODS;
-  out.place.found =
-      out.place.over_woods ||
-      (out.sensors.sure() && out.sensors.sensors[0].evidence == SensorEvidence::LAYERS);
+  out.place.found = isOverGround(out.sensors);
   out.place.along_way = out.sensors.sure() && out.sensors.sensors[0].kind == SensorKind::MOVING;
   out.either_side = ofPoints(out.sensors.either_side, cloud);
   // Whoever names a side of a sheet means it.
@@ -108,7 +105,6 @@ PlaceChoice choosePlaces(const PointView& points, const OrientationHints& given,
     return found;
   }
   as_given.place.found = found.sensors.sure() && !found.sensors.sensors[0].suggested;
-  as_given.place.over_woods = found.place.over_woods;
   const bool is_fact = as_given.place.found || !given.viewpoints.empty();
   if (is_fact || !as_given.place.shadows.deny()) return as_given;
   // What was found in that very place is no more than compared, either.

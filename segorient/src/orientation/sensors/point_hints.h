@@ -22,8 +22,6 @@ struct CloudPlace {
   /// Whether a search for sensors came to it, too, by itself, or found it by layers, which is told
   /// about trees already.
   bool found = false;
-  /// Whether it is above woods, which hide nothing from it: beams pass between the leaves.
-  bool over_woods = false;
   /// Whether nobody knows a place, but all of it is one surface over the ground, see SensorReport.
   bool faces_up = false;
   /// Whether all four sides of an image meet in it.

@@ -13,6 +13,7 @@
 #include "common/parallel_for.h"
 #include "features/sheet_fit.h"
 #include "orientation/sensors/density_patches.h"
+#include "orientation/sensors/flat_points.h"
 #include "orientation/sensors/sampling_law.h"
 #include "orientation/sensors/station_search.h"
 #include "search/index_of.h"
@@ -25,6 +26,13 @@ constexpr std::size_t kSamples = 3000;
 // Neighbours of the plane that density and incidence are measured in: as many as an edge leaves
 // flat and noise of half a spacing does not tilt.
 constexpr int kPlane = 24;
+// In angle: of a nearer surface, and of the point's own.
+constexpr int kAround = 24;
+// Of points before others, those on surfaces, over as many as chance would have there. In four
+// woods seen from the air .00 to .10, around and in bodies .24 (in noise) and more.
+constexpr double kFarFewer = 0.15;
+// So many as chance would have there: three and less are far fewer then.
+constexpr double kEnoughBefore = 20.0;
 // ns a point, see resolveThreads().
 constexpr double kRayTime = 2000.0;
 constexpr double kPairTime = 1000.0;
@@ -53,6 +61,11 @@ struct Scan::Row {
   std::array<pcl::index_t, kPlane + 1> room;
   const pcl::index_t* indices = nullptr;
   int count = 0;
+};
+
+struct Scan::Before {
+  std::array<std::size_t, kAround> points;
+  std::size_t count = 0;
 };
 
 Scan::Scan(const PointView& points, const std::vector<std::uint32_t>& rows,
@@ -101,16 +114,56 @@ std::vector<std::uint8_t> Scan::hidden() const {
   const std::size_t n = some.size();
   const search::MedianHashIndex directions = seen_.index(threads_);
   std::vector<std::uint8_t> out(n, 0);
-  parallelFor(n, threads_, kRayTime,
-              [&](std::size_t s) { out[s] = isHidden(some[s], directions) ? 1 : 0; });
+  parallelFor(n, threads_, kRayTime, [&](std::size_t s) {
+    out[s] = before(some[s], kNoStray, directions).count >= kNoStray ? 1 : 0;
+  });
   return out;
 }
 
-bool Scan::isHidden(std::size_t i, const search::MedianHashIndex& directions) const {
-  constexpr int kAround = 24;  // in angle: of a nearer surface, and of the point's own
+bool Scan::seesThrough(const std::vector<std::uint8_t>& hidden) const {
+  const auto isOnSurface = [&](std::size_t i) {
+    const Plane plane = planeAt(i);
+    return plane.valid && FlatPoints::isFlat(plane);
+  };
+  const EveryNth some = sample();
+  const search::MedianHashIndex directions = seen_.index(threads_);
+  struct Found {
+    int on_surface = 0;
+    int before = 0;  // of a point on a surface that is hidden
+    int before_on_surfaces = 0;
+  };
+  std::vector<Found> found(hidden.size());
+  parallelFor(hidden.size(), threads_, kRayTime, [&](std::size_t s) {
+    if (!isOnSurface(some[s])) return;
+    found[s].on_surface = 1;
+    if (hidden[s] == 0) return;
+    const Before those = before(some[s], kAround, directions);
+    for (std::size_t j = 0; j < those.count; ++j) {
+      ++found[s].before;
+      found[s].before_on_surfaces += isOnSurface(those.points[j]) ? 1 : 0;
+    }
+  });
+  double on_surfaces = 0.0;
+  double all = 0.0;
+  double flat = 0.0;
+  for (const Found& f : found) {
+    on_surfaces += f.on_surface;
+    all += f.before;
+    flat += f.before_on_surfaces;
+  }
+  const double expected = all * on_surfaces / static_cast<double>(found.size());
+  return expected > kEnoughBefore && flat < kFarFewer * expected;
+}
+
+Plane Scan::planeAt(std::size_t i) const {
   Row row;
   nearest(i, kPlane + 1, row);
-  const Plane plane = planeOf(view_, i, row.indices, row.count);
+  return planeOf(view_, i, row.indices, row.count);
+}
+
+Scan::Before Scan::before(std::size_t i, std::size_t most,
+                          const search::MedianHashIndex& directions) const {
+  const Plane plane = planeAt(i);
   const float incidence =
       plane.valid ? std::fabs(dot(plane.normal.data(), &seen_.direction[4 * i])) : 1.F;
   const float d = seen_.distance[i];
@@ -119,15 +172,15 @@ bool Scan::isHidden(std::size_t i, const search::MedianHashIndex& directions) co
   std::array<float, kAround> squares;
   const int found =
       directions.nearestK(&seen_.direction[4 * i], kAround, around.data(), squares.data());
-  std::size_t before = 0;
-  for (int j = 0; j < found && before < kNoStray; ++j) {
+  Before out;
+  for (int j = 0; j < found && out.count < most; ++j) {
     const auto at = static_cast<std::size_t>(j);
     const auto q = static_cast<std::size_t>(around[at]);
     if (seen_.distance[q] >= d - margin) continue;
     const float reach = spacingOf(q) / seen_.distance[q];
-    before += squares[at] < reach * reach ? 1 : 0;
+    if (squares[at] < reach * reach) out.points[out.count++] = q;
   }
-  return before >= kNoStray;
+  return out;
 }
 
 Scan::Density Scan::density() const {

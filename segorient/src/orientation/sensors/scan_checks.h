@@ -49,6 +49,13 @@ class Scan {
   /// well before it arrives.
   std::vector<std::uint8_t> hidden() const;
 
+  /// Whether those lie behind scattered points, as the ground does in woods: beams pass between
+  /// the leaves, and what a sensor sees through hides nothing from it. What hides points that are
+  /// on surfaces is on surfaces itself about as often as all points are, in noise, too, unless it
+  /// is scattered.
+  /// \param hidden as above
+  bool seesThrough(const std::vector<std::uint8_t>& hidden) const;
+
   struct Density {
     /// Scatter of log density about that of a sensor here, over that about a constant.
     float ratio = std::numeric_limits<float>::infinity();
@@ -64,10 +71,13 @@ class Scan {
 
  private:
   struct Row;
+  struct Before;
 
   void nearest(std::size_t i, int entries, Row& out) const;
   float spacingOf(std::size_t i) const;
-  bool isHidden(std::size_t i, const search::MedianHashIndex& directions) const;
+  Plane planeAt(std::size_t i) const;
+  /// What is before a point, `most` of them at most.
+  Before before(std::size_t i, std::size_t most, const search::MedianHashIndex& directions) const;
 
   std::vector<float> xyz_;  ///< 4 floats; empty where all points are the sensor's
   PointView view_;
