@@ -118,8 +118,13 @@ class FinalNormals {
     }
   }
 
+  // Whether surfaces of few neighbours are the noise there: rounded depths and single scan lines
+  // hide it from them.
+  bool hidesNoise(std::size_t i) const { return noise_ < kCleanFit && has(i, MUCH_NOISE); }
+
   // Without noise, what a surface explains needs no other one.
   bool mayRecompute(std::size_t i) const {
+    if (hidesNoise(i)) return false;
     return noise_ >= kCleanFit || fits_[i] != Fit::EXPLAINED;
   }
 
@@ -165,7 +170,7 @@ class FinalNormals {
 
   void choose(std::size_t i, float* result) {
     const float* f = &fitted_[4 * i];
-    if (!isFinite(f) || !isFinite(result)) return;
+    if (!isFinite(f) || !isFinite(result) || hidesNoise(i)) return;
     const bool fits_one_side = fits_[i] == Fit::ONE_SIDED;
     const bool small = noise_ < kCleanFit && most_ <= kFewest;
     // A few neighbours that one surface explains are of one wall.

@@ -155,7 +155,7 @@ class Finder {
     const std::vector<std::uint8_t> hidden = scan.hidden();
     report.hidden = shareOf(hidden);
     if (hints_.place.along_way) return;
-    if (report.hidden > kFewHidden && scan.seesThrough(hidden)) {
+    if (report.hidden > kMostHidden && scan.seesThrough(hidden)) {
       report.hidden = 0.F;
       out_.confirmed = out_.one_place;
       return;
