@@ -162,7 +162,6 @@ SheetNormals estimateSheetNormals(const PointView& points, const Neighborhoods& 
   out.residual = options.known ? options.known->residual : medianResidual(out);
   out.traits.residual = out.residual;
   judgeReliability(lopsided, out);
-  out.of_many = std::move(done);
   return out;
 }
 

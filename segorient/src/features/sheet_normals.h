@@ -81,9 +81,6 @@ struct SheetNormals {
   std::vector<float> below;  ///< lower end of the offsets of p's own sheet, in the cloud's unit;
                              ///< -infinity where there is no wall below
   std::vector<float> above;  ///< upper end; infinity where there is none above
-  /// 1 where noise asked for the plane of more neighbours than the cloud's median does, see
-  /// scan_scales; empty where it is not asked.
-  std::vector<std::uint8_t> of_many;
   std::vector<std::uint8_t> reliable;  ///< 1 where the fit is central and as good as most
   float residual = 0.F;                ///< median residual of the final fits, in spacings
   SheetTraits traits;                  ///< as measured, or as told

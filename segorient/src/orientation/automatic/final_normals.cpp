@@ -86,7 +86,12 @@ class FinalNormals {
   bool tooNoisy() {
     traits_.surfaces.noise =
         known_ != nullptr ? known_->surfaces.noise : sampleNoise(points_, table_, threads_);
-    return traits_.surfaces.noise.in_spacings > kCubicNoise;
+    const double noise = traits_.surfaces.noise.in_spacings;
+    // What planes leave and surfaces of a few neighbours do not is noise that these were fitted to,
+    // where it asks for larger scales: points that lie on few depths.
+    const bool hides = noise < static_cast<double>(kCleanFit) && oriented_.sheets.scan_scales &&
+                       oriented_.sheets.noise.fine >= kFewTellNothing;
+    return hides || noise > kCubicNoise;
   }
 
   void fitSurfaces(bool only_known) {
@@ -118,13 +123,8 @@ class FinalNormals {
     }
   }
 
-  // Whether surfaces of few neighbours are the noise there: rounded depths and single scan lines
-  // hide it from them.
-  bool hidesNoise(std::size_t i) const { return noise_ < kCleanFit && has(i, MUCH_NOISE); }
-
   // Without noise, what a surface explains needs no other one.
   bool mayRecompute(std::size_t i) const {
-    if (hidesNoise(i)) return false;
     return noise_ >= kCleanFit || fits_[i] != Fit::EXPLAINED;
   }
 
@@ -170,7 +170,7 @@ class FinalNormals {
 
   void choose(std::size_t i, float* result) {
     const float* f = &fitted_[4 * i];
-    if (!isFinite(f) || !isFinite(result) || hidesNoise(i)) return;
+    if (!isFinite(f) || !isFinite(result)) return;
     const bool fits_one_side = fits_[i] == Fit::ONE_SIDED;
     const bool small = noise_ < kCleanFit && most_ <= kFewest;
     // A few neighbours that one surface explains are of one wall.

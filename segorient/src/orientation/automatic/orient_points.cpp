@@ -59,7 +59,6 @@ std::vector<std::uint8_t> lookAround(const SheetNormals& sheets, int threads) {
     if (residual < kExact) bits |= ONE_PLANE;
     if (residual < kWithoutNoise) bits |= ON_A_FACE;
     if (std::isfinite(sheets.below[i]) || std::isfinite(sheets.above[i])) bits |= SECOND_WALL;
-    if (!sheets.of_many.empty() && sheets.of_many[i] != 0) bits |= MUCH_NOISE;
     out[i] = static_cast<std::uint8_t>(bits);
   });
   return out;

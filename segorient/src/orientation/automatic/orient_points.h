@@ -24,7 +24,6 @@ enum Around : std::uint8_t {
   ONE_PLANE = 1,    ///< an exact plane, and so are its surroundings
   ON_A_FACE = 2,    ///< a plane as well as data without noise have them
   SECOND_WALL = 4,  ///< another wall is near
-  MUCH_NOISE = 8    ///< noise that asks for many neighbours, see SheetNormals::of_many
 };
 
 /// Oriented normals of points whose neighbours are known.
