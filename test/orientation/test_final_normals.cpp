@@ -10,6 +10,7 @@
 
 #include "features/automatic_normals.h"
 #include "features/recompute_scene.h"
+#include "orientation/automatic/final_normals.h"
 #include "oriented_shapes.h"
 #include "sheet_fixture.h"
 
@@ -155,6 +156,31 @@ TEST(FinalNormals, AreNoWorseWhereSensorsAreKnown) {
   const OrientedCloud not_seen = orientCloud(viewOf(cloud.xyz), nullptr, without_field);
   EXPECT_LT(rms(seen.normals, cloud.normals), 1.1 * rms(not_seen.normals, cloud.normals));
   EXPECT_EQ(shareOutward(seen.normals, cloud.normals), 1.0);
+}
+
+// What a sensor saw, with noise that planes leave and surfaces of ten neighbours do not: those were
+// fitted to it, as to depths that are rounded.
+TEST(FinalNormals, WhereFewNeighborsHideTheNoiseNoneIsTakenFromThem) {
+  const LabelledCloud sample_of_ball = sample("ball", {ball()}, 4000, 3, 0);
+  PreparedCloud cloud(viewOf(sample_of_ball.xyz), nullptr, 0);
+  cloud.findNeighbors(kSheetNeighbors, false);
+  Segmentation segments;
+  segments.labels.assign(cloud.size(), 0);
+  segments.segments.resize(1);
+  for (const bool hides : {false, true}) {
+    detail::AutoNormals oriented;
+    for (std::size_t i = 0; i < cloud.size(); ++i) {
+      oriented.normals.insert(oriented.normals.end(), {0.6F, 0.F, 0.8F, 0.F});
+      oriented.orientation.toward.insert(oriented.orientation.toward.end(), {0.F, 0.F, 1.F});
+    }
+    oriented.around.assign(cloud.size(), 0);
+    oriented.sheets.scan_scales = true;
+    oriented.sheets.noise.fine = hides ? 0.2F : 0.01F;
+    const std::vector<float> before = oriented.normals;
+    detail::MoreNeighbors more(cloud.points(), 0);
+    detail::fitFinalNormals(cloud, more, segments, true, 0, nullptr, oriented);
+    EXPECT_EQ(oriented.normals == before, hides);
+  }
 }
 
 TEST(FinalNormals, OfThinWallsStayThoseOfTheirOwnSide) {

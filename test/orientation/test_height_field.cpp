@@ -230,6 +230,34 @@ TEST(HeightField, WoodsStandOnTheGround) {
   }
 }
 
+// Nothing that is scattered hides the ground, but a surface above it does.
+TEST(HeightField, WhoeverIsAboveWoodsIsBelieved) {
+  for (const bool solid : {false, true}) {
+    std::vector<float> rows = woods(20000, 0.5F, 4.F);
+    if (solid) {
+      const std::vector<float> top = plate(10000, 0.F);
+      rows = top;
+      for (std::size_t i = 0; i < top.size(); i += 3) {
+        rows.insert(rows.end(), {top[i] + 0.01F, top[i + 1], top[i + 2] + 2.F});
+      }
+    }
+    const PointView points{rows.data(), 3, rows.size() / 3};
+    Neighborhoods table;
+    search::indexOf(points, 0).nearestKAll(33, table, false);
+    const std::vector<float> spacing(points.size, 0.1F);
+    PointHints hints;
+    for (std::size_t i = 0; i < points.size; ++i) {
+      hints.sensors.insert(hints.sensors.end(), {5.F, 5.F, 1000.F});
+    }
+    const detail::KnownSensors known =
+        detail::findKnownSensors(points, table, spacing.data(), hints, 0);
+    ASSERT_EQ(known.scans.size(), 1U);
+    EXPECT_EQ(known.scans[0].used, !solid);
+    EXPECT_EQ(known.confirmed, !solid);
+    EXPECT_EQ(known.scans[0].hidden > 0.F, solid);
+  }
+}
+
 TEST(HeightField, WhatIsFullOfPointsIsNoWood) {
   // Below the ground, on either side of it, and no deeper than noise is.
   for (const auto& [from, to] :

@@ -100,11 +100,10 @@ std::optional<FittedPlace> tryCameras(const DensityPatches& patches, float const
 // Across a plane a place leaves the same. Of what lies level the upper side was seen, unless the
 // lower place explains more.
 FittedPlace orUpperTwin(const DensityPatches& patches, const FittedPlace& found) {
-  constexpr float kSame = 1.05F;  // costs: as far as searches from different starts come
   const std::array<double, 3> twin = patches.imageOf(found.place.position);
   if (!(twin[2] > found.place.position[2])) return found;
   const FittedPlace upper = fitBeside(patches, fitAt(patches, twin));
-  return upper.cost <= kSame * found.cost ? upper : found;
+  return upper.cost <= kSameCost * found.cost ? upper : found;
 }
 
 struct FoundPlace {

@@ -24,8 +24,6 @@ namespace {
 constexpr float kManyScattered = 0.1F;
 // The rest are stray points below the ground, and steep ground.
 constexpr float kNearlyAll = 0.9F;
-// Spacings of the ground, as wide as its columns, and as high above it as noise does not reach.
-constexpr float kColumn = 3.F;
 
 // Heights of points over the ground at their places.
 class HeightsOver {
@@ -72,6 +70,7 @@ std::optional<HeightField> groundUnderWoods(const FlatPoints& flat, int threads)
   const DensityPatches patches = densityPatches(ground, index, threads);
   const HeightField field = measureHeightField(ground, index, patches, flat.view());
   if (!field.sure()) return {};
+  // As far from the ground as noise does not reach.
   const float side = kColumn * patches.spacing;
   const HeightsOver heights_over(ground, side);
   std::vector<float> heights;

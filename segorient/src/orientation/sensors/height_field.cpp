@@ -17,9 +17,8 @@
 namespace segorient::detail {
 namespace {
 
-// Columns of three spacings hold about nine points where all was seen from above: .97 to 1 of them
-// are filled, of what scanners on the ground leave .4 to .8.
-constexpr float kColumn = 3.F;
+// Of columns .97 to 1 are filled where all was seen from above, of what scanners on the ground
+// leave .4 to .8.
 constexpr std::size_t kFilled = 3;
 constexpr float kMostlyFilled = 0.9F;
 // Of a strip six columns wide two of three have others on all sides, and of a square of eleven.

@@ -16,6 +16,8 @@ namespace segorient::detail {
 
 /// Height over width of land, at most: what a camera sees is about as deep as it is wide.
 constexpr float kMostRelief = 0.3F;
+/// Width of a column, in spacings: it holds about nine points of what was seen from above.
+constexpr float kColumn = 3.F;
 
 /// How far a cloud is one surface over the xy plane, as aircraft and drones see the ground.
 struct HeightField {

@@ -151,6 +151,23 @@ class Sum {
     }
   }
 
+  // All that have a higher image to that at once, unless it is worse. Of stations on either side of
+  // the ground each saw pieces of its own, and no single one can go through it.
+  void raise(double step) {
+    const float before = cost();
+    const std::vector<Position> positions = positions_;
+    for (Position& position : positions_) {
+      const Position image = patches_.imageOf(position);
+      if (image[2] > position[2]) position = image;
+    }
+    if (positions_ == positions) return;
+    look();
+    refine(step);
+    if (cost() <= kSameCost * before) return;
+    positions_ = positions;
+    look();
+  }
+
   // The one that is missed least goes.
   void dropOne() {
     std::size_t least = 0;
@@ -245,6 +262,7 @@ void settle(const DensityPatches& patches, const Occupancy& occupancy, const Ext
     sum.reflect(step);
     sum.refine(step);
   }
+  sum.raise(step);
   stations.positions = sum.positions();
   stations.cost = sum.cost();
 }

@@ -18,6 +18,8 @@ constexpr float kSureFound = 0.33F;
 constexpr float kGain = 0.035F;
 /// A place that somebody names is kept unless another one explains this much more.
 constexpr float kMuchBetter = 0.6F;
+/// Costs this much apart are the same: as far as searches from different starts come.
+constexpr float kSameCost = 1.05F;
 
 /// A place and how far the densities deviate from its law.
 struct FittedPlace {
