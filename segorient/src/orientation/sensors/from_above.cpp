@@ -44,8 +44,11 @@ class HeightsOver {
 
  private:
   std::uint64_t columnOf(const float* p) const {
+    // Whatever is farther away than that is in no column with anything else.
+    constexpr float kFarthest = 1e9F;
     const auto part = [&](float x) {
-      return static_cast<std::uint32_t>(static_cast<std::int32_t>(std::floor(x / side_)));
+      const float column = std::clamp(std::floor(x / side_), -kFarthest, kFarthest);
+      return static_cast<std::uint32_t>(static_cast<std::int32_t>(column));
     };
     return (std::uint64_t{part(p[0])} << 32U) | std::uint64_t{part(p[1])};
   }
@@ -58,7 +61,8 @@ class HeightsOver {
 std::optional<HeightField> groundUnderWoods(const FlatPoints& flat, int threads) {
   const std::size_t n = flat.size();
   const std::size_t on_surfaces = flat.onSurfaces().size();
-  if (static_cast<float>(n - on_surfaces) < kManyScattered * static_cast<float>(n)) return {};
+  const auto scattered = static_cast<float>(n - on_surfaces);
+  if (on_surfaces == 0 || scattered < kManyScattered * static_cast<float>(n)) return {};
   std::vector<float> xyz;
   xyz.reserve(4 * on_surfaces);
   for (const std::size_t i : flat.onSurfaces()) {
