@@ -27,7 +27,7 @@ constexpr std::size_t kSamples = 3000;
 // flat and noise of half a spacing does not tilt.
 constexpr int kPlane = 24;
 // In angle: of a nearer surface, and of the point's own.
-constexpr int kAround = 24;
+constexpr int kAroundRay = 24;
 // Of points before others, those on surfaces, over as many as chance would have there. In four
 // woods seen from the air .00 to .10, around and in bodies .24 (in noise) and more.
 constexpr double kFarFewer = 0.15;
@@ -64,7 +64,7 @@ struct Scan::Row {
 };
 
 struct Scan::Before {
-  std::array<std::size_t, kAround> points;
+  std::array<std::size_t, kAroundRay> points;
   std::size_t count = 0;
 };
 
@@ -137,7 +137,7 @@ bool Scan::seesThrough(const std::vector<std::uint8_t>& hidden) const {
     if (!isOnSurface(some[s])) return;
     found[s].on_surface = 1;
     if (hidden[s] == 0) return;
-    const Before those = before(some[s], kAround, directions);
+    const Before those = before(some[s], kAroundRay, directions);
     for (std::size_t j = 0; j < those.count; ++j) {
       ++found[s].before;
       found[s].before_on_surfaces += isOnSurface(those.points[j]) ? 1 : 0;
@@ -168,10 +168,10 @@ Scan::Before Scan::before(std::size_t i, std::size_t most,
       plane.valid ? std::fabs(dot(plane.normal.data(), &seen_.direction[4 * i])) : 1.F;
   const float d = seen_.distance[i];
   const float margin = depthStep(spacingOf(i), incidence, d, extent_);
-  std::array<pcl::index_t, kAround> around;
-  std::array<float, kAround> squares;
+  std::array<pcl::index_t, kAroundRay> around;
+  std::array<float, kAroundRay> squares;
   const int found =
-      directions.nearestK(&seen_.direction[4 * i], kAround, around.data(), squares.data());
+      directions.nearestK(&seen_.direction[4 * i], kAroundRay, around.data(), squares.data());
   Before out;
   for (int j = 0; j < found && out.count < most; ++j) {
     const auto at = static_cast<std::size_t>(j);
