@@ -8,6 +8,7 @@
 #include <Eigen/Core>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -256,6 +257,36 @@ TEST(HeightField, WhoeverIsAboveWoodsIsBelieved) {
     EXPECT_EQ(known.confirmed, !solid);
     EXPECT_EQ(known.scans[0].hidden > 0.F, solid);
   }
+}
+
+// From within, all that is before its surface is scattered, too.
+TEST(HeightField, WhoeverIsInABodyFullOfPointsIsNot) {
+  std::mt19937 random(15);
+  std::normal_distribution<float> normal(0.F, 1.F);
+  std::vector<float> rows;
+  constexpr std::size_t kSurface = 10000;
+  for (std::size_t i = 0; i < kSurface + 2000; ++i) {
+    std::array<float, 3> p{normal(random), normal(random), normal(random)};
+    const float length = std::sqrt(p[0] * p[0] + p[1] * p[1] + p[2] * p[2]);
+    float radius = 1.F + 0.1F * std::sin(4.F * p[0] / length) * std::cos(3.F * p[1] / length);
+    if (i >= kSurface) radius *= 0.9F * std::cbrt(static_cast<float>(i - kSurface) / 2000.F);
+    for (const float x : p) rows.push_back(radius * x / length);
+  }
+  const PointView points{rows.data(), 3, rows.size() / 3};
+  const auto hints = std::make_shared<OrientationHints>();
+  for (std::size_t i = 0; i < points.size; ++i) {
+    hints->viewpoints.insert(hints->viewpoints.end(), {0.1F, 0.05F, 0.F});
+  }
+  PipelineOptions options;
+  options.orientation.hints = hints;
+  const OrientedCloud cloud = orientCloud(points, nullptr, options);
+  std::size_t outward = 0;
+  for (std::size_t i = 0; i < kSurface; ++i) {
+    float along = 0.F;
+    for (std::size_t a = 0; a < 3; ++a) along += cloud.normals[4 * i + a] * points[i][a];
+    outward += along > 0.F ? 1 : 0;
+  }
+  EXPECT_GT(outward, kSurface * 99 / 100);
 }
 
 TEST(HeightField, WhatIsFullOfPointsIsNoWood) {

@@ -88,7 +88,7 @@ class FinalNormals {
         known_ != nullptr ? known_->surfaces.noise : sampleNoise(points_, table_, threads_);
     const double noise = traits_.surfaces.noise.in_spacings;
     // What planes leave and surfaces of a few neighbours do not is noise that these were fitted to,
-    // where it asks for larger scales: points that lie on few depths.
+    // where it asks for larger scales, as where points lie on few depths.
     const bool hides = noise < static_cast<double>(kCleanFit) && oriented_.sheets.scan_scales &&
                        oriented_.sheets.noise.fine >= kFewTellNothing;
     return hides || noise > kCubicNoise;

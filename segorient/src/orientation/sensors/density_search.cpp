@@ -155,13 +155,16 @@ void lookForUpperSide(PreparedCloud& cloud, const DensityPatches& patches,
                       const SensorOptions& options, CameraViews& views, SensorReport& out) {
   if (!options.search || patches.size() == 0) return;
   const Extent ground = extentOf(patches);
-  for (const std::array<float, 3>& s : options.suggestions) {
-    if (isUnderGround(ground, s)) return;
-  }
-  out.faces_up = measureHeightField(cloud.points(), cloud.index(), patches, cloud.points()).sure();
+  const bool is_under =
+      std::any_of(options.suggestions.begin(), options.suggestions.end(),
+                  [&](const std::array<float, 3>& s) { return isUnderGround(ground, s); });
+  // No camera below sees woods: the ground is before them.
+  const bool is_field =
+      measureHeightField(cloud.points(), cloud.index(), patches, cloud.points()).sure();
+  out.faces_up = is_field && !is_under;
   if (out.faces_up) {
     out.why += ", but it is one surface over the ground, whose upper side is seen";
-  } else {
+  } else if (!is_field) {
     lookOverWoods(views.flat(), patches, options.threads, out);
   }
 }

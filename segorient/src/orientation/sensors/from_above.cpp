@@ -44,7 +44,7 @@ class HeightsOver {
 
  private:
   std::uint64_t columnOf(const float* p) const {
-    // Whatever is farther away than that is in no column with anything else.
+    // Whatever is farther away than that is in no column with anything nearer.
     constexpr float kFarthest = 1e9F;
     const auto part = [&](float x) {
       const float column = std::clamp(std::floor(x / side_), -kFarthest, kFarthest);

@@ -10,7 +10,7 @@
 
 namespace segorient::detail {
 
-/// Whether a sensor was found by one of these.
+/// Whether a sensor was found by SensorEvidence::LAYERS or WOODS.
 bool isOverGround(const SensorReport& report);
 
 /// Puts a sensor far above into the report if the cloud is woods as lasers see them from the air:

@@ -105,8 +105,8 @@ using ColumnHeights = std::vector<std::pair<std::uint64_t, float>>;
 ColumnHeights columnsOf(const PointView& points, const Box& ground, float side) {
   ColumnHeights heights;
   for (std::size_t i = 0; i < points.size; ++i) {
-    const float x = (points[i][0] - ground.low[0]) / side;
-    const float y = (points[i][1] - ground.low[1]) / side;
+    const float x = std::min(kMostColumns, (points[i][0] - ground.low[0]) / side);
+    const float y = std::min(kMostColumns, (points[i][1] - ground.low[1]) / side);
     if (x < 0.F || y < 0.F || points[i][0] > ground.high[0] || points[i][1] > ground.high[1]) {
       continue;
     }
@@ -260,7 +260,7 @@ HeightField measureHeightField(const PointView& points, const search::MedianHash
   const float side = kColumn * patches.spacing;
   const ColumnHeights heights = columnsOf(points, ground, side);
   measureLayers(heights, side, out);
-  const bool are_same = all.size == points.size;
+  const bool are_same = all.data == points.data && all.size == points.size;
   measureArea(are_same ? heights : columnsOf(all, ground, side), out);
   if (out.layered <= kFewLayered && out.upright <= kFewUpright && out.inner >= kMostlyInner) {
     out.backed = shareBacked(points, index, patches);

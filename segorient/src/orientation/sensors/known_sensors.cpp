@@ -155,9 +155,11 @@ class Finder {
     const std::vector<std::uint8_t> hidden = scan.hidden();
     report.hidden = shareOf(hidden);
     if (hints_.place.along_way) return;
-    if (report.hidden > kMostHidden && scan.seesThrough(hidden)) {
+    // A body that has points inside looks so from within.
+    if (out_.one_place && report.hidden > kMostHidden && scan.isOutside() &&
+        scan.seesThrough(hidden)) {
       report.hidden = 0.F;
-      out_.confirmed = out_.one_place;
+      out_.confirmed = true;
       return;
     }
     if (!out_.one_place && report.hidden > kFewHidden &&

@@ -47,7 +47,7 @@ PlaceChoice findOthers(const PointView& points, OrientationHints hints, Prepared
                        int threads, SeenShadows seen = {}) {
   PlaceChoice out;
   out.sensors = addFoundSensors(points, cloud, threads, hints, seen);
-  // What one layer told is not to be told by others again, which know nothing of trees.
+  // What one layer or woods told is not to be told by others again, which know nothing of trees.
   out.place.found = isOverGround(out.sensors);
   out.place.along_way = out.sensors.sure() && out.sensors.sensors[0].kind == SensorKind::MOVING;
   out.either_side = ofPoints(out.sensors.either_side, cloud);

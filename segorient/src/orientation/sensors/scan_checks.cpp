@@ -7,7 +7,6 @@
 #include <map>
 #include <utility>
 
-#include "common/box.h"
 #include "common/dot.h"
 #include "common/in_double.h"
 #include "common/parallel_for.h"
@@ -77,9 +76,8 @@ Scan::Scan(const PointView& points, const std::vector<std::uint32_t>& rows,
     for (std::size_t i = 0; i < rows.size(); ++i) std::copy_n(points[rows[i]], 3, &xyz_[4 * i]);
     view_ = {xyz_.data(), 4, rows.size()};
   }
-  Box box;
-  for (std::size_t i = 0; i < view_.size; ++i) box.add(view_[i]);
-  if (!rows.empty()) extent_ = box.diagonal();
+  for (std::size_t i = 0; i < view_.size; ++i) box_.add(view_[i]);
+  if (!rows.empty()) extent_ = box_.diagonal();
   seen_ = seeFrom(sensor, view_, threads);
   if (all && neighborhoods != nullptr && neighborhoods->k() > kPlane) {
     near_ = neighborhoods;

@@ -13,6 +13,7 @@
 #include <limits>
 #include <vector>
 
+#include "common/box.h"
 #include "common/every_nth.h"
 #include "features/sheet_fit.h"
 #include "orientation/sensors/seen_from.h"
@@ -49,6 +50,9 @@ class Scan {
   /// well before it arrives.
   std::vector<std::uint8_t> hidden() const;
 
+  /// Whether the sensor is outside of the box around the points.
+  bool isOutside() const { return !box_.contains(sensor_.data(), 0.F); }
+
   /// Whether those lie behind scattered points, as the ground does in woods: beams pass between
   /// the leaves, and what a sensor sees through hides nothing from it. What hides points that are
   /// on surfaces is on surfaces itself about as often as all points are, in noise, too, unless it
@@ -83,7 +87,8 @@ class Scan {
   PointView view_;
   std::array<float, 3> sensor_;
   SeenFrom seen_;
-  float extent_ = 0.F;  ///< diagonal of its box
+  Box box_;             ///< of the points
+  float extent_ = 0.F;  ///< its diagonal
   search::MedianHashIndex index_;
   const Neighborhoods* near_ = nullptr;  ///< null unless they are known
   int threads_;
