@@ -305,8 +305,9 @@ TEST(HeightField, WhatIsFullOfPointsIsNoWood) {
   EXPECT_FALSE(findSensors({slab.data(), 3, slab.size() / 3}).sure());
 }
 
-// Points under trees lie behind others, which those who fly above see all the same. A place that
-// somebody gives is to be doubted for that, one that was found by layers has been.
+// Points under trees lie behind others, which those who fly above see all the same. Of crowns that
+// are solid, a place that somebody gives is to be doubted for that; one that was found by layers
+// has been.
 TEST(HeightField, WhoWasFoundAboveMaySeeThroughTrees) {
   std::vector<float> rows = plate(9000, 0.F);
   for (std::size_t i = 0; i < 9000; ++i) {

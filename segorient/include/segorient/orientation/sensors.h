@@ -34,7 +34,8 @@ struct KnownSensor {
   /// several.
   std::int32_t scan = -1;
   /// Share of its points that lie behind others of its own, as seen from there. A sensor sees no
-  /// such points: noise and stray points make up to .09 of them.
+  /// such points: noise and stray points make up to .09 of them. 0 where what hides them is
+  /// scattered, as leaves are: beams pass between those.
   float hidden = 0.F;
   /// Share of neighbours on one smooth sheet, its own and others', that would have to face apart.
   float contrary = 0.F;

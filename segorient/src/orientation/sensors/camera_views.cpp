@@ -8,11 +8,6 @@
 
 namespace segorient::detail {
 
-const FlatPoints& CameraViews::flat() {
-  if (!flat_) flat_.emplace(cloud_.points(), threads_);
-  return *flat_;
-}
-
 const std::vector<RevealedPlace>& CameraViews::cameras() {
   if (cameras_) return *cameras_;
   cameras_.emplace();

@@ -23,17 +23,18 @@ struct RevealedPlace {
 class CameraViews {
  public:
   /// \param cloud must outlive this
-  CameraViews(const PreparedCloud& cloud, int threads) : cloud_(cloud), threads_(threads) {}
+  CameraViews(const PreparedCloud& cloud, int threads)
+      : flat_(cloud.points(), threads), threads_(threads) {}
 
-  const FlatPoints& flat();
+  const FlatPoints& flat() { return flat_.get(); }
+  FlatPointsOnce& flatOnce() { return flat_; }
   /// Where the sides of an image meet: all four, and shadows allow or excuse a sensor; or three,
   /// and they reveal one. Whole ones first, then those that hide least.
   const std::vector<RevealedPlace>& cameras();
 
  private:
-  const PreparedCloud& cloud_;
+  FlatPointsOnce flat_;
   int threads_;
-  std::optional<FlatPoints> flat_;
   std::optional<std::vector<RevealedPlace>> cameras_;
 };
 

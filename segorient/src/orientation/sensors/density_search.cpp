@@ -10,6 +10,7 @@
 
 #include "common/in_double.h"
 #include "orientation/sensors/far_station.h"
+#include "orientation/sensors/found_sensor.h"
 #include "orientation/sensors/from_above.h"
 #include "orientation/sensors/height_field.h"
 #include "orientation/sensors/joint_sensors.h"
@@ -149,39 +150,47 @@ bool isUnderGround(const Extent& ground, const std::array<float, 3>& place) {
          looksUpAt(place, toFloat(ground.middle()));
 }
 
+// What all steps of the search look at.
+struct Scene {
+  const DensityPatches& patches;
+  PreparedCloud& cloud;
+  const SensorOptions& options;
+  CameraViews& views;
+  FromAbove& above;
+};
+
 // Where densities tell of no sensor, or not of its side: what no upright line meets twice has one
 // side that faces up, and woods stand on the upper side of the ground.
-void lookForUpperSide(PreparedCloud& cloud, const DensityPatches& patches,
-                      const SensorOptions& options, CameraViews& views, SensorReport& out) {
-  if (!options.search || patches.size() == 0) return;
-  const Extent ground = extentOf(patches);
+void lookForUpperSide(const Scene& scene, SensorReport& out) {
+  if (!scene.options.search || scene.patches.size() == 0) return;
+  const Extent ground = extentOf(scene.patches);
   const bool is_under =
-      std::any_of(options.suggestions.begin(), options.suggestions.end(),
+      std::any_of(scene.options.suggestions.begin(), scene.options.suggestions.end(),
                   [&](const std::array<float, 3>& s) { return isUnderGround(ground, s); });
   // No camera below sees woods: the ground is before them.
-  const bool is_field =
-      measureHeightField(cloud.points(), cloud.index(), patches, cloud.points()).sure();
+  const bool is_field = scene.above.field().sure();
   out.faces_up = is_field && !is_under;
   if (out.faces_up) {
     out.why += ", but it is one surface over the ground, whose upper side is seen";
   } else if (!is_field) {
-    lookOverWoods(views.flat(), patches, options.threads, out);
+    scene.above.lookOverWoods(out);
   }
 }
 
 // \param frame in another one than the cloud's, nothing is to be suggested
+// \param options the scene's, or other suggestions
 // \param has_axes whether the scene lies along the cloud's axes
 // \param out has the deviations
 // \return whether it is a place that is exact, as it was suggested or the sides of an image meet
 // there
-bool searchPlaces(const SceneFrame& frame, bool has_axes, const DensityPatches& patches,
-                  PreparedCloud& cloud, const SensorOptions& options, CameraViews& views,
-                  const std::vector<RevealedPlace>& cameras, SensorReport& out) {
+bool searchPlaces(const SceneFrame& frame, bool has_axes, const Scene& scene,
+                  const SensorOptions& options, const std::vector<RevealedPlace>& cameras,
+                  SensorReport& out) {
   auto [sensor, by_image, from_either_side] =
-      findStation(frame.into(patches), out.deviation, options, cameras);
+      findStation(frame.into(scene.patches), out.deviation, options, cameras);
   if (from_either_side) {
     out.why = "a far place explains the densities, but so does the one across";
-    if (frame.isOwn()) lookForUpperSide(cloud, patches, options, views, out);
+    if (frame.isOwn()) lookForUpperSide(scene, out);
     return false;
   }
   frame.back(sensor);
@@ -190,7 +199,7 @@ bool searchPlaces(const SceneFrame& frame, bool has_axes, const DensityPatches& 
   const bool searched = !sensor.suggested && !by_image;
   const bool is_weak = sensor.suggested && sensor.cost_ratio > kSureFound;
   if (sensor.sure && (searched || is_weak)) {
-    sensor.sure = !findShadows(views.flat(), sensor.position, options.threads).contradict();
+    sensor.sure = !findShadows(scene.views.flat(), sensor.position, options.threads).contradict();
   }
   if (sensor.sure) {
     setOnly(sensor,
@@ -203,28 +212,27 @@ bool searchPlaces(const SceneFrame& frame, bool has_axes, const DensityPatches& 
   out.why = "no places explain the densities";
   if (!options.search || out.deviation < kFarBeyondChance * out.chance) return false;
   if (frame.isOwn()) {
-    findSeveral(cloud, patches, has_axes, options.threads, out);
+    findSeveral(scene.cloud, scene.patches, has_axes, scene.above, options.threads, out);
   } else {
-    findSeveralTurned(frame, cloud, patches, options.threads, out);
+    findSeveralTurned(frame, scene.cloud, scene.patches, options.threads, out);
   }
   return false;
 }
 
 // What was found in the cloud's own coordinates, or in the scene's frame if that explains more. One
 // layer over the ground is one in upright clouds only.
-SensorReport searchUpright(const DensityPatches& patches, PreparedCloud& cloud,
-                           const SensorOptions& options, CameraViews& views,
-                           const SensorReport& empty) {
-  const SceneFrame frame(patches);
+SensorReport searchUpright(const Scene& scene, const SensorReport& empty) {
+  const SensorOptions& options = scene.options;
+  const SceneFrame frame(scene.patches);
   SensorReport own = empty;
   const std::vector<RevealedPlace> none;
-  const bool exact = searchPlaces({}, frame.isOwn(), patches, cloud, options, views,
-                                  options.search ? views.cameras() : none, own);
+  const bool exact = searchPlaces({}, frame.isOwn(), scene, options,
+                                  options.search ? scene.views.cameras() : none, own);
   if (exact || isOverGround(own) || frame.isOwn() || !options.search) return own;
   SensorOptions without = options;
   without.suggestions.clear();
   SensorReport turned = empty;
-  searchPlaces(frame, true, patches, cloud, without, views, none, turned);
+  searchPlaces(frame, true, scene, without, none, turned);
   const bool knows_side = own.sure() || !own.directions.empty();
   const bool is_better =
       turned.sure() ? !own.sure() || turned.sensors[0].cost_ratio < own.sensors[0].cost_ratio
@@ -232,24 +240,26 @@ SensorReport searchUpright(const DensityPatches& patches, PreparedCloud& cloud,
   return is_better ? turned : own;
 }
 
+bool isALattice(const Scene& scene) {
+  return formALattice(scene.cloud.points(), scene.cloud.index(), scene.options.threads);
+}
+
 // Vertices of a body that was turned on a lathe, or that is a function of the direction, have the
 // density of a scan from within it, and those of a rod that of one from its axis. They are a
 // lattice, unlike what several stations saw.
-bool areInABody(const SensorReport& found, const DensityPatches& patches, PreparedCloud& cloud,
-                const FlatPoints& flat, int threads) {
+bool areInABody(const SensorReport& found, const Scene& scene) {
+  const int threads = scene.options.threads;
   const SensorKind kind = found.sensors[0].kind;
   if (found.sensors[0].evidence != SensorEvidence::DENSITY || kind == SensorKind::ABOVE) {
     return false;
   }
   const bool on_its_way = kind == SensorKind::MOVING;
   const bool are_several = found.sensors.size() > 1;
-  if (are_several && !on_its_way && !formALattice(cloud.points(), cloud.index(), threads)) {
-    return false;
-  }
-  const bool has_walls = patches.haveWalls();
+  if (are_several && !on_its_way && !isALattice(scene)) return false;
+  const bool has_walls = scene.patches.haveWalls();
   std::vector<Shadows> seen;
   for (const FoundSensor& sensor : found.sensors) {
-    seen.push_back(findShadows(flat, sensor.position, threads));
+    seen.push_back(findShadows(scene.views.flat(), sensor.position, threads));
     // In walls each place has to look like it, but of a way the median does.
     if (has_walls && !on_its_way && !seen.back().asOfABody(true, are_several)) return false;
   }
@@ -257,11 +267,11 @@ bool areInABody(const SensorReport& found, const DensityPatches& patches, Prepar
 }
 
 // Stations near the middle of a hollow are much like one there, from where it looks like a body.
-void lookForSeveralInstead(const SensorReport& one, const DensityPatches& patches,
-                           PreparedCloud& cloud, int threads, SensorReport& several) {
+void lookForSeveralInstead(const SensorReport& one, const Scene& scene, SensorReport& several) {
   if (one.sensors.size() > 1 || one.deviation < kFarBeyondChance * one.chance) return;
-  if (formALattice(cloud.points(), cloud.index(), threads)) return;
-  findSeveral(cloud, patches, SceneFrame(patches).isOwn(), threads, several);
+  if (isALattice(scene)) return;
+  findSeveral(scene.cloud, scene.patches, SceneFrame(scene.patches).isOwn(), scene.above,
+              scene.options.threads, several);
   const bool are_stations =
       several.sensors.size() > 1 && several.sensors[0].kind == SensorKind::STATION;
   if (!are_stations || several.sensors[0].cost_ratio > kMuchBetter * one.sensors[0].cost_ratio) {
@@ -271,29 +281,25 @@ void lookForSeveralInstead(const SensorReport& one, const DensityPatches& patche
 
 }  // namespace
 
-void setOnly(const FoundSensor& sensor, const char* why, SensorReport& out) {
-  out.sensors = {sensor};
-  std::fill(out.sensor_of.begin(), out.sensor_of.end(), 0);
-  out.why = why;
-}
-
 SensorReport searchByDensity(PreparedCloud& cloud, const SensorOptions& options,
                              CameraViews& views) {
   SensorReport out;
   out.sensor_of.assign(cloud.size(), -1);
   const DensityPatches patches = densityPatches(cloud.points(), cloud.index(), options.threads);
+  FromAbove above(cloud, patches, views.flatOnce(), options.threads);
+  const Scene scene{patches, cloud, options, views, above};
   if (!patches.tell_laws) {
     out.why = "too few flat neighbourhoods to measure densities by";
-    lookForUpperSide(cloud, patches, options, views, out);
+    lookForUpperSide(scene, out);
     return out;
   }
   out.deviation = deviation(patches.log_density);
   out.chance = chanceDeviation(patches.k);
   const SensorReport empty = out;
-  out = searchUpright(patches, cloud, options, views, empty);
-  if (out.sure() && areInABody(out, patches, cloud, views.flat(), options.threads)) {
+  out = searchUpright(scene, empty);
+  if (out.sure() && areInABody(out, scene)) {
     SensorReport several = empty;
-    if (options.search) lookForSeveralInstead(out, patches, cloud, options.threads, several);
+    if (options.search) lookForSeveralInstead(out, scene, several);
     if (several.sure()) return several;
     for (FoundSensor& sensor : out.sensors) sensor.sure = false;
     std::fill(out.sensor_of.begin(), out.sensor_of.end(), -1);
@@ -303,9 +309,9 @@ SensorReport searchByDensity(PreparedCloud& cloud, const SensorOptions& options,
   if (out.sure()) return out;
   if (isEven(patches, out.deviation)) {
     if (out.sensors.empty()) out.why = "the density is even";
-    lookForUpperSide(cloud, patches, options, views, out);
+    lookForUpperSide(scene, out);
   } else if (options.search && out.directions.empty()) {
-    lookOverWoods(views.flat(), patches, options.threads, out);
+    above.lookOverWoods(out);
   }
   return out;
 }

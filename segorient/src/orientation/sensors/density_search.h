@@ -10,14 +10,11 @@
 namespace segorient::detail {
 
 /// Sensors whose law of sampling explains how dense the points are on each surface, and one layer
-/// over the ground, which somebody above saw.
+/// over the ground, or woods, which somebody above saw.
 /// \param views cameras that images and shadows tell of: where they explain densities about as well
 ///        as the best of all places, they are that
 /// \return in the unit of the cloud; SensorReport::sensor_of has one entry for each of its points
 SensorReport searchByDensity(PreparedCloud& cloud, const SensorOptions& options,
                              CameraViews& views);
-
-/// Makes one sensor the one that saw all points.
-void setOnly(const FoundSensor& sensor, const char* why, SensorReport& out);
 
 }  // namespace segorient::detail

@@ -11,6 +11,7 @@
 #include "common/unit_vector.h"
 #include "orientation/sensors/camera_views.h"
 #include "orientation/sensors/density_search.h"
+#include "orientation/sensors/found_sensor.h"
 #include "orientation/sensors/image_rays.h"
 #include "orientation/sensors/room_shadows.h"
 #include "orientation/sensors/sensor_search.h"

@@ -7,6 +7,7 @@
 
 #include <array>
 #include <cstddef>
+#include <optional>
 #include <vector>
 
 #include "common/dot.h"
@@ -22,6 +23,7 @@ class FlatPoints {
   static constexpr int kPlane = 12;
 
   /// Whether the spread of neighbours is that of a surface, not of noise, nor of one scan line.
+  /// \param plane of 12 to 24 neighbours
   static bool isFlat(const Plane& plane);
 
   /// \param points of which an even part is taken
@@ -47,6 +49,23 @@ class FlatPoints {
   std::vector<float> width_;
   std::vector<std::size_t> on_surfaces_;
   search::MedianHashIndex index_;
+};
+
+/// The same, found once and only if somebody asks.
+class FlatPointsOnce {
+ public:
+  /// \param points must outlive this
+  FlatPointsOnce(const PointView& points, int threads) : points_(points), threads_(threads) {}
+
+  const FlatPoints& get() {
+    if (!flat_) flat_.emplace(points_, threads_);
+    return *flat_;
+  }
+
+ private:
+  PointView points_;
+  int threads_;
+  std::optional<FlatPoints> flat_;
 };
 
 }  // namespace segorient::detail

@@ -100,17 +100,25 @@ float shareCrowded(const std::vector<float>& sizes) {
   return static_cast<float>(crowded / all);
 }
 
+bool isOver(const Box& ground, const float* point) {
+  return point[0] >= ground.low[0] && point[0] <= ground.high[0] && point[1] >= ground.low[1] &&
+         point[1] <= ground.high[1];
+}
+
+// \param point over the ground
+std::uint64_t columnOf(const float* point, const Box& ground, float side) {
+  const float x = std::min(kMostColumns, (point[0] - ground.low[0]) / side);
+  const float y = std::min(kMostColumns, (point[1] - ground.low[1]) / side);
+  return columnAt(x, y);
+}
+
 // Columns over a rectangle, and the heights of the points in each, sorted.
 using ColumnHeights = std::vector<std::pair<std::uint64_t, float>>;
 ColumnHeights columnsOf(const PointView& points, const Box& ground, float side) {
   ColumnHeights heights;
   for (std::size_t i = 0; i < points.size; ++i) {
-    const float x = std::min(kMostColumns, (points[i][0] - ground.low[0]) / side);
-    const float y = std::min(kMostColumns, (points[i][1] - ground.low[1]) / side);
-    if (x < 0.F || y < 0.F || points[i][0] > ground.high[0] || points[i][1] > ground.high[1]) {
-      continue;
-    }
-    heights.emplace_back(columnAt(x, y), points[i][2]);
+    if (!isOver(ground, points[i])) continue;
+    heights.emplace_back(columnOf(points[i], ground, side), points[i][2]);
   }
   std::sort(heights.begin(), heights.end());
   return heights;
@@ -229,9 +237,7 @@ std::vector<std::uint8_t> openToTheSky(const PointView& points, float spacing) {
   if (!(side > 0.F)) return open;
   std::vector<std::pair<std::uint64_t, std::uint32_t>> columns(points.size);
   for (std::size_t i = 0; i < points.size; ++i) {
-    const float x = std::min(kMostColumns, (points[i][0] - all.low[0]) / side);
-    const float y = std::min(kMostColumns, (points[i][1] - all.low[1]) / side);
-    columns[i] = {columnAt(x, y), static_cast<std::uint32_t>(i)};
+    columns[i] = {columnOf(points[i], all, side), static_cast<std::uint32_t>(i)};
   }
   std::sort(columns.begin(), columns.end());
   for (std::size_t begin = 0; begin < columns.size();) {
@@ -246,6 +252,28 @@ std::vector<std::uint8_t> openToTheSky(const PointView& points, float spacing) {
     }
   }
   return open;
+}
+
+std::vector<float> heightsOver(const PointView& ground, const PointView& points, float side) {
+  Box box;
+  for (std::size_t i = 0; i < ground.size; ++i) box.add(ground[i]);
+  const ColumnHeights columns = columnsOf(ground, box, side);
+  ColumnHeights middles;  // one a column
+  for (std::size_t begin = 0; begin < columns.size();) {
+    const std::size_t end = endOfColumn(columns, begin);
+    middles.push_back(columns[begin + (end - begin) / 2]);
+    begin = end;
+  }
+  std::vector<float> heights;
+  for (std::size_t i = 0; i < points.size; ++i) {
+    if (!isOver(box, points[i])) continue;
+    const std::uint64_t column = columnOf(points[i], box, side);
+    const auto at = std::lower_bound(
+        middles.begin(), middles.end(), column,
+        [](const auto& middle, std::uint64_t value) { return middle.first < value; });
+    if (at != middles.end() && at->first == column) heights.push_back(points[i][2] - at->second);
+  }
+  return heights;
 }
 
 HeightField measureHeightField(const PointView& points, const search::MedianHashIndex& index,

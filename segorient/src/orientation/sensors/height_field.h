@@ -43,6 +43,11 @@ bool looksUpAt(const std::array<float, 3>& place, const std::array<float, 3>& mi
 SEGORIENT_ORIENTATION_EXPORT std::vector<std::uint8_t> openToTheSky(const PointView& points,
                                                                     float spacing);
 
+/// How high the points lie over the median height of the ground in their column; those that have
+/// none there are left out.
+/// \param side of a column
+std::vector<float> heightsOver(const PointView& ground, const PointView& points, float side);
+
 /// \param index of the points
 /// \param patches of the points
 /// \param all that there is, the points among it: columns that hold some of it are filled

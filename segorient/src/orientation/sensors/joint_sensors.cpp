@@ -92,9 +92,8 @@ void addSensors(const std::vector<std::array<double, 3>>& positions, SensorKind 
 // Whether most of them are in a body. What a sensor on its way did not see from one of its places
 // it saw from others: that surfaces go on behind others says nothing.
 bool areInABody(const std::vector<std::array<double, 3>>& places, const DensityPatches& patches,
-                const PointView& points, int threads) {
+                const detail::FlatPoints& flat, int threads) {
   constexpr std::size_t kLooks = 8;  // at some of them: most of so many are most of all
-  const detail::FlatPoints flat(points, threads);
   const bool has_walls = patches.haveWalls();
   const std::size_t looks = std::min(kLooks, places.size());
   std::size_t like = 0;
@@ -106,13 +105,14 @@ bool areInABody(const std::vector<std::array<double, 3>>& places, const DensityP
 }
 
 // Nobody knows the places, but the sides.
-void lookWithin(const PointView& points, const DensityPatches& all, const detail::Extent& extent,
-                const detail::Occupancy& occupancy, int threads, SensorReport& report) {
+void lookWithin(const PointView& points, detail::FlatPointsOnce& flat, const DensityPatches& all,
+                const detail::Extent& extent, const detail::Occupancy& occupancy, int threads,
+                SensorReport& report) {
   constexpr std::size_t kPieces = 800;  // as many as there are places, since time is their product
   const DensityPatches patches = all.thinned(kPieces);
   const detail::SeenWithin seen = detail::seenWithin(patches, occupancy, extent, threads);
   if (seen.directions.empty()) return;
-  if (areInABody(seen.places, patches, points, threads)) return;
+  if (areInABody(seen.places, patches, flat.get(), threads)) return;
   const std::vector<std::int32_t> piece =
       search::nearestOf(patches.index(threads), points, threads);
   report.directions.assign(3 * points.size, 0.F);
@@ -271,7 +271,7 @@ void lookForTilted(const FramedPoints& cloud, const DensityPatches& patches,
 }  // namespace
 
 void detail::findSeveral(PreparedCloud& cloud, const DensityPatches& patches, bool has_axes,
-                         int threads, SensorReport& report) {
+                         FromAbove& above, int threads, SensorReport& report) {
   const detail::Extent extent = detail::extentOf(patches);
   const detail::Occupancy occupancy(cloud.points(), patches, extent);
   const FramedPoints framed{cloud.points(), cloud.points(), cloud.index()};
@@ -279,7 +279,7 @@ void detail::findSeveral(PreparedCloud& cloud, const DensityPatches& patches, bo
   const std::optional<detail::Track> track =
       trackInSight(patches, extent, occupancy, report, threads);
   if (!track && addManyStations(framed, patches, extent, occupancy, threads, report)) return;
-  if (!track) lookFromAbove(cloud, patches, threads, report);
+  if (!track) above.look(report);
   // Tilting scanners that stand in a row look somewhat like a line.
   const bool is_clear = track && track->cost <= kSureSeveral * report.deviation;
   if (has_axes && report.sensors.empty() && !is_clear) {
@@ -289,7 +289,7 @@ void detail::findSeveral(PreparedCloud& cloud, const DensityPatches& patches, bo
     addTrack(framed, patches, occupancy, *track, threads, report);
   }
   if (report.sensors.empty()) {
-    lookWithin(cloud.points(), patches, extent, occupancy, threads, report);
+    lookWithin(cloud.points(), above.flat(), patches, extent, occupancy, threads, report);
   }
 }
 
@@ -328,7 +328,9 @@ void detail::findSeveralTurned(SceneFrame frame, PreparedCloud& cloud,
   }
   if (!report.sensors.empty()) return;
   const TurnedScene& upright = scenes.front();
-  lookWithin(upright.points(), upright.patches, upright.extent, upright.occupancy, threads, report);
+  FlatPointsOnce flat(upright.points(), threads);
+  lookWithin(upright.points(), flat, upright.patches, upright.extent, upright.occupancy, threads,
+             report);
   upright.frame.back(report);
 }
 

@@ -6,7 +6,7 @@
 #include <array>
 #include <utility>
 
-#include "orientation/sensors/from_above.h"
+#include "orientation/sensors/found_sensor.h"
 #include "orientation/sensors/sensor_hints.h"
 
 namespace segorient::detail {

@@ -34,6 +34,7 @@ constexpr double kFarFewer = 0.15;
 constexpr double kEnoughBefore = 20.0;
 // ns a point, see resolveThreads().
 constexpr double kRayTime = 2000.0;
+constexpr double kThroughTime = 20000.0;
 constexpr double kPairTime = 1000.0;
 
 Plane planeOf(const PointView& points, const Neighborhoods& nb, std::size_t i, int k) {
@@ -79,6 +80,7 @@ Scan::Scan(const PointView& points, const std::vector<std::uint32_t>& rows,
   for (std::size_t i = 0; i < view_.size; ++i) box_.add(view_[i]);
   if (!rows.empty()) extent_ = box_.diagonal();
   seen_ = seeFrom(sensor, view_, threads);
+  directions_ = seen_.index(threads);
   if (all && neighborhoods != nullptr && neighborhoods->k() > kPlane) {
     near_ = neighborhoods;
     return;
@@ -110,11 +112,9 @@ EveryNth Scan::sample() const {
 std::vector<std::uint8_t> Scan::hidden() const {
   const EveryNth some = sample();
   const std::size_t n = some.size();
-  const search::MedianHashIndex directions = seen_.index(threads_);
   std::vector<std::uint8_t> out(n, 0);
-  parallelFor(n, threads_, kRayTime, [&](std::size_t s) {
-    out[s] = before(some[s], kNoStray, directions).count >= kNoStray ? 1 : 0;
-  });
+  parallelFor(n, threads_, kRayTime,
+              [&](std::size_t s) { out[s] = before(some[s], kNoStray).count >= kNoStray ? 1 : 0; });
   return out;
 }
 
@@ -124,18 +124,17 @@ bool Scan::seesThrough(const std::vector<std::uint8_t>& hidden) const {
     return plane.valid && FlatPoints::isFlat(plane);
   };
   const EveryNth some = sample();
-  const search::MedianHashIndex directions = seen_.index(threads_);
   struct Found {
     int on_surface = 0;
     int before = 0;  // of a point on a surface that is hidden
     int before_on_surfaces = 0;
   };
   std::vector<Found> found(hidden.size());
-  parallelFor(hidden.size(), threads_, kRayTime, [&](std::size_t s) {
+  parallelFor(hidden.size(), threads_, kThroughTime, [&](std::size_t s) {
     if (!isOnSurface(some[s])) return;
     found[s].on_surface = 1;
     if (hidden[s] == 0) return;
-    const Before those = before(some[s], kAroundRay, directions);
+    const Before those = before(some[s], kAroundRay);
     for (std::size_t j = 0; j < those.count; ++j) {
       ++found[s].before;
       found[s].before_on_surfaces += isOnSurface(those.points[j]) ? 1 : 0;
@@ -159,8 +158,7 @@ Plane Scan::planeAt(std::size_t i) const {
   return planeOf(view_, i, row.indices, row.count);
 }
 
-Scan::Before Scan::before(std::size_t i, std::size_t most,
-                          const search::MedianHashIndex& directions) const {
+Scan::Before Scan::before(std::size_t i, std::size_t most) const {
   const Plane plane = planeAt(i);
   const float incidence =
       plane.valid ? std::fabs(dot(plane.normal.data(), &seen_.direction[4 * i])) : 1.F;
@@ -169,7 +167,7 @@ Scan::Before Scan::before(std::size_t i, std::size_t most,
   std::array<pcl::index_t, kAroundRay> around;
   std::array<float, kAroundRay> squares;
   const int found =
-      directions.nearestK(&seen_.direction[4 * i], kAroundRay, around.data(), squares.data());
+      directions_.nearestK(&seen_.direction[4 * i], kAroundRay, around.data(), squares.data());
   Before out;
   for (int j = 0; j < found && out.count < most; ++j) {
     const auto at = static_cast<std::size_t>(j);

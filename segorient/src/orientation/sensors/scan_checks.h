@@ -81,7 +81,7 @@ class Scan {
   float spacingOf(std::size_t i) const;
   Plane planeAt(std::size_t i) const;
   /// What is before a point, `most` of them at most.
-  Before before(std::size_t i, std::size_t most, const search::MedianHashIndex& directions) const;
+  Before before(std::size_t i, std::size_t most) const;
 
   std::vector<float> xyz_;  ///< 4 floats; empty where all points are the sensor's
   PointView view_;
@@ -90,6 +90,7 @@ class Scan {
   Box box_;             ///< of the points
   float extent_ = 0.F;  ///< its diagonal
   search::MedianHashIndex index_;
+  search::MedianHashIndex directions_;
   const Neighborhoods* near_ = nullptr;  ///< null unless they are known
   int threads_;
 };
