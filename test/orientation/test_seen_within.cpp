@@ -100,6 +100,79 @@ TEST(SeenWithin, ABodyWasNotSeenFromItsInside) {
   EXPECT_GT(static_cast<double>(outward), 0.99 * static_cast<double>(points.size));
 }
 
+// An ellipsoid with another one as its head, which was sampled some ten times as densely. From
+// places in either its density is even, as those of somebody who looked around in two hollows might
+// be.
+class Bust {
+ public:
+  struct Part {
+    std::array<float, 3> middle;
+    std::array<float, 3> radii;
+    float share;  // of the points that are kept
+
+    float heightOf(const float* p) const {
+      float sum = 0.F;
+      for (std::size_t a = 0; a < 3; ++a) sum += std::pow((p[a] - middle[a]) / radii[a], 2.F);
+      return sum - 1.F;
+    }
+  };
+
+  Bust() {
+    std::mt19937 random(5);
+    std::normal_distribution<float> normal;
+    std::uniform_real_distribution<float> uniform(0.F, 1.F);
+    for (const Part& part : parts_) {
+      const float least = *std::min_element(part.radii.begin(), part.radii.end());
+      for (int i = 0; i < 45000; ++i) {
+        std::array<float, 3> way{normal(random), normal(random), normal(random)};
+        const float length = std::hypot(std::hypot(way[0], way[1]), way[2]);
+        float stretch = 0.F;
+        float p[3];
+        for (std::size_t a = 0; a < 3; ++a) {
+          way[a] /= length;
+          stretch += std::pow(way[a] / part.radii[a], 2.F);
+          p[a] = part.middle[a] + part.radii[a] * way[a];
+        }
+        // Even on the surface.
+        if (uniform(random) > std::sqrt(stretch) * least) continue;
+        const Part& other = &part == &parts_[0] ? parts_[1] : parts_[0];
+        if (other.heightOf(p) < 0.F || uniform(random) > part.share) continue;
+        rows_.insert(rows_.end(), p, p + 3);
+      }
+    }
+  }
+
+  PointView view() const { return {rows_.data(), 3, rows_.size() / 3}; }
+
+  bool facesOutward(const float* p, const float* n) const {
+    const bool is_head = std::fabs(parts_[1].heightOf(p)) < std::fabs(parts_[0].heightOf(p));
+    const Part& part = parts_[is_head ? 1 : 0];
+    float sum = 0.F;
+    for (std::size_t a = 0; a < 3; ++a) {
+      sum += n[a] * (p[a] - part.middle[a]) / (part.radii[a] * part.radii[a]);
+    }
+    return sum > 0.F;
+  }
+
+ private:
+  std::array<Part, 2> parts_{Part{{0.F, 0.F, 0.F}, {1.08F, 0.75F, 0.99F}, 1.F / 7.F},
+                             Part{{0.1F, 0.09F, 1.39F}, {0.73F, 0.62F, 0.57F}, 1.F}};
+  std::vector<float> rows_;
+};
+
+TEST(SeenWithin, ABodyPartOfWhichIsDenserFacesOutward) {
+  const Bust bust;
+  const PointView points = bust.view();
+  const SensorReport report = findSensors(points);
+  EXPECT_EQ(report.why.find("it was seen from within"), std::string::npos) << report.why;
+  const OrientedCloud cloud = orientCloud(points, nullptr, {});
+  std::size_t outward = 0;
+  for (std::size_t i = 0; i < points.size; ++i) {
+    outward += bust.facesOutward(points[i], &cloud.normals[4 * i]) ? 1 : 0;
+  }
+  EXPECT_GT(static_cast<double>(outward), 0.99 * static_cast<double>(points.size));
+}
+
 // A ball with spikes, which hide each other.
 class SpikedBall {
  public:
