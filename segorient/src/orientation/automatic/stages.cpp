@@ -16,6 +16,7 @@
 #include "orientation/automatic/noise_field.h"
 #include "orientation/automatic/patch_signs.h"
 #include "orientation/automatic/sensor_normals.h"
+#include "orientation/automatic/sparse_bodies.h"
 #include "orientation/winding/winding_normals.h"
 #include "search/index_of.h"
 #include "segmentation/segmentation_rows.h"
@@ -102,19 +103,20 @@ void askField(const PreparedCloud& cloud, const PointView& points, const Neighbo
     bodies = {};
   }
   takeCellSigns(points, bodies, out);
-  if (noisy || at_level) {
-    // The field of all points knows nothing of faces in contact.
-    if (!bodies.empty()) return;
+  // The field of all points knows nothing of faces in contact.
+  const bool in_contact = !bodies.empty();
+  if ((noisy || at_level) && !in_contact) {
     NoiseField field = findNoiseField(cloud.points(), cloud.neighborhoods(), out.normals, threads,
                                       out.confidences);
     if (!noisy) field.averaged_below = kAcross;
     out.consistent = field.consistent;
     out.fine_field = field.fine;
     takeNoiseField(cloud.points(), cloud.neighborhoods(), field, threads, out);
-  } else if (alone && !out.scales.empty()) {
+  } else if (!noisy && !at_level && alone && !out.scales.empty()) {
     // Judged scales: signs contradict each other somewhere.
     takeFineField(points, table, threads, out);
   }
+  if (alone && !in_contact) takeSparseField(cloud.points(), cloud.neighborhoods(), threads, out);
 }
 
 // Where sensors tell the sides, the field of all points tells lines beside edges in noise.

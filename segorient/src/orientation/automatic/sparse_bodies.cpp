@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the segorient authors
+#include "orientation/automatic/sparse_bodies.h"
+
+#include <algorithm>
+#include <cstddef>
+#include <utility>
+#include <vector>
+
+#include "common/dot.h"
+#include "orientation/automatic/even_cells.h"
+#include "orientation/automatic/sign_energy.h"
+#include "orientation/winding/consistent_normals.h"
+
+namespace segorient::detail {
+namespace {
+
+// A neighbourhood of kSheetNeighbors is a hundredth of the surface and more.
+constexpr std::size_t kFew = std::size_t{100} * kSheetNeighbors;
+// Before an open surface |w| is a half, before a closed one nothing. With the normals that were
+// found less than a half of that, as some may be wrong, and with those of the field of a quarter.
+constexpr float kBeforeOpen = 0.5F;
+constexpr float kMaybeClosed = kBeforeOpen / 2.F;
+constexpr float kClosed = kBeforeOpen / 4.F;
+// In spacings: from dipoles as wide as they are apart to such that the sides of a wall of a spacing
+// are still apart; and in noise, which takes points as far from the surface as the last radius.
+constexpr ShrinkingRadius kNarrow{1.F, 0.25F};
+constexpr ShrinkingRadius kWide{2.F, 0.7F};
+
+ShrinkingRadius times(const ShrinkingRadius& radius, float factor) {
+  return {factor * radius.first, factor * radius.last};
+}
+
+// What one radius finds.
+struct Candidate {
+  std::vector<float> normals;
+  std::vector<float> confidences;
+  SignEnergy energy;
+};
+
+Candidate tryRadius(const EvenCells& cells, const ShrinkingRadius& radius, const SignJudge& judge,
+                    int threads, const AutoNormals& found) {
+  const ConsistentNormals field =
+      consistentNormals(cells.points(), cells.areas, times(radius, found.spacing), threads);
+  Candidate out{found.normals, found.confidences, {}};
+  for (std::size_t i = 0; i < cells.cell_of.size(); ++i) {
+    const std::size_t cell = cells.cell_of[i];
+    const float* normal = &field.normals[4 * cell];
+    if (!(dot(normal, normal) > 0.F)) continue;
+    std::copy_n(normal, 3, &out.normals[4 * i]);
+    out.confidences[i] = std::clamp(field.steepness[cell], 0.F, 1.F);
+  }
+  out.energy = judge.judge(out.normals);
+  return out;
+}
+
+}  // namespace
+
+bool takeSparseField(const PointView& points, const Neighborhoods& neighborhoods, int threads,
+                     AutoNormals& found) {
+  if (points.size > kFew) return false;
+  const SignJudge judge(points, neighborhoods, threads);
+  if (!(judge.judge(found.normals).outside < kMaybeClosed)) return false;
+  // No two points are in one place, so that each is a cell of its own.
+  const EvenCells cells = gatherCells(points, found.normals, 0.01F * found.spacing, threads);
+  if (cells.size() == 0) return false;
+  Candidate best = tryRadius(cells, kNarrow, judge, threads, found);
+  Candidate wide = tryRadius(cells, kWide, judge, threads, found);
+  // It is noise if most of what contradicts the narrow field is gone with the wider one, which also
+  // takes thin walls away, and some energy with them.
+  if (wide.energy.total() < 0.5F * best.energy.total()) best = std::move(wide);
+  if (!(best.energy.outside < kClosed)) return false;
+  found.normals = std::move(best.normals);
+  found.confidences = std::move(best.confidences);
+  return true;
+}
+
+}  // namespace segorient::detail
