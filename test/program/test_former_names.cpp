@@ -82,16 +82,16 @@ TEST(FormerNames, PlanarSegments) {
 }
 
 TEST(FormerNames, SettingsOfTheDefaultMethod) {
-  PipelineOptions now;
-  now.orientation.automatic.filter_rounds = 0;
-  now.orientation.automatic.fit_normals = false;
-  now.orientation.automatic.split_walls = false;
-  PipelineOptions former;
-  former.filter_rounds = 0;
-  former.orientation.automatic.fit_normals = false;
-  former.sheet_normals.split_walls = false;
+  // Of so few points, the field of all of them would have the last word.
   PipelineOptions neither;
   neither.orientation.automatic.fit_normals = false;
+  neither.orientation.automatic.winding_normals = false;
+  PipelineOptions now = neither;
+  now.orientation.automatic.filter_rounds = 0;
+  now.orientation.automatic.split_walls = false;
+  PipelineOptions former = neither;
+  former.filter_rounds = 0;
+  former.sheet_normals.split_walls = false;
   EXPECT_EQ(normals(former), normals(now));
   EXPECT_NE(normals(neither), normals(now));
 }

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "common/dot.h"
+#include "common/median.h"
 #include "orientation/automatic/even_cells.h"
 #include "orientation/automatic/sign_energy.h"
 #include "orientation/winding/consistent_normals.h"
@@ -27,6 +28,9 @@ constexpr float kClosed = kBeforeOpen / 4.F;
 constexpr ShrinkingRadius kNarrow{1.F, 0.25F};
 constexpr ShrinkingRadius kWide{2.F, 0.7F};
 
+// Of the median area: points whose nearest are ten times as far away as usual are on no surface.
+constexpr float kStray = 100.F;
+
 ShrinkingRadius times(const ShrinkingRadius& radius, float factor) {
   return {factor * radius.first, factor * radius.last};
 }
@@ -38,15 +42,25 @@ struct Candidate {
   SignEnergy energy;
 };
 
-Candidate tryRadius(const EvenCells& cells, const ShrinkingRadius& radius, const SignJudge& judge,
-                    int threads, const AutoNormals& found) {
+// One a cell, 0 of strays.
+std::vector<float> areasWithoutStrays(const EvenCells& cells) {
+  std::vector<float> areas = cells.areas;
+  const float most = kStray * median(areas);
+  for (float& area : areas) area = area < most ? area : 0.F;
+  return areas;
+}
+
+// \param areas one a cell
+Candidate tryRadius(const EvenCells& cells, const std::vector<float>& areas,
+                    const ShrinkingRadius& radius, const SignJudge& judge, int threads,
+                    const AutoNormals& found) {
   const ConsistentNormals field =
-      consistentNormals(cells.points(), cells.areas, times(radius, found.spacing), threads);
+      consistentNormals(cells.points(), areas, times(radius, found.spacing), threads);
   Candidate out{found.normals, found.confidences, {}};
   for (std::size_t i = 0; i < cells.cell_of.size(); ++i) {
     const std::size_t cell = cells.cell_of[i];
     const float* normal = &field.normals[4 * cell];
-    if (!(dot(normal, normal) > 0.F)) continue;
+    if (!(dot(normal, normal) > 0.F) || !isFinite(&found.normals[4 * i])) continue;
     std::copy_n(normal, 3, &out.normals[4 * i]);
     out.confidences[i] = std::clamp(field.steepness[cell], 0.F, 1.F);
   }
@@ -64,8 +78,9 @@ bool takeSparseField(const PointView& points, const Neighborhoods& neighborhoods
   // No two points are in one place, so that each is a cell of its own.
   const EvenCells cells = gatherCells(points, found.normals, 0.01F * found.spacing, threads);
   if (cells.size() == 0) return false;
-  Candidate best = tryRadius(cells, kNarrow, judge, threads, found);
-  Candidate wide = tryRadius(cells, kWide, judge, threads, found);
+  const std::vector<float> areas = areasWithoutStrays(cells);
+  Candidate best = tryRadius(cells, areas, kNarrow, judge, threads, found);
+  Candidate wide = tryRadius(cells, areas, kWide, judge, threads, found);
   // It is noise if most of what contradicts the narrow field is gone with the wider one, which also
   // takes thin walls away, and some energy with them.
   if (wide.energy.total() < 0.5F * best.energy.total()) best = std::move(wide);
