@@ -74,7 +74,8 @@ bool takeSparseField(const PointView& points, const Neighborhoods& neighborhoods
                      AutoNormals& found) {
   if (points.size > kFew) return false;
   const SignJudge judge(points, neighborhoods, threads);
-  if (!(judge.judge(found.normals).outside < kMaybeClosed)) return false;
+  const SignEnergy own = judge.judge(found.normals);
+  if (!(own.outside < kMaybeClosed)) return false;
   // No two points are in one place, so that each is a cell of its own.
   const EvenCells cells = gatherCells(points, found.normals, 0.01F * found.spacing, threads);
   if (cells.size() == 0) return false;
@@ -85,6 +86,9 @@ bool takeSparseField(const PointView& points, const Neighborhoods& neighborhoods
   // takes thin walls away, and some energy with them.
   if (wide.energy.total() < 0.5F * best.energy.total()) best = std::move(wide);
   if (!(best.energy.outside < kClosed)) return false;
+  // On walls thinner than a spacing the field folds, and contradicts itself far more than sheets
+  // do.
+  if (own.total() < 0.5F * best.energy.total()) return false;
   found.normals = std::move(best.normals);
   found.confidences = std::move(best.confidences);
   return true;

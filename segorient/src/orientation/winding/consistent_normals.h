@@ -10,9 +10,9 @@ namespace segorient {
 
 /// Normals and how much the field agrees with them.
 struct ConsistentNormals {
-  std::vector<float> normals;    ///< 4 floats a point: unit, 0 where the field does not fall
-  /// One a point: how the field that the first radius makes of them falls along them, 1 = as that of
-  /// a plane; less where others are near that contradict it, below 0 where they outweigh it.
+  std::vector<float> normals;  ///< 4 floats a point: unit, 0 where the field does not fall
+  /// One a point: how the field that the first radius makes of them falls along them, 1 = as that
+  /// of a plane; less where others are near that contradict it, below 0 where they outweigh it.
   std::vector<float> steepness;
 };
 
