@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 #include <segorient/orientation/pipeline.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
@@ -117,7 +118,7 @@ TEST(SparseBodies, ManyPointsAreLeftToTheirNeighborhoods) {
     Neighborhoods table;
     search::indexOf(points.view(), 1).nearestKAll(9, table, false);
     detail::AutoNormals found;
-    found.spacing = 2.F / std::sqrt(static_cast<float>(count));
+    found.spacing = 3.5F / std::sqrt(static_cast<float>(count)) / points.unit;
     for (std::size_t i = 0; i < count; ++i) {
       const std::size_t row = 3 * static_cast<std::size_t>(points.source[i]);
       found.normals.insert(found.normals.end(), {truth.normals[row], truth.normals[row + 1],
@@ -125,8 +126,27 @@ TEST(SparseBodies, ManyPointsAreLeftToTheirNeighborhoods) {
     }
     found.confidences.assign(count, 1.F);
     const std::vector<float> before = found.normals;
-    EXPECT_EQ(detail::takeSparseField(points.view(), table, 2, found), count <= 3200);
+    EXPECT_EQ(detail::takeSparseField(points.view(), table, 0.F, 2, found), count <= 3200);
     EXPECT_EQ(before != found.normals, count <= 3200);
+  }
+}
+
+// Noise of a spacing: the field would fold.
+TEST(SparseBodies, NoisyBallsAndBowlsStayRight) {
+  for (const float lowest : {-2.F, 0.F}) {
+    const Truth clean = ball(lowest < -1.F ? 1000 : 2000);
+    std::mt19937 random(11);
+    std::normal_distribution<float> noise(0.F, 0.1F);
+    Truth noisy;
+    for (std::size_t i = 0; i < clean.view().size; ++i) {
+      const float* p = clean.view()[i];
+      if (p[2] < lowest) continue;
+      noisy.add({p[0] + noise(random), p[1] + noise(random), p[2] + noise(random)},
+                {p[0], p[1], p[2]});
+    }
+    const OrientedCloud cloud = orientCloud(noisy.view(), nullptr, {});
+    const double right = noisy.shareRight(cloud.normals);
+    EXPECT_GT(lowest < -1.F ? right : std::max(right, 1.0 - right), 0.99) << lowest;
   }
 }
 
@@ -161,7 +181,8 @@ TEST(ConsistentNormals, OfABallPointOutward) {
 TEST(ConsistentNormals, WhatHasNoExtentHasNone) {
   const std::vector<float> place{1.F, 2.F, 3.F, 0.F};
   const ConsistentNormals one = consistentNormals({place.data(), 4, 1}, {1.F}, {1.F, 0.5F}, 1);
-  for (const float v : one.normals) EXPECT_TRUE(std::isfinite(v));
+  EXPECT_EQ(one.normals, std::vector<float>(4, 0.F));
+  EXPECT_EQ(one.steepness, std::vector<float>(1, 0.F));
   EXPECT_TRUE(consistentNormals({nullptr, 4, 0}, {}, {1.F, 0.5F}, 1).normals.empty());
 }
 

@@ -24,18 +24,12 @@ constexpr float kBeforeOpen = 0.5F;
 constexpr float kMaybeClosed = kBeforeOpen / 2.F;
 constexpr float kClosed = kBeforeOpen / 4.F;
 // In spacings: from dipoles as wide as they are apart to such that the sides of a wall of a spacing
-// are still apart; and in noise, which takes points as far from the surface as the last radius.
-constexpr ShrinkingRadius kNarrow{1.F, 0.25F};
-constexpr ShrinkingRadius kWide{2.F, 0.7F};
-
+// are still apart.
+constexpr ShrinkingRadius kRadius{1.F, 0.25F};
 // Of the median area: points whose nearest are ten times as far away as usual are on no surface.
 constexpr float kStray = 100.F;
 
-ShrinkingRadius times(const ShrinkingRadius& radius, float factor) {
-  return {factor * radius.first, factor * radius.last};
-}
-
-// What one radius finds.
+// What the field finds.
 struct Candidate {
   std::vector<float> normals;
   std::vector<float> confidences;
@@ -50,12 +44,11 @@ std::vector<float> areasWithoutStrays(const EvenCells& cells) {
   return areas;
 }
 
-// \param areas one a cell
-Candidate tryRadius(const EvenCells& cells, const std::vector<float>& areas,
-                    const ShrinkingRadius& radius, const SignJudge& judge, int threads,
-                    const AutoNormals& found) {
+Candidate askField(const EvenCells& cells, const SignJudge& judge, int threads,
+                   const AutoNormals& found) {
+  const ShrinkingRadius radius{kRadius.first * found.spacing, kRadius.last * found.spacing};
   const ConsistentNormals field =
-      consistentNormals(cells.points(), areas, times(radius, found.spacing), threads);
+      consistentNormals(cells.points(), areasWithoutStrays(cells), radius, threads);
   Candidate out{found.normals, found.confidences, {}};
   for (std::size_t i = 0; i < cells.cell_of.size(); ++i) {
     const std::size_t cell = cells.cell_of[i];
@@ -70,8 +63,8 @@ Candidate tryRadius(const EvenCells& cells, const std::vector<float>& areas,
 
 }  // namespace
 
-bool takeSparseField(const PointView& points, const Neighborhoods& neighborhoods, int threads,
-                     AutoNormals& found) {
+bool takeSparseField(const PointView& points, const Neighborhoods& neighborhoods, float noise,
+                     int threads, AutoNormals& found) {
   if (points.size > kFew) return false;
   const SignJudge judge(points, neighborhoods, threads);
   const SignEnergy own = judge.judge(found.normals);
@@ -79,18 +72,15 @@ bool takeSparseField(const PointView& points, const Neighborhoods& neighborhoods
   // No two points are in one place, so that each is a cell of its own.
   const EvenCells cells = gatherCells(points, found.normals, 0.01F * found.spacing, threads);
   if (cells.size() == 0) return false;
-  const std::vector<float> areas = areasWithoutStrays(cells);
-  Candidate best = tryRadius(cells, areas, kNarrow, judge, threads, found);
-  Candidate wide = tryRadius(cells, areas, kWide, judge, threads, found);
-  // It is noise if most of what contradicts the narrow field is gone with the wider one, which also
-  // takes thin walls away, and some energy with them.
-  if (wide.energy.total() < 0.5F * best.energy.total()) best = std::move(wide);
-  if (!(best.energy.outside < kClosed)) return false;
+  Candidate field = askField(cells, judge, threads, found);
+  if (!(field.energy.outside < kClosed)) return false;
   // On walls thinner than a spacing the field folds, and contradicts itself far more than sheets
-  // do.
-  if (own.total() < 0.5F * best.energy.total()) return false;
-  found.normals = std::move(best.normals);
-  found.confidences = std::move(best.confidences);
+  // do. So it does in noise that takes points farther from the surface than the last radius; but
+  // what looks like noise may be small parts, of which the field knows clearly more.
+  const float most = noise > kRadius.last ? kClearlyLess : 2.F;
+  if (field.energy.total() > most * own.total()) return false;
+  found.normals = std::move(field.normals);
+  found.confidences = std::move(field.confidences);
   return true;
 }
 

@@ -116,7 +116,10 @@ void askField(const PreparedCloud& cloud, const PointView& points, const Neighbo
     // Judged scales: signs contradict each other somewhere.
     takeFineField(points, table, threads, out);
   }
-  if (alone && !in_contact) takeSparseField(cloud.points(), cloud.neighborhoods(), threads, out);
+  // Nor of seeds, which may know of other sides. Where positions were smoothed there is more noise.
+  if (alone && !in_contact && hints.seeds.empty() && !out.denoised) {
+    takeSparseField(cloud.points(), cloud.neighborhoods(), out.noise, threads, out);
+  }
 }
 
 // Where sensors tell the sides, the field of all points tells lines beside edges in noise.

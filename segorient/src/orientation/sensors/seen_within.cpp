@@ -74,6 +74,7 @@ double lossOfConstant(const DensityPatches& patches) {
 bool isEvenBeside(const DensityPatches& patches, int threads) {
   const search::MedianHashIndex index = patches.index(threads);
   const std::size_t count = patches.size() / kPartBeside;
+  if (count < 2) return true;  // too few to tell
   std::vector<pcl::index_t> near(count);
   std::vector<float> squared(count);
   std::vector<float> differences;
@@ -192,6 +193,7 @@ std::vector<Position> heaviestOf(const Explained& within) {
     return within.mixture.weights[a] > within.mixture.weights[b];
   });
   std::vector<Position> out;
+  out.reserve(order.size());
   for (const std::size_t j : order) out.push_back(within.places[within.mixture.place[j]]);
   return out;
 }
