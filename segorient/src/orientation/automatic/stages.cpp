@@ -116,8 +116,10 @@ void askField(const PreparedCloud& cloud, const PointView& points, const Neighbo
     // Judged scales: signs contradict each other somewhere.
     takeFineField(points, table, threads, out);
   }
-  // Nor of seeds, which may know of other sides. Where positions were smoothed there is more noise.
-  if (alone && !in_contact && hints.seeds.empty() && !out.denoised) {
+  // Nor of seeds and normals that are given, which may know of other sides. Where positions were
+  // smoothed there is too much noise.
+  const bool nothing_given = alone && hints.seeds.empty() && hints.directions.empty();
+  if (nothing_given && !in_contact && !out.denoised) {
     takeSparseField(cloud.points(), cloud.neighborhoods(), out.noise, threads, out);
   }
 }

@@ -78,6 +78,7 @@ bool isEvenBeside(const DensityPatches& patches, int threads) {
   std::vector<pcl::index_t> near(count);
   std::vector<float> squared(count);
   std::vector<float> differences;
+  differences.reserve(patches.size() * count);
   for (std::size_t i = 0; i < patches.size(); ++i) {
     const float center[3] = {patches.x[i], patches.y[i], patches.z[i]};
     const int found = index.nearestK(center, static_cast<int>(count), near.data(), squared.data());
