@@ -13,9 +13,9 @@ namespace segorient::detail {
 /// Normals of closed bodies that so few points were taken of that a neighbourhood is as large as
 /// their parts: planes are fitted across edges and through walls then, and borders of segments tell
 /// little. The field of all points knows no neighbourhoods, see consistentNormals(). Nothing is
-/// done unless the cloud has few points and little noise, it may be closed with the normals that
-/// were found, and is with those of the field, which contradict each other not much more.
-/// Normals where there are none are not added.
+/// done unless the cloud has few points, may be closed with the normals that were found, and is
+/// with those of the field, which contradict each other not much more, or, in noise, clearly less.
+/// Points that have no normal get none.
 /// \param points finite, near ones side by side
 /// \param neighborhoods eight at least
 /// \param noise in spacings

@@ -50,9 +50,7 @@ class Descent {
 
   // Each dipole the way that w falls, as strong as it is.
   void turn(float radius, ConsistentNormals& out) {
-    const std::vector<float> dipoles = dipolesOf(strength_, areas_);
-    const std::vector<float> falls =
-        steepestDescents(points_, {points_, dipoles}, radius, threads_);
+    const std::vector<float> falls = fallsOf(radius);
     for (std::size_t i = 0; i < points_.size; ++i) {
       const float fall = lengthOf(&falls[4 * i]);
       if (!(fall > 0.F)) continue;
@@ -65,9 +63,7 @@ class Descent {
   }
 
   void measureSteepness(float radius, ConsistentNormals& out) const {
-    const std::vector<float> dipoles = dipolesOf(strength_, areas_);
-    const std::vector<float> falls =
-        steepestDescents(points_, {points_, dipoles}, radius, threads_);
+    const std::vector<float> falls = fallsOf(radius);
     for (std::size_t i = 0; i < points_.size; ++i) {
       // A plane's falls by 1 / (2 radius).
       out.steepness[i] = 2.F * radius * dot(&out.normals[4 * i], &falls[4 * i]);
@@ -78,6 +74,11 @@ class Descent {
   std::vector<float> windingOf(const std::vector<float>& strength, float radius) const {
     const std::vector<float> dipoles = dipolesOf(strength, areas_);
     return windingNumbers(points_, {points_, dipoles}, radius, threads_);
+  }
+
+  std::vector<float> fallsOf(float radius) const {
+    const std::vector<float> dipoles = dipolesOf(strength_, areas_);
+    return steepestDescents(points_, {points_, dipoles}, radius, threads_);
   }
 
   const PointView& points_;
